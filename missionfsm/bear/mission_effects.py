@@ -1,0 +1,511 @@
+"""What the operations of the Mission page do where they are not refused, and what a robot does by itself.
+
+Everything is said for a `Situation` and as an `Edit`: what is decided does not depend on the missions that have ended,
+nor on how many wait. That makes it worth remembering, and every outcome is computed once.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+
+from attrs import evolve, frozen
+
+from missionfsm.bear.messages import Command, State
+from missionfsm.bear.mission import (
+    AUTOMATIC,
+    FAMILY,
+    GOALLESS,
+    NOT_CHOSEN,
+    PATROLS,
+    RETURN_POINT,
+    Edit,
+    Fault,
+    Kind,
+    Mission,
+    Op,
+    Robot,
+    Situation,
+    World,
+    free_goal,
+)
+from missionfsm.bear.mission_readings import (
+    AM_06,
+    AM_09,
+    AM_10,
+    AM_12_HALTED,
+    AM_13,
+    AM_17_LAST,
+    AM_17_PATROL,
+    AM_18,
+    AM_19,
+    AM_25,
+    AM_27,
+    AM_29,
+    AM_30,
+    AM_34_GAP,
+    AM_34_HALTED,
+    AM_37_QUEUED,
+    AM_41,
+    AM_43,
+    AM_45_NONE,
+    AM_45_WHEN,
+    AM_61,
+    AM_64,
+)
+from missionfsm.bear.mission_requests import Call, Request, Target, Wanted
+from missionfsm.bear.mission_rules import OPERATIONS, ranking
+from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
+from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.rules import (
+    CANCELLED,
+    FAILED_PRECONDITION,
+    INTERNAL,
+    OK,
+    RESOURCE_EXHAUSTED,
+    UNAUTHENTICATED,
+    UNAVAILABLE,
+    UNIMPLEMENTED,
+    decide,
+)
+
+Assumed = tuple[Assumption, ...]
+Way = tuple[Edit, Assumed]
+"""One way in which something takes effect, with what it assumes."""
+
+ADDED, ACTIVE, GONE, NOBODY = "those added", "the active one", "those that vanish", "none"
+"""Whose ids an answer has."""
+
+
+@frozen
+class Outcome:
+    """One answer that is allowed in a situation, with the edit that comes with it."""
+
+    code: str
+    edit: Edit = ()
+    whose: str = NOBODY
+    assumes: Assumed = ()
+    rules: tuple[str, ...] = ()
+    label: str = ""
+    applied: bool = True
+
+
+@functools.lru_cache(maxsize=100_000)
+def outcomes(robot: Situation, call: Call) -> tuple[Outcome, ...]:
+    """Every answer that the documents allow to a call, success first."""
+    operation = OPERATIONS[call.request.operation]
+    found: list[Outcome] = []
+    for decision in decide(operation.blocking(robot, call), ranking(robot, call)):
+        if decision.code is None:
+            promises = tuple(rule.id for rule in operation.promises)
+            found += (
+                evolve(one, assumes=(*decision.assumes, *one.assumes), rules=one.rules or promises)
+                for one in _effects(robot, call)
+            )
+        else:
+            rules = tuple(rule.id for rule in decision.rules)
+            found.append(Outcome(decision.code, assumes=decision.assumes, rules=rules))
+    found = [faulty for one in found for faulty in _with_fault(robot, one, operation.failures)]
+    found.sort(key=lambda one: one.code != OK)
+    return (*found, *_failures(operation.failures, streaming=operation.streaming))
+
+
+def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -> Iterator[Outcome]:
+    """The outcome, or the failure that a tester has armed in its place."""
+    fault = robot.fault
+    if fault is None or outcome.code != OK or fault.status not in failures or outcome.whose == "stream":
+        yield outcome
+        return
+    disarmed: Edit = ((Op.ARM, None),)
+    edit = outcome.edit + disarmed if fault.applied else disarmed
+    yield Outcome(fault.status, edit, NOBODY, outcome.assumes, (), "the armed fault")
+
+
+def _failures(documented: tuple[str, ...], *, streaming: bool) -> Iterator[Outcome]:
+    """Answers that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
+
+    SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well.
+    """
+    late = "DEADLINE_EXCEEDED" not in documented
+    for code in documented:
+        applied = code == INTERNAL and (not late or streaming)
+        yield Outcome(code, label=SPONTANEOUS_FAILURE, applied=applied)
+    transport = (AM_61["b"],)
+    for code in (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED):
+        yield Outcome(code, assumes=transport)
+    for code in (UNAVAILABLE, CANCELLED):
+        yield Outcome(code, assumes=transport, applied=False)
+
+
+def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
+    return _EFFECTS[call.request.operation](robot, call)
+
+
+# Missions that come.
+
+
+def _accepted(robot: Situation, wanted: Wanted) -> Iterator[tuple[Mission, Assumed]]:
+    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done."""
+    assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
+    assumes: Assumed = ()
+    doomed = False
+    if any(goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals):
+        doomed = True
+        assumes += (AM_43["b"],)
+    if FAMILY[wanted.kind] not in (None, robot.world.family):
+        doomed = True
+        assumes += (AM_41["c"],)
+    mission = Mission(wanted.kind, wanted.goals, doomed=doomed)
+    if wanted.kind not in AUTOMATIC:
+        yield mission, assumes
+        return
+    chosen = free_goal(wanted.goals, robot.world)
+    waits = robot.active is not None or robot.queued
+    if chosen == NOT_CHOSEN or not waits:
+        # Selecting when it is created and when it starts is the same for a mission that starts at once.
+        yield evolve(mission, goal=NOT_CHOSEN), assumes
+    else:
+        yield evolve(mission, goal=NOT_CHOSEN), (*assumes, AM_45_WHEN["i", "j"])
+        yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
+
+
+def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> Iterator[tuple[tuple[Mission, ...], Assumed]]:
+    if not wanted:
+        yield (), ()
+        return
+    for mission, assumes in _accepted(robot, wanted[0]):
+        for rest, more in _all_accepted(robot, wanted[1:]):
+            yield (mission, *rest), (*assumes, *more)
+
+
+def _listed_anew(robot: Situation, edit: Edit) -> Iterator[Way]:
+    """AM-13: the new missions follow the ended ones, or replace them."""
+    if not robot.ended:
+        yield edit, ()
+        return
+    yield edit, (AM_13["a"],)
+    yield ((Op.FORGET_ENDED, None), *edit), (AM_13["b"],)
+
+
+def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
+    paused = (AM_06["b"],) if robot.active is not None else ()
+    for missions, assumes in _all_accepted(robot, call.request.wanted):
+        for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
+            yield Outcome(OK, edit, ADDED, (*paused, *assumes, *anew))
+
+
+def _create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
+    (wanted,) = call.request.wanted
+    ways: list[tuple[tuple[Wanted, ...], Assumed]] = [
+        ((wanted,), (AM_25["a"], AM_27["a"])),
+        ((evolve(wanted, goals=(*wanted.goals, RETURN_POINT)),), (AM_25["a"], AM_27["b"])),
+        ((wanted, Wanted(Kind.RETURN)), (AM_25["b"],)),
+        (tuple(evolve(wanted, goals=(goal,)) for goal in wanted.goals), (AM_25["c"],)),
+    ]
+    for parts, how in ways:
+        for missions, assumes in _all_accepted(robot, parts):
+            for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
+                yield Outcome(OK, edit, ADDED, (*how, *assumes, *anew))
+                if robot.halted:
+                    yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*how, *assumes, *anew))
+
+
+def _append(robot: Situation, call: Call) -> Iterator[Outcome]:
+    for missions, assumes in _all_accepted(robot, call.request.wanted):
+        edit: Edit = ((Op.ADD, missions),)
+        if robot.halted:
+            yield Outcome(OK, edit, ADDED, (*assumes, AM_12_HALTED["a"]))
+            yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, AM_12_HALTED["c"]))
+        else:
+            yield Outcome(OK, edit, ADDED, assumes)
+
+
+def _charge(robot: Situation, _: Call) -> Iterator[Outcome]:
+    charge = (Mission(Kind.CHARGE),)
+    waiting = robot.active is None and robot.queued
+    ways: list[Way] = (
+        [
+            (((Op.ADD, charge), (Op.HALT, False)), (AM_37_QUEUED["b"],)),
+            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (AM_37_QUEUED["c"],)),
+        ]
+        if waiting
+        else [(((Op.ADD, charge),), ())]
+    )
+    for edit, assumes in ways:
+        for whole, anew in _listed_anew(robot, edit):
+            yield Outcome(OK, whole, ADDED, (*assumes, *anew))
+
+
+# Missions that end.
+
+
+def _with_queue(robot: Situation, how: Ambiguity, ended: Edit) -> Iterator[Way]:
+    """AM-09, AM-10: the waiting missions go on, halt, are cancelled too or vanish."""
+    if not robot.queued:
+        yield ended, ()
+        return
+    yield ended, (how["a"],)
+    yield (*ended, (Op.HALT, True)), (how["b"],)
+    yield (*ended, (Op.CANCEL_QUEUE, None)), (how["c"],)
+    yield (*ended, (Op.DROP_QUEUE, None)), (how["d"],)
+
+
+def _end(mission: Mission, trigger: str) -> Edit:
+    return ((Op.END, mission.moved(trigger)),)
+
+
+def _become(mission: Mission) -> Edit:
+    return ((Op.BECOME, mission),)
+
+
+def _cancelled(robot: Situation, mission: Mission) -> Iterator[Way]:
+    return _with_queue(robot, AM_09, _end(mission, "cancel"))
+
+
+def failed(robot: Situation, mission: Mission) -> Iterator[Way]:
+    """The ways in which the active mission fails."""
+    return _with_queue(robot, AM_10, _end(mission, "fail"))
+
+
+def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
+    if not robot.queued:
+        yield Outcome(OK, ((Op.CLEAR, None),) if robot.ended else (), GONE)
+        return
+    which = AM_34_HALTED if robot.halted else AM_34_GAP
+    yield Outcome(OK, ((Op.CLEAR, None),), GONE, (which["a"],))
+    yield Outcome(OK, ((Op.FORGET_ENDED, None),) if robot.ended else (), GONE, (which["b"],))
+
+
+# The active mission.
+
+
+def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
+    mission = robot.active
+    assert mission is not None, "without an active mission it is refused"  # noqa: S101 - as above
+    if mission.kind in GOALLESS:
+        yield from _skip_last(robot, mission, AM_17_LAST, (AM_19["a"],))
+        yield Outcome(FAILED_PRECONDITION, assumes=(AM_19["b"],))
+        yield Outcome(INTERNAL, assumes=(AM_19["c"],))
+    elif mission.kind in AUTOMATIC:
+        yield from _skip_automatic(robot, mission)
+    elif mission.goal + 1 < len(mission.goals) and not mission.finishing:
+        yield Outcome(OK, _become(evolve(mission, goal=mission.goal + 1)), ACTIVE)
+    elif mission.kind in PATROLS and not mission.finishing:
+        yield from _skip_last(robot, mission, AM_17_PATROL, ())
+    else:
+        yield from _skip_last(robot, mission, AM_17_LAST, ())
+
+
+def _skip_automatic(robot: Situation, mission: Mission) -> Iterator[Outcome]:
+    free = free_goal(mission.goals, robot.world, mission.goal)
+    follows = mission.goal + 1 < len(mission.goals) and mission.goal != NOT_CHOSEN
+    for letter, goal in (("a", free), ("b", mission.goal + 1 if follows else NOT_CHOSEN), ("c", NOT_CHOSEN)):
+        if goal == NOT_CHOSEN or mission.finishing:
+            yield from _skip_last(robot, mission, AM_17_LAST, (AM_18[letter],))
+        else:
+            yield Outcome(OK, _become(evolve(mission, goal=goal)), ACTIVE, (AM_18[letter],))
+
+
+def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assumed) -> Iterator[Outcome]:
+    succeeded = evolve(mission, state=State.STATE_RUNNING).moved("succeed")
+    yield Outcome(OK, ((Op.END, succeeded),), ACTIVE, (*assumes, how["a"]))
+    yield Outcome(FAILED_PRECONDITION, assumes=(*assumes, how["b"]))
+    yield Outcome(INTERNAL, assumes=(*assumes, how["c"]))
+    for edit, queue in _cancelled(robot, mission):
+        yield Outcome(OK, edit, ACTIVE, (*assumes, how["d"], *queue))
+    if "f" in how.readings:
+        again = evolve(mission, goal=0)
+        yield Outcome(OK, () if again == mission else _become(again), ACTIVE, (*assumes, how["f"]))
+
+
+def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
+    mission, command = robot.active, call.request.command
+    if mission is None or call.target is not Target.ACTIVE or command is None:
+        return
+    promised = (f"bear.mission/UpdateMission/{command.name.removeprefix('COMMAND_').lower()}",)
+    for edit, assumes in _COMMANDS[command](robot, mission):
+        yield Outcome(OK, edit, NOBODY, assumes, promised)
+
+
+def _pause(_: Situation, mission: Mission) -> Iterator[Way]:
+    if mission.state is State.STATE_PAUSED:
+        yield (), (AM_29["b"],)
+    else:
+        yield _become(evolve(mission, state=State.STATE_PAUSED)), ()
+
+
+def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
+    if mission.state is State.STATE_RUNNING:
+        yield (), (AM_29["b"],)
+        return
+    running = evolve(mission, state=State.STATE_RUNNING)
+    if mission.kind in AUTOMATIC:
+        yield from _reselected(robot.world, running)
+    elif mission.goal:
+        yield _become(running), (AM_64["a"],)
+        yield _become(evolve(running, goal=0)), (AM_64["b"],)
+    else:
+        yield _become(running), ()
+
+
+def _reselected(world: World, mission: Mission) -> Iterator[Way]:
+    """AM-45: a NavigateAuto mission keeps its goal, or selects again on the way."""
+    best = free_goal(mission.goals, world)
+    if best in (mission.goal, NOT_CHOSEN) or mission.goal == NOT_CHOSEN:
+        yield _become(mission), ()
+    else:
+        yield _become(mission), (AM_45_WHEN["h", "i"],)
+        yield _become(evolve(mission, goal=best)), (AM_45_WHEN["j"],)
+
+
+def _finish(_: Situation, mission: Mission) -> Iterator[Way]:
+    yield _end(mission, "finish"), (AM_30["a"],)
+    yield ((), (AM_30["b"],)) if mission.finishing else (_become(evolve(mission, finishing=True)), (AM_30["b"],))
+
+
+_COMMANDS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
+    Command.COMMAND_CANCEL: _cancelled,
+    Command.COMMAND_PAUSE: _pause,
+    Command.COMMAND_RESUME: _resume,
+    Command.COMMAND_FINISH: _finish,
+}
+
+
+def _subscribe(_: Situation, __: Call) -> Iterator[Outcome]:
+    yield Outcome(OK, (), "stream")
+
+
+_EFFECTS: Mapping[str, Callable[[Situation, Call], Iterator[Outcome]]] = {
+    "CreateMission": _create,
+    "CreateMissionBatch": _create,
+    "CreateMissionWorkflow": _create_workflow,
+    "AppendMission": _append,
+    "AppendMissionBatch": _append,
+    "ChargeRobot": _charge,
+    "ClearMissionStatus": _clear,
+    "SkipGoal": _skip,
+    "UpdateMission": _update,
+    "SubscribeMissionStatus": _subscribe,
+}
+
+
+# What a robot does by itself, and what a tester can make it do.
+
+
+@functools.lru_cache(maxsize=100_000)
+def due(world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool) -> tuple[Way, ...]:
+    """What must have happened once things have settled: a mission starts, a doomed one fails, a goal is selected.
+
+    Args:
+        head: the first waiting mission.
+        queued: whether others wait behind the active mission.
+    """
+    if active is not None:
+        return tuple(_due_of_active(world, active, queued=queued))
+    if head is None or halted or world.blocked:
+        return ()
+    return tuple(_started(world, head))
+
+
+def _started(world: World, head: Mission) -> Iterator[Way]:
+    """AM-45: a NavigateAuto mission selects its goal; where none is free it waits, fails or takes the first."""
+    running = head.moved("start")
+    if head.kind not in AUTOMATIC or head.doomed or head.goal != NOT_CHOSEN:
+        yield ((Op.START, running),), ()
+        return
+    chosen = free_goal(head.goals, world)
+    if chosen != NOT_CHOSEN:
+        yield ((Op.START, evolve(running, goal=chosen)),), ()
+        return
+    yield ((Op.START, running),), (AM_45_NONE["a", "c"],)
+    yield ((Op.START, evolve(running, doomed=True)),), (AM_45_NONE["b"],)
+    yield ((Op.START, evolve(running, goal=0)),), (AM_45_NONE["d"],)
+
+
+def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
+    if active.doomed:
+        yield from failed(Situation(world, active, queued, True, False, False, None), active)  # noqa: FBT003
+    elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
+        chosen = free_goal(active.goals, world)
+        if chosen != NOT_CHOSEN:
+            yield _become(evolve(active, goal=chosen)), ()
+
+
+@frozen(cache_hash=True)
+class Happening:
+    """Something that the environment does: the name of a drive and what it takes."""
+
+    name: str
+    what: Hashable = None
+
+
+def goal_reached(robot: Situation) -> Iterable[Way]:
+    """The running mission is done with its current goal."""
+    mission = robot.active
+    if mission is None or mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
+        return
+    if mission.goal == NOT_CHOSEN:
+        return
+    last = mission.goal + 1 >= len(mission.goals)
+    if mission.kind in AUTOMATIC or mission.finishing or (last and mission.kind not in PATROLS):
+        yield _end(mission, "succeed"), ()
+    else:
+        again = evolve(mission, goal=0 if last else mission.goal + 1)
+        yield (_become(again) if again != mission else ()), ()
+
+
+def mission_succeeded(robot: Situation) -> Iterable[Way]:
+    """The running mission ends well."""
+    if robot.active is not None and robot.active.state is State.STATE_RUNNING:
+        yield _end(robot.active, "succeed"), ()
+
+
+def mission_failed(robot: Situation) -> Iterable[Way]:
+    """The running or paused mission ends in failure."""
+    if robot.active is not None:
+        yield from failed(robot, robot.active)
+
+
+def world_changes(robot: Situation, changed: tuple[tuple[str, Hashable], ...]) -> Iterable[Way]:
+    """The world becomes another; a NavigateAuto mission on its way may select again (AM-45)."""
+    world = evolve(robot.world, **dict(changed))
+    edit: Edit = ((Op.WORLD, world),)
+    active = robot.active
+    if active is not None and active.kind in AUTOMATIC and active.state is State.STATE_RUNNING:
+        for more, assumes in _reselected(world, active):
+            yield (edit if more == _become(active) else edit + more), assumes
+    else:
+        yield edit, ()
+
+
+def fault_armed(_: Situation, fault: Fault) -> Iterable[Way]:
+    """The next call that succeeds and documents the status answers with it."""
+    yield ((Op.ARM, fault),), ()
+
+
+@functools.lru_cache(maxsize=100_000)
+def happens(robot: Situation, happening: Happening) -> tuple[Way, ...]:
+    """The ways in which something that the environment does comes about; none where it does not apply."""
+    return tuple(
+        {
+            "goalReached": lambda: goal_reached(robot),
+            "missionSucceeded": lambda: mission_succeeded(robot),
+            "missionFailed": lambda: mission_failed(robot),
+            "world": lambda: world_changes(robot, happening.what),  # type: ignore[arg-type]
+            "fault": lambda: fault_armed(robot, happening.what),  # type: ignore[arg-type]
+        }[happening.name]()
+    )
+
+
+def target(robot: Robot, ref: int | None) -> Target:
+    """Where the mission with a position in the list stands."""
+    if ref is None:
+        return Target.UNKNOWN
+    if ref < len(robot.done):
+        return Target.ENDED
+    return Target.ACTIVE if robot.active is not None and ref == len(robot.done) else Target.QUEUED
+
+
+def call_of(robot: Robot, request: Request, refs: tuple[int | None, ...]) -> Call:
+    """A request as the robot that gets it sees it."""
+    return Call(request, target(robot, refs[0]) if refs else None)

@@ -1,0 +1,679 @@
+"""The Errors tables of the Mission page: every row as the conditions that its sentence names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from missionfsm.bear.messages import Command, State
+from missionfsm.bear.mission import AUTOMATIC, FAMILY, MISSION, NOT_CHOSEN, SYSTEM, Kind, Situation, free_goal
+from missionfsm.bear.mission_readings import (
+    AM_01,
+    AM_02_ENDED,
+    AM_02_UNKNOWN,
+    AM_03,
+    AM_04,
+    AM_06,
+    AM_07,
+    AM_11,
+    AM_12_HALTED,
+    AM_12_PAUSED,
+    AM_16,
+    AM_29,
+    AM_31,
+    AM_33,
+    AM_34_GAP,
+    AM_34_HALTED,
+    AM_37_PAUSED,
+    AM_37_QUEUED,
+    AM_38_DOCK,
+    AM_38_RUNNING,
+    AM_40,
+    AM_41,
+    AM_43,
+    AM_44,
+    AM_45_NONE,
+    AM_53,
+    AM_58,
+)
+from missionfsm.bear.mission_requests import Call, Defect, Target, Wanted
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.rules import (
+    DEADLINE_EXCEEDED,
+    FAILED_PRECONDITION,
+    INTERNAL,
+    INVALID_ARGUMENT,
+    NOT_FOUND,
+    UNIMPLEMENTED,
+    Operation,
+    Ranking,
+    Rule,
+    promise,
+    rule,
+)
+
+SHAPE, GOALS, EITHER, STATE = "shape", "goals", "either", "state"
+"""What a rule looks at; AM-01 read as c ranks them, and EITHER may be checked with the shape or with the goals."""
+
+
+def _wanted(call: Call) -> tuple[Wanted, ...]:
+    return call.request.wanted
+
+
+# The request by itself.
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=SHAPE)
+def the_request_is_empty(_: Situation, call: Call) -> bool:
+    """The request does not say which mission it wants."""
+    return Defect.EMPTY in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=SHAPE)
+def the_request_is_malformed(_: Situation, call: Call) -> bool:
+    """The request is not of the documented form: a wrong type, an unknown name, two members of a oneof."""
+    return Defect.FORMAT in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["SubscribeMissionStatus", "Errors"], under=AM_58["b"], kind=SHAPE)
+def a_field_is_unknown(_: Situation, call: Call) -> bool:
+    """The request has a field that is not documented, and such a request is taken for malformed.
+
+    AM-58: readers of protobuf JSON may ignore such a field or refuse it.
+    """
+    return Defect.FIELD in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=EITHER)
+def a_goal_is_invalid(_: Situation, call: Call) -> bool:
+    """A goal is neither a destination nor a pose, its destination is empty, or its pose is not finite."""
+    return Defect.GOAL in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=EITHER)
+def the_goals_do_not_match_the_mission_type(_: Situation, call: Call) -> bool:
+    """A mission that needs a goal has none.
+
+    AM-42: the number and kind of goals is what can be told from the page.
+    """
+    return Defect.MATCH in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], under=AM_44["i"], kind=EITHER)
+def a_goal_occurs_twice(_: Situation, call: Call) -> bool:
+    """A goal occurs twice in one mission, and that is taken for invalid (AM-44)."""
+    return any(len(set(wanted.goals)) < len(wanted.goals) for wanted in _wanted(call))
+
+
+# The request and the world.
+
+
+def _destination_is_missing(robot: Situation, wanted: Wanted) -> bool:
+    return any(
+        goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals
+    )
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_43["a"], kind=GOALS)
+def a_destination_is_not_on_the_map(robot: Situation, call: Call) -> bool:
+    """A destination_id is not the display name of a destination on the robot's map.
+
+    AM-43: such a goal is invalid at once, or it is accepted and the mission fails.
+    """
+    return any(_destination_is_missing(robot, wanted) for wanted in _wanted(call))
+
+
+def _is_for_another_family(robot: Situation, kind: Kind | None) -> bool:
+    return kind is not None and FAMILY[kind] not in (None, robot.world.family)
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_41["a"], kind=EITHER)
+def the_mission_is_for_another_family(robot: Situation, call: Call) -> bool:
+    """The mission is specific to a family that the robot is not of.
+
+    AM-41: said for workflows; a mission of another family is refused in the same way.
+    """
+    return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Request"], under=AM_41["b"], kind=EITHER)
+def the_robot_is_of_another_family(robot: Situation, call: Call) -> bool:
+    """The robot is not of the family that the mission is for (AM-41 read as a matter of state)."""
+    return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMissionWorkflow", "Errors"], kind=EITHER)
+def the_workflow_is_for_another_family(robot: Situation, call: Call) -> bool:
+    """The robot's family does not have this workflow."""
+    return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
+
+
+def _no_goal_is_free(robot: Situation, call: Call) -> bool:
+    return any(
+        wanted.kind in AUTOMATIC and bool(wanted.goals) and free_goal(wanted.goals, robot.world) == NOT_CHOSEN
+        for wanted in _wanted(call)
+    )
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], under=AM_45_NONE["c"], kind=GOALS)
+def no_goal_is_free(robot: Situation, call: Call) -> bool:
+    """Every goal of a NavigateAuto mission is taken, and that is checked when it is created (AM-45)."""
+    return _no_goal_is_free(robot, call)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], under=AM_45_NONE["c"], kind=GOALS)
+def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
+    """Every goal of a NavigateAuto mission is taken, and that is a state that forbids to create it (AM-45)."""
+    return _no_goal_is_free(robot, call)
+
+
+# The robot.
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Errors"], kind=STATE)
+def another_mission_is_active_or_queued(robot: Situation, _: Call) -> bool:
+    """A mission is running, paused or waiting, so a first mission cannot be created.
+
+    AM-06: a paused mission has not ended. AM-05: "Default" means that nothing has run yet.
+    """
+    return robot.active is not None or robot.queued
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=STATE)
+def another_mission_is_running_or_queued(robot: Situation, _: Call) -> bool:
+    """A mission is running or waiting, so a first batch cannot be created."""
+    running = robot.active is not None and robot.active.state is State.STATE_RUNNING
+    return running or robot.queued
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_06["a"], kind=STATE)
+def a_paused_mission_counts_as_running(robot: Situation, _: Call) -> bool:
+    """A mission is paused, which counts as running (AM-06)."""
+    return _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=STATE)
+def the_robot_is_unable_to_start(robot: Situation, _: Call) -> bool:
+    """The robot is unable to start a mission."""
+    return robot.world.blocked
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_53["a"], kind=STATE)
+def the_robot_is_unable_to_start_any_mission(robot: Situation, _: Call) -> bool:
+    """The robot is unable to start a mission, which forbids every call that creates a first one (AM-53)."""
+    return robot.world.blocked
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], kind=STATE)
+def another_mission_is_active(robot: Situation, _: Call) -> bool:
+    """A mission is running or paused, so a workflow cannot be created."""
+    return robot.active is not None
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], under=AM_07["a"], kind=STATE)
+def another_mission_is_queued(robot: Situation, _: Call) -> bool:
+    """A mission waits, which forbids a workflow as it forbids a mission (AM-07)."""
+    return robot.active is None and robot.queued
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], kind=STATE)
+def the_mission_queue_is_empty(robot: Situation, _: Call) -> bool:
+    """No mission is listed, so there is nothing to append to."""
+    return robot.active is None and not robot.queued and not robot.ended
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_11["b"], kind=STATE)
+def every_mission_has_ended(robot: Situation, _: Call) -> bool:
+    """Every listed mission has ended, and those are not in the queue any more (AM-11)."""
+    return robot.active is None and not robot.queued and robot.ended
+
+
+def _is_paused(robot: Situation) -> bool:
+    return robot.active is not None and robot.active.state is State.STATE_PAUSED
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_12_PAUSED["b"], kind=STATE)
+def no_mission_is_running(robot: Situation, _: Call) -> bool:
+    """The active mission is paused, and only a running one can be appended to (AM-12)."""
+    return _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_12_HALTED["b"], kind=STATE)
+def the_queue_is_halted(robot: Situation, _: Call) -> bool:
+    """The queue is halted, and only a running mission can be appended to (AM-12)."""
+    return robot.active is None and robot.queued and robot.halted
+
+
+# ChargeRobot.
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], kind=STATE)
+def a_mission_is_running(robot: Situation, _: Call) -> bool:
+    """A mission is running and must be cancelled first."""
+    return robot.active is not None and robot.active.state is State.STATE_RUNNING
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], under=AM_37_PAUSED["a"], kind=STATE)
+def a_mission_is_paused(robot: Situation, _: Call) -> bool:
+    """A mission is paused and must be cancelled first (AM-37)."""
+    return _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], under=AM_37_QUEUED["a"], kind=STATE)
+def a_mission_is_queued(robot: Situation, _: Call) -> bool:
+    """A mission waits and must be cleared first (AM-37)."""
+    return robot.active is None and robot.queued
+
+
+def _charger_rule(code: str, letter: str) -> Rule:
+    @rule(code, cite=MISSION["ChargeRobot"], under=AM_38_DOCK[letter], kind=GOALS)
+    def the_robot_has_no_contact_dock(robot: Situation, _: Call) -> bool:
+        """The robot has no contact-based charging dock.
+
+        AM-38: the page names no code for it.
+        """
+        return not robot.world.contact_dock
+
+    return the_robot_has_no_contact_dock
+
+
+@rule(NOT_FOUND, cite=MISSION["ChargeRobot", "Errors"], kind=GOALS)
+def the_map_has_no_charging_location(robot: Situation, _: Call) -> bool:
+    """The robot's map has no contact charger."""
+    return not robot.world.charging_location
+
+
+# ClearMissionStatus and SkipGoal.
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], kind=STATE)
+def a_mission_is_running_or_paused(robot: Situation, _: Call) -> bool:
+    """A mission is running or paused and must end first."""
+    return robot.active is not None
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["b"], kind=STATE)
+def nothing_is_listed(robot: Situation, _: Call) -> bool:
+    """There is nothing to clear (AM-33)."""
+    return robot.active is None and not robot.queued and not robot.ended
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["c"], kind=SHAPE)
+def there_is_nothing_to_clear(robot: Situation, _: Call) -> bool:
+    """There is nothing to clear, so the request means nothing (AM-33)."""
+    return robot.active is None and not robot.queued and not robot.ended
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus"], under=AM_34_GAP["c"], kind=STATE)
+def a_mission_is_about_to_start(robot: Situation, _: Call) -> bool:
+    """A mission is about to start, and all must have ended (AM-34)."""
+    return robot.active is None and robot.queued and not robot.halted
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus"], under=AM_34_HALTED["c"], kind=STATE)
+def a_mission_waits_in_a_halted_queue(robot: Situation, _: Call) -> bool:
+    """A mission waits, and all must have ended (AM-34)."""
+    return robot.active is None and robot.queued and robot.halted
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], kind=STATE)
+def the_robot_is_not_on_a_mission(robot: Situation, _: Call) -> bool:
+    """No mission is running or paused, so there is no goal to skip."""
+    return robot.active is None
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], under=AM_16["a"], kind=STATE)
+def the_mission_is_paused(robot: Situation, _: Call) -> bool:
+    """The mission is paused, not actively running (AM-16)."""
+    return _is_paused(robot)
+
+
+# UpdateMission.
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], kind=SHAPE)
+def the_command_is_not_set(_: Situation, call: Call) -> bool:
+    """The command is COMMAND_UNKNOWN, a number without a name, or missing."""
+    return Defect.COMMAND in call.request.defects
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], kind=SHAPE)
+def the_mission_id_is_missing(_: Situation, call: Call) -> bool:
+    """The request does not say which mission it is about."""
+    return Defect.EMPTY in call.request.defects
+
+
+@rule(NOT_FOUND, cite=MISSION["UpdateMission", "Errors"], kind=STATE)
+def the_mission_is_still_queued(_: Situation, call: Call) -> bool:
+    """The mission still waits, and waiting missions cannot be updated."""
+    return call.target is Target.QUEUED
+
+
+def _nothing_listed(robot: Situation) -> bool:
+    return robot.active is None and not robot.queued and not robot.ended
+
+
+def _id_rule(code: str, name: str, says: str, under: Assumption, holds: Callable[[Situation, Call], bool]) -> Rule:
+    return Rule(name, says, "", MISSION["UpdateMission", "Errors"], code, holds, under, STATE)
+
+
+def _ended(robot: Situation, call: Call) -> bool:
+    return call.target is Target.ENDED and robot.active is None
+
+
+def _ended_while_another_is_active(robot: Situation, call: Call) -> bool:
+    return call.target is Target.ENDED and robot.active is not None
+
+
+def _unknown(robot: Situation, call: Call) -> bool:
+    return call.target is Target.UNKNOWN and robot.active is None and not _nothing_listed(robot)
+
+
+def _unknown_while_another_is_active(robot: Situation, call: Call) -> bool:
+    return call.target is Target.UNKNOWN and robot.active is not None
+
+
+def _no_mission(robot: Situation, call: Call) -> bool:
+    return call.target is Target.UNKNOWN and _nothing_listed(robot)
+
+
+_WRONG_ID = (
+    _id_rule(
+        FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c"], _ended
+    ),
+    _id_rule(NOT_FOUND, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["b"], _ended),
+    _id_rule(INVALID_ARGUMENT, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["d"], _ended),
+    _id_rule(
+        FAILED_PRECONDITION,
+        "the-mission-has-ended-and-another-is-active",
+        "The mission has ended.",
+        AM_02_ENDED["a"],
+        _ended_while_another_is_active,
+    ),
+    _id_rule(
+        NOT_FOUND,
+        "the-mission-has-ended-and-another-is-active",
+        "Another mission is active.",
+        AM_02_ENDED["b", "c"],
+        _ended_while_another_is_active,
+    ),
+    _id_rule(
+        INVALID_ARGUMENT,
+        "the-mission-has-ended-and-another-is-active",
+        "Another mission is active.",
+        AM_02_ENDED["d"],
+        _ended_while_another_is_active,
+    ),
+    _id_rule(
+        INVALID_ARGUMENT, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["a"], _unknown
+    ),
+    _id_rule(NOT_FOUND, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["b"], _unknown),
+    _id_rule(
+        FAILED_PRECONDITION,
+        "the-mission-is-not-listed",
+        "No mission is active.",
+        AM_02_UNKNOWN["e", "f"],
+        _unknown,
+    ),
+    _id_rule(
+        INVALID_ARGUMENT,
+        "the-mission-is-not-listed-and-another-is-active",
+        "The id is not that of the active mission.",
+        AM_02_UNKNOWN["a", "e"],
+        _unknown_while_another_is_active,
+    ),
+    _id_rule(
+        NOT_FOUND,
+        "the-mission-is-not-listed-and-another-is-active",
+        "The id is not that of the active mission.",
+        AM_02_UNKNOWN["b", "f"],
+        _unknown_while_another_is_active,
+    ),
+    _id_rule(FAILED_PRECONDITION, "the-robot-has-no-mission", "The robot has no mission.", AM_03["a"], _no_mission),
+    _id_rule(NOT_FOUND, "the-robot-has-no-mission", "The robot has no mission.", AM_03["b"], _no_mission),
+    _id_rule(INVALID_ARGUMENT, "the-robot-has-no-mission", "The robot has no mission.", AM_03["c"], _no_mission),
+)
+"""AM-02, AM-03: the rows overlap on ids that are not the active mission's, and each way to share them is a reading."""
+
+
+def _asks(call: Call, command: Command) -> bool:
+    return call.target is Target.ACTIVE and call.request.command is command
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["a"], kind=STATE)
+def the_mission_is_already_paused(robot: Situation, call: Call) -> bool:
+    """The mission is paused already (AM-29)."""
+    return _asks(call, Command.COMMAND_PAUSE) and _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["a"], kind=STATE)
+def the_mission_is_not_paused(robot: Situation, call: Call) -> bool:
+    """The mission is not paused, so it cannot be resumed (AM-29)."""
+    return _asks(call, Command.COMMAND_RESUME) and not _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_31["b"], kind=STATE)
+def a_paused_mission_cannot_be_finished(robot: Situation, call: Call) -> bool:
+    """The mission is paused and must be resumed before it can be finished (AM-31)."""
+    return _asks(call, Command.COMMAND_FINISH) and _is_paused(robot)
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_40["c"], kind=STATE)
+def charging_cannot_be_paused(robot: Situation, call: Call) -> bool:
+    """The robot is charging, which cannot be paused (AM-40)."""
+    charging = robot.active is not None and robot.active.kind is Kind.CHARGE
+    return _asks(call, Command.COMMAND_PAUSE) and charging and not _is_paused(robot)
+
+
+# The operation table, one line an operation.
+
+_FORMAT = (
+    the_request_is_empty,
+    the_request_is_malformed,
+    a_goal_is_invalid,
+    the_goals_do_not_match_the_mission_type,
+    a_destination_is_not_on_the_map,
+    a_goal_occurs_twice,
+    a_field_is_unknown,
+)
+_MISSION = (
+    *_FORMAT,
+    the_mission_is_for_another_family,
+    the_robot_is_of_another_family,
+    no_goal_is_free,
+    no_goal_is_free_now,
+)
+_APPEND = (the_mission_queue_is_empty, every_mission_has_ended, no_mission_is_running, the_queue_is_halted)
+_COMMAND = (the_mission_is_already_paused, the_mission_is_not_paused, a_paused_mission_cannot_be_finished)
+_DOCK = tuple(
+    _charger_rule(code, letter)
+    for code, letter in (
+        (NOT_FOUND, "a"),
+        (FAILED_PRECONDITION, "b"),
+        (INTERNAL, "c"),
+        (UNIMPLEMENTED, "d"),
+        (INVALID_ARGUMENT, "g"),
+    )
+)
+_ONE_ID = promise(
+    "the-answer-names-the-new-mission",
+    "The answer has the id of the mission that was created, which no mission had before.",
+    cite=MISSION["CreateMission", "Response"],
+)
+_ALL_IDS = promise(
+    "the-answer-names-the-new-missions-in-order",
+    "All missions of the request are created, one after the other; the answer has their ids in the same order.",
+    cite=MISSION["CreateMissionBatch"],
+)
+_WORKFLOW_IDS = promise(
+    "the-answer-names-the-missions-of-the-workflow",
+    "The answer has the ids of the missions that the workflow created.",
+    cite=MISSION["CreateMissionWorkflow", "Response"],
+)
+_APPENDED = promise(
+    "missions-are-appended-at-the-end",
+    "Appended missions wait behind all others and run in the order in which they came.",
+    cite=MISSION["AppendMission"],
+)
+_CLEARED = promise(
+    "the-answer-names-the-cleared-missions",
+    "The answer has the ids of exactly the missions that are not listed any more.",
+    cite=MISSION["ClearMissionStatus", "Response"],
+)
+_SKIPPED = promise(
+    "the-next-goal-is-taken-up",
+    "The active mission goes on to its next goal, and the answer has its id.",
+    cite=MISSION["SkipGoal"],
+)
+_COMMANDED = tuple(
+    promise(name, says, cite=MISSION["UpdateMission", "Command enum"])
+    for name, says in (
+        ("cancel", "COMMAND_CANCEL ends the mission as cancelled."),
+        ("pause", "COMMAND_PAUSE pauses a running mission."),
+        ("resume", "COMMAND_RESUME lets a paused mission run on."),
+        ("finish", "COMMAND_FINISH ends the mission as completed."),
+    )
+)
+_SNAPSHOT = promise(
+    "the-latest-state-comes-first",
+    "The first message of a stream shows the latest known state.",
+    cite=MISSION["SubscribeMissionStatus"],
+)
+_EITHER = (INTERNAL, DEADLINE_EXCEEDED)
+
+
+def _operation(
+    name: str,
+    refusals: tuple[Rule, ...],
+    *promises: Rule,
+    failures: tuple[str, ...] = _EITHER,
+    streaming: bool = False,
+) -> Operation:
+    return Operation.of(
+        name, SYSTEM, MISSION[name], refusals=refusals, promises=promises, failures=failures, streaming=streaming
+    )
+
+
+OPERATIONS: Mapping[str, Operation] = {
+    one.name: one
+    for one in (
+        _operation(
+            "CreateMission",
+            (*_MISSION, another_mission_is_active_or_queued, the_robot_is_unable_to_start_any_mission),
+            _ONE_ID,
+        ),
+        _operation(
+            "CreateMissionBatch",
+            (
+                *_MISSION,
+                another_mission_is_running_or_queued,
+                a_paused_mission_counts_as_running,
+                the_robot_is_unable_to_start,
+            ),
+            _ALL_IDS,
+        ),
+        _operation(
+            "CreateMissionWorkflow",
+            (
+                *_FORMAT,
+                the_workflow_is_for_another_family,
+                another_mission_is_active,
+                another_mission_is_queued,
+                the_robot_is_unable_to_start_any_mission,
+            ),
+            _WORKFLOW_IDS,
+        ),
+        _operation("AppendMission", (*_MISSION, *_APPEND), _ONE_ID, _APPENDED),
+        _operation("AppendMissionBatch", (*_MISSION, *_APPEND), _ALL_IDS, _APPENDED),
+        _operation(
+            "ChargeRobot",
+            (
+                a_field_is_unknown,
+                a_mission_is_running,
+                a_mission_is_paused,
+                a_mission_is_queued,
+                the_robot_is_unable_to_start_any_mission,
+                *_DOCK,
+                the_map_has_no_charging_location,
+            ),
+            _ONE_ID,
+        ),
+        _operation(
+            "ClearMissionStatus",
+            (
+                the_request_is_malformed,
+                a_field_is_unknown,
+                a_mission_is_running_or_paused,
+                nothing_is_listed,
+                there_is_nothing_to_clear,
+                a_mission_is_about_to_start,
+                a_mission_waits_in_a_halted_queue,
+            ),
+            _CLEARED,
+            failures=(INTERNAL,),
+        ),
+        _operation(
+            "SkipGoal",
+            (a_field_is_unknown, the_robot_is_not_on_a_mission, the_mission_is_paused),
+            _SKIPPED,
+            failures=(INTERNAL,),
+        ),
+        _operation(
+            "UpdateMission",
+            (
+                the_mission_id_is_missing,
+                the_request_is_malformed,
+                the_command_is_not_set,
+                a_field_is_unknown,
+                the_mission_is_still_queued,
+                *_WRONG_ID,
+                *_COMMAND,
+                charging_cannot_be_paused,
+            ),
+            *_COMMANDED,
+        ),
+        _operation(
+            "SubscribeMissionStatus",
+            (the_request_is_malformed, a_field_is_unknown),
+            _SNAPSHOT,
+            failures=(INTERNAL,),
+            streaming=True,
+        ),
+    )
+}
+
+
+def ranking(robot: Situation, call: Call) -> Ranking:
+    """Which codes may be answered where several rules hold, and what that assumes about AM-01, AM-04 or AM-38."""
+    ranks = {"UpdateMission": _rank_update, "ChargeRobot": _rank_charge}.get(call.request.operation, _rank_create)
+    return lambda holding: ranks(robot, holding)
+
+
+Ranked = Iterator[tuple[str, tuple[Assumption, ...]]]
+
+
+def _rank_create(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
+    """AM-01: the format first, the state first, or the state between shape and goals."""
+    early = any(one.kind in (SHAPE, EITHER) for one in holding if one.code == INVALID_ARGUMENT)
+    sure = any(one.kind == SHAPE for one in holding if one.code == INVALID_ARGUMENT)
+    yield INVALID_ARGUMENT, (AM_01["a", "c"] if early else AM_01["a"],)
+    yield FAILED_PRECONDITION, (AM_01["b"] if sure else AM_01["b", "c"],)
+
+
+def _rank_update(robot: Situation, holding: tuple[Rule, ...]) -> Ranked:
+    """AM-04: the command, the id or the state is looked at first."""
+    for code, about_command in dict.fromkeys((str(one.code), one.kind == SHAPE) for one in holding):
+        if about_command:
+            forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
+            yield code, (AM_04["a"] if forbidden else AM_04["a", "c"],)
+        else:
+            yield code, (AM_04["b", "c"],)
+
+
+def _rank_charge(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
+    """AM-38: the running mission or the missing charger is answered for."""
+    busy = any(one.kind == STATE for one in holding)
+    for code, kind in dict.fromkeys((str(one.code), one.kind) for one in holding):
+        if not busy or kind == SHAPE:
+            yield code, ()
+        else:
+            yield code, (AM_38_RUNNING["e" if kind == STATE else "f"],)

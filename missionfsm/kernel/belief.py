@@ -1,0 +1,282 @@
+"""What an implementation may be doing, given what was observed of it: the belief automaton, built as it is walked.
+
+A `Belief` is where one observed conversation stands. Its node is the set of all explanations; an event leads to the
+next one. Nodes are interned and edges remembered in an `Automaton`, as a regular-expression engine builds its DFA: the
+first walk along an edge computes, the second is a dictionary look-up. Names are kept beside the automaton, numbered in
+the order in which the explanations mention them, so that the same situation with other names is the same node.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Hashable, Iterable
+from typing import Any
+
+from attrs import define, field
+
+from missionfsm.kernel.explanation import GONE, Explanation, rename
+from missionfsm.kernel.history import (
+    Called,
+    Cancelled,
+    Driven,
+    Ended,
+    Event,
+    Name,
+    Received,
+    Returned,
+    Settled,
+)
+from missionfsm.kernel.oracle import Oracle, surviving_names
+from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.spec import Spec
+
+REMEMBERED = 100_000
+"""How many names that are gone are remembered, so that one that comes again is noticed."""
+
+NODES = 50_000
+"""How many nodes an automaton keeps before it starts over."""
+
+
+@define(eq=False, slots=True)
+class Node:
+    """All explanations of what was observed, and the edges that were walked from here."""
+
+    explanations: tuple[Explanation, ...]
+    width: int
+    next: dict[Any, Edge] = field(factory=dict, repr=False)
+
+
+@define(eq=False, slots=True)
+class Edge:
+    """Where an event leads: the next node and what becomes of the names.
+
+    Attributes:
+        keep: for every name of the next node its number before (new names count on from the width); None: unchanged.
+        retired: numbers of names that are gone for good.
+        rules: ids of the rules that were exercised.
+        touched: the bits of the ambiguities on which this event's explanations depend.
+        walked: how often.
+    """
+
+    node: Node
+    keep: tuple[int, ...] | None
+    retired: tuple[int, ...]
+    rules: tuple[str, ...]
+    touched: int
+    walked: int = 0
+
+
+class Automaton:
+    """The belief automaton of a spec, as far as it has been walked.
+
+    Args:
+        spec: the system.
+        driven: names of the drives that a tester commands.
+        assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
+    """
+
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
+        self.spec = spec
+        self.assumed = assumed
+        self.oracle = Oracle(spec, driven)
+        self._nodes: dict[tuple[Explanation, ...], Node] = {}
+        self._edges: list[Edge] = []
+
+    def start(self, world: object) -> Node:
+        """The node in which a fresh instance in this world is."""
+        state = self.spec.initial(world)
+        unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
+        return self._intern((Explanation(state, unseen, self.assumed),), 0)
+
+    def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
+        node = self._nodes.get(explanations)
+        if node is None:
+            if len(self._nodes) >= NODES:
+                self._nodes.clear()
+            node = self._nodes[explanations] = Node(explanations, width)
+        return node
+
+    def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
+        """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
+        kind, *what = symbol
+        sightings = self.oracle.step(node.explanations, kind, *what)
+        explanations = tuple(sighting.explanation for sighting in sightings)
+        new = surviving_names(explanations)
+        numbered = tuple(rename(one, new) for one in explanations)
+        next_node = self._intern(numbered, len(new))
+        keep = tuple(new)
+        gone = [number for one in node.explanations for number in one.names if number > GONE and number not in new]
+        touched = 0
+        for ambiguity in self.spec.ambiguities:
+            before = {one.assumed & ambiguity.group for one in node.explanations}
+            after = {one.assumed & ambiguity.group for one in explanations}
+            if before != after:
+                touched |= ambiguity.group
+        edge = Edge(
+            next_node,
+            None if keep == tuple(range(node.width)) else keep,
+            tuple(dict.fromkeys(gone)),
+            tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules)),
+            touched,
+        )
+        node.next[symbol] = edge
+        self._edges.append(edge)
+        return edge
+
+    @property
+    def exercised(self) -> dict[str, int]:
+        """How often each rule was exercised by all beliefs that walked here."""
+        times: dict[str, int] = {}
+        for edge in self._edges:
+            if edge.walked:
+                for rule in edge.rules:
+                    times[rule] = times.get(rule, 0) + edge.walked
+        return times
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """How many nodes and edges have been built."""
+        return len(self._nodes), len(self._edges)
+
+
+class Belief:
+    """Where one observed conversation stands.
+
+    ``observe`` returns False once no explanation is left; from then on it stays so, and `node` is the last one that
+    had explanations.
+    """
+
+    __slots__ = ("_marks", "_names", "_numbers", "_retired", "_retired_order", "automaton", "broken", "node", "touched")
+
+    def __init__(self, automaton: Automaton, world: object) -> None:
+        self.automaton = automaton
+        self.node = automaton.start(world)
+        self.broken = False
+        self.touched = 0
+        self._names: list[Name] = []
+        self._numbers: dict[Name, int] = {}
+        self._retired: set[Name] = set()
+        self._retired_order: deque[Name] = deque()
+        self._marks: dict[Name, dict[Hashable, int]] = {}
+
+    def observe(self, event: Event) -> bool:
+        """Take one event into account; False when nothing explains it.
+
+        Raises:
+            ExhaustedError: it costs too much to decide.
+        """
+        if self.broken:
+            return False
+        kind = type(event)
+        if kind is Received and event.channel not in self._numbers and event.channel in self._retired:  # type: ignore[union-attr]
+            return True  # what still comes on a stream that was given up
+        symbol, new = self.symbol(event)
+        edge = self.node.next.get(symbol)
+        if edge is None:
+            edge = self.automaton.edge(self.node, symbol)
+        edge.walked += 1
+        if not edge.node.explanations:
+            self.broken = True
+            return False
+        self._walk(edge, new)
+        if kind is Cancelled:
+            self._retire(event.channel)  # type: ignore[union-attr]
+        return True
+
+    def symbol(self, event: Event) -> tuple[tuple[Any, ...], list[Name]]:
+        """The event with numbers for names, as the automaton knows it, and the names that are new."""
+        numbers = self._numbers
+        new: list[Name] = []
+        if type(event) is Settled:
+            return (Settled,), new
+        if type(event) is Driven:
+            return (Driven, event.event, self._number(event.names, new)), new
+        if type(event) is Returned:
+            call = numbers.get(event.call, GONE)
+            return (Returned, event.answer, self._number(event.names, new), call), new
+        if type(event) is Called:
+            args = self._number(event.names, new)
+            (call,) = (GONE,) if event.lost else self._number((event.call,), new)
+            return (Called, event.request, args, event.lost, call), new
+        if type(event) is Received:
+            (channel,) = self._number((event.channel,), new)
+            relations = self._relations(event.channel, event.marks) if event.marks else ()
+            return (Received, event.content, self._number(event.names, new), relations, channel), new
+        if type(event) is Ended:
+            return (Ended, event.code, numbers.get(event.channel, GONE)), new
+        if type(event) is Cancelled:
+            return (Cancelled, numbers.get(event.channel, GONE)), new
+        message = f"not an event: {event!r}"
+        raise TypeError(message)
+
+    def _number(self, names: tuple[Name, ...], new: list[Name]) -> tuple[int, ...]:
+        numbers, found = self._numbers, []
+        for name in names:
+            number = numbers.get(name)
+            if number is None:
+                if name in self._retired:
+                    number = GONE
+                elif name in new:
+                    number = self.node.width + new.index(name)
+                else:
+                    number = self.node.width + len(new)
+                    new.append(name)
+            found.append(number)
+        return tuple(found)
+
+    def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
+        tracks = self._marks.setdefault(channel, {})
+        relations = []
+        for track, number in marks:
+            relations.append(relation(tracks.get(track), number))
+            tracks[track] = number
+        return tuple(relations)
+
+    def _walk(self, edge: Edge, new: list[Name]) -> None:
+        self.node = edge.node
+        self.touched |= edge.touched
+        if edge.keep is None:
+            return
+        names = self._names + new
+        for number in edge.retired:
+            self._retire(names[number])
+        self._names = [names[number] for number in edge.keep]
+        self._numbers = {name: number for number, name in enumerate(self._names)}
+
+    def _retire(self, name: Name) -> None:
+        self._retired.add(name)
+        self._retired_order.append(name)
+        self._marks.pop(name, None)
+        if len(self._retired_order) > REMEMBERED:
+            self._retired.discard(self._retired_order.popleft())
+
+    def name(self, number: int) -> Name | None:
+        """The observed name with a number, or None for one that nobody has seen."""
+        return self._names[number] if 0 <= number < len(self._names) else None
+
+    @property
+    def readings(self) -> dict[str, tuple[str, ...]]:
+        """For every ambiguity that mattered so far: the readings that some explanation still follows."""
+        found = {}
+        for ambiguity in self.automaton.spec.ambiguities:
+            if self.touched & ambiguity.group or any(
+                one.assumed & ambiguity.group != ambiguity.group for one in self.node.explanations
+            ):
+                union = 0
+                for one in self.node.explanations:
+                    union |= one.assumed
+                found[ambiguity.id] = ambiguity.possible(union)
+        return found
+
+
+def relation(before: int | None, number: int) -> str:
+    """How a number compares with its predecessor on a track: one of `missionfsm.kernel.spec.RELATIONS`."""
+    if number < 0:
+        return "negative"
+    if number == 0:
+        return "zero"
+    if before is None:
+        return "first"
+    if number == before:
+        return "equal"
+    return "larger" if number > before else "smaller"

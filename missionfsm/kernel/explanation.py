@@ -1,0 +1,250 @@
+"""One way in which everything observed so far can have come about, and how it goes on.
+
+An `Explanation` is a state with what was assumed, the names bound to it, the calls in flight and the messages still to
+be seen. It stands for itself *and for everything it can silently turn into*: steps that nobody has to have seen are
+taken only when an observation asks for them. That is exact, because whatever an explanation can become it can still
+become later; and it is what keeps the number of explanations small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.spec import Emission, State, Step, View
+
+Names = tuple[int, ...]
+"""Names as the oracle numbers them: 0… were observed, -2, -3… exist and were not seen yet, `GONE` is neither."""
+
+GONE = -1
+"""The number of a name that was observed once and that nothing carries any more."""
+
+
+@frozen
+class Ready:
+    """An answer that a call in flight may come back with, and the readings that this assumes."""
+
+    answer: Answer
+    names: Names
+    assumes: tuple[Assumption, ...]
+    rules: tuple[str, ...]
+
+
+@frozen
+class InFlight:
+    """A call whose answer has not come.
+
+    Either it has taken effect (`done` says with which answer) or it has not; then `ready` has the answers without
+    effect that were possible at some moment since it was sent, though perhaps not any more.
+    """
+
+    name: int
+    request: Hashable
+    args: Names
+    ready: tuple[Ready, ...] = ()
+    done: Ready | None = None
+
+
+@frozen
+class Owed:
+    """A message that a channel has still to show. A `passing` one may be left out, since its state does not last."""
+
+    view: View
+    names: Names
+    passing: bool = False
+    only: Assumption | None = None
+
+
+@frozen
+class Channel:
+    """A stream or a connection: its name, its topic, what it showed last and what it owes."""
+
+    name: int
+    topic: Hashable
+    last: Owed | None = None
+    owed: tuple[Owed, ...] = ()
+
+
+Lost = tuple[tuple[Hashable, Names], ...]
+"""Calls that will never be answered and have not taken effect: (request, args), in the order in which they came."""
+
+
+@frozen
+class Explanation:
+    """One way in which everything observed so far can have come about."""
+
+    state: State
+    names: Names = ()
+    assumed: int = ANYTHING
+    calls: tuple[InFlight, ...] = ()
+    lost: Lost = ()
+    channels: tuple[Channel, ...] = ()
+
+    def ref(self, name: int) -> int | None:
+        """The position of a name among those of the state."""
+        return self.names.index(name) if name in self.names else None
+
+
+def fresh(explanation: Explanation) -> Iterator[int]:
+    """Numbers for names that nobody has seen yet."""
+    taken = min((GONE, *mentioned(explanation)))
+    while True:
+        taken -= 1
+        yield taken
+
+
+def mentioned(explanation: Explanation) -> Iterator[int]:
+    """Every name that an explanation mentions, in a fixed order; some come more than once."""
+    yield from explanation.names
+    for call in explanation.calls:
+        yield call.name
+        yield from call.args
+        if call.done:
+            yield from call.done.names
+        for ready in call.ready:
+            yield from ready.names
+    for _, args in explanation.lost:
+        yield from args
+    for channel in explanation.channels:
+        yield channel.name
+        if channel.last:
+            yield from channel.last.names
+        for owed in channel.owed:
+            yield from owed.names
+
+
+def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
+    """The same explanation with other numbers for its names; those not in `new` stay."""
+
+    def each(names: Names) -> Names:
+        return tuple(new.get(name, name) for name in names)
+
+    def ready(one: Ready) -> Ready:
+        return Ready(one.answer, each(one.names), one.assumes, one.rules) if one.names else one
+
+    def owed(one: Owed) -> Owed:
+        return Owed(one.view, each(one.names), one.passing, one.only) if one.names else one
+
+    return Explanation(
+        explanation.state,
+        each(explanation.names),
+        explanation.assumed,
+        tuple(
+            InFlight(
+                new.get(call.name, call.name),
+                call.request,
+                each(call.args),
+                tuple(map(ready, call.ready)),
+                ready(call.done) if call.done else None,
+            )
+            for call in explanation.calls
+        ),
+        tuple((request, each(args)) for request, args in explanation.lost),
+        tuple(
+            Channel(
+                new.get(channel.name, channel.name),
+                channel.topic,
+                owed(channel.last) if channel.last else None,
+                tuple(map(owed, channel.owed)),
+            )
+            for channel in explanation.channels
+        ),
+    )
+
+
+def tidy(explanation: Explanation) -> Explanation:
+    """Unseen names numbered by first mention: explanations that differ only in names nobody has seen become one."""
+    unseen = dict.fromkeys(name for name in mentioned(explanation) if name < GONE)
+    new = {name: GONE - 1 - position for position, name in enumerate(unseen)}
+    return explanation if all(new[name] == name for name in new) else rename(explanation, new)
+
+
+def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explanation | None:
+    """The explanation in which each pair (a name it has, a name observed) is one name; None if they cannot be.
+
+    A name observed stands for one thing, and a thing has one name: an unseen name takes the observed one if nothing
+    else has it.
+    """
+    new: dict[int, int] = {}
+    held: set[int] | None = None
+    for own, observed in pairs:
+        known = new.get(own, own)
+        if known == observed:
+            continue
+        if known >= GONE:
+            return None
+        if held is None:
+            held = set(explanation.names)
+            held.update(channel.name for channel in explanation.channels)
+        if observed in held or observed in new.values() or observed == GONE:
+            return None
+        new[own] = observed
+    return rename(explanation, new) if new else explanation
+
+
+def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
+    """The message that an emission owes, with its names looked up."""
+    names = after if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
+    return Owed(emission.view, names, passing or emission.only is not None, emission.only)
+
+
+def take(explanation: Explanation, step: Step, given: Names, *, passing: bool) -> tuple[Explanation, Names] | None:
+    """The explanation after a step, and the names that its answer mentions; None where the step assumes too much.
+
+    Args:
+        given: the names that the event brought along.
+        passing: whether the state after it does not last, so that what it shows may never be seen.
+    """
+    assumed = meet(explanation.assumed, step.assumes)
+    if not assumed:
+        return None
+    pool = explanation.names
+    highest = max((*(step.names or ()), *step.refs, *(one.ref for one in step.opens), len(pool) - 1))
+    if highest >= len(pool):
+        numbers = fresh(explanation)
+        pool = (*pool, *(next(numbers) for _ in range(highest + 1 - len(pool))))
+    if given:
+        # References below zero count from the front of what was given: -1 is the first.
+        pool = (*pool, *reversed(given))
+    names = explanation.names if step.names is None else tuple(pool[ref] for ref in step.names)
+    channels = explanation.channels
+    if step.closes:
+        channels = tuple(channel for channel in channels if channel.topic not in step.closes)
+    if step.emits:
+        channels = tuple(
+            evolve(
+                channel,
+                owed=(
+                    *channel.owed,
+                    *(
+                        owes(emission, pool, names, passing=passing)
+                        for emission in step.emits
+                        if emission.topic == channel.topic
+                    ),
+                ),
+            )
+            for channel in channels
+        )
+    if step.opens:
+        channels = (
+            *channels,
+            *(
+                Channel(
+                    pool[one.ref],
+                    one.topic,
+                    None,
+                    tuple(owes(emission, pool, names, passing=passing) for emission in one.owed),
+                )
+                for one in step.opens
+            ),
+        )
+    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels)
+    return after, tuple(pool[ref] for ref in step.refs)
+
+
+def changes(explanation: Explanation, step: Step) -> bool:
+    """Whether anybody could ever tell that the step was taken."""
+    return step.after is not explanation.state or bool(step.emits or step.opens or step.closes)

@@ -1,0 +1,93 @@
+"""What can be observed of an implementation, as values.
+
+Values that servers and adapters choose (mission ids, stream numbers, call ids) are *names*: an observation carries
+them beside its content, in the order in which they occur, and the content refers to them by position. What is left is
+drawn from a small alphabet, so that the oracle can know an event again when it comes with other names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from attrs import frozen
+
+Name = Hashable
+"""A mission id (text), ``("stream", 3)``, ``("call", 7)``, ``("connection", 1)``: names of two kinds never meet."""
+
+Mark = tuple[Hashable, int]
+"""A number that is only ever compared with its predecessor on the same track: (track, number)."""
+
+
+@frozen
+class Answer:
+    """What came back: a status name, and for OK the shape of the result without its names.
+
+    `unordered` answers list their names in an order that means nothing.
+    """
+
+    code: str
+    shape: Hashable = None
+    unordered: bool = False
+
+    def __str__(self) -> str:
+        return self.code if self.shape is None else f"{self.code} {self.shape}"
+
+
+@frozen
+class Called:
+    """A call is sent. `request` is a value of the system; `lost` says that no answer is known to come."""
+
+    call: Name
+    request: Hashable
+    names: tuple[Name, ...] = ()
+    lost: bool = False
+
+
+@frozen
+class Returned:
+    """The answer to a call arrives."""
+
+    call: Name
+    answer: Answer
+    names: tuple[Name, ...] = ()
+
+
+@frozen
+class Received:
+    """A message arrives on a stream, or a line on a connection."""
+
+    channel: Name
+    content: Hashable
+    names: tuple[Name, ...] = ()
+    marks: tuple[Mark, ...] = ()
+
+
+@frozen
+class Ended:
+    """A stream ends by itself, with a status name or, cleanly, with OK."""
+
+    channel: Name
+    code: str
+
+
+@frozen
+class Cancelled:
+    """The subscriber gave a stream up: what still comes on it means nothing."""
+
+    channel: Name
+
+
+@frozen
+class Driven:
+    """The environment is known to have done this."""
+
+    event: Hashable
+    names: tuple[Name, ...] = ()
+
+
+@frozen
+class Settled:
+    """All that was caused before has been seen."""
+
+
+Event = Called | Returned | Received | Ended | Cancelled | Driven | Settled

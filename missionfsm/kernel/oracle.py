@@ -1,0 +1,526 @@
+"""From explanations of what was observed so far to those of what is observed next: exact, and only once for each.
+
+`Oracle.step` is the transition function of the belief automaton: all explanations before an event to all explanations
+after it. `missionfsm.kernel.belief` walks that automaton and remembers it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.explanation import (
+    GONE,
+    Channel,
+    Explanation,
+    InFlight,
+    Names,
+    Owed,
+    Ready,
+    changes,
+    mentioned,
+    take,
+    tidy,
+    unify,
+)
+from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
+from missionfsm.kernel.readings import Assumption, meet, merge
+from missionfsm.kernel.spec import Match, Mismatch, Spec, Step
+
+LAG = 6
+"""How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones."""
+
+BUDGET = 20_000
+"""How many explanations one event may cost before the run is given up as inconclusive."""
+
+
+class ExhaustedError(Exception):
+    """An event has more explanations than the budget allows."""
+
+
+@frozen
+class Sighting:
+    """An explanation that an observation leaves, and the rules that were exercised on the way."""
+
+    explanation: Explanation
+    rules: tuple[str, ...] = ()
+
+
+class Oracle:
+    """A spec with what is known about the run: what is driven, what is assumed from the start.
+
+    It holds caches and nothing that could change an answer.
+
+    Args:
+        spec: the system.
+        driven: the drives that a tester commands; what the others do may happen at any time by itself.
+        budget: explanations that a single event may cost.
+    """
+
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), budget: int = BUDGET) -> None:
+        self.spec = spec
+        self.driven = frozenset(driven)
+        self.budget = budget
+        self.groups = tuple(ambiguity.group for ambiguity in spec.ambiguities)
+        self._outcomes: dict[Any, tuple[Step, ...]] = {}
+        self._urgent: dict[Any, tuple[Step, ...]] = {}
+        self._unseen: dict[Any, tuple[Step, ...]] = {}
+        self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
+        self._spent = 0
+
+    # What the spec says, remembered.
+
+    def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+        """Every answer to a request in a state."""
+        key = (state, request, refs)
+        found = self._outcomes.get(key)
+        if found is None:
+            found = self._outcomes[key] = tuple(
+                step for step in self.spec.outcomes(state, request, refs) if self._may_come(step)
+            )
+        return found
+
+    def _may_come(self, step: Step) -> bool:
+        """Whether an outcome is possible here: failures come by themselves only where nobody drives them."""
+        return step.label != SPONTANEOUS_FAILURE or "fault" not in self.driven
+
+    def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+        """What must happen before things have settled."""
+        found = self._urgent.get(state)
+        if found is None:
+            found = self._urgent[state] = self.spec.urgent(state)
+        return found
+
+    def unseen(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+        """What may happen at any time although nobody asked for it."""
+        found = self._unseen.get(state)
+        if found is None:
+            steps = list(self.spec.spontaneous(state))
+            for drive in self.spec.drives.values():
+                if drive.name not in self.driven:
+                    for event in drive.by_itself:
+                        steps += drive.steps(state, event, ())
+            found = self._unseen[state] = tuple(steps)
+        return found
+
+    def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
+        """The ways in which a message shows what is owed."""
+        key = (owed.view, content)
+        found = self._matches.get(key)
+        if found is None:
+            found = self._matches[key] = self.spec.matches(owed.view, content)
+        return found
+
+    # How one explanation goes on.
+
+    def advance(
+        self, explanation: Explanation, step: Step, given: Names = (), besides: int | None = None
+    ) -> tuple[Explanation, Names] | None:
+        """The explanation after a step; calls in flight remember what they could have been answered before it.
+
+        The call `besides` does not need to: whoever looks for its answer looks at every explanation on the way.
+        """
+        if explanation.calls and step.after is not explanation.state:
+            explanation = self._remember(explanation, besides)
+        return take(explanation, step, given, passing=bool(self.urgent(step.after)))
+
+    def _remember(self, explanation: Explanation, besides: int | None) -> Explanation:
+        if all(call.done or call.name == besides for call in explanation.calls):
+            return explanation
+        calls = []
+        for call in explanation.calls:
+            if call.done is None and call.name != besides:
+                known = dict.fromkeys(call.ready)
+                known.update(dict.fromkeys(self._idle_answers(explanation, call)))
+                call = evolve(call, ready=tuple(known))  # noqa: PLW2901 - the same call, knowing more
+            calls.append(call)
+        return evolve(explanation, calls=tuple(calls))
+
+    def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
+        refs = tuple(explanation.ref(arg) for arg in call.args)
+        for step in self.outcomes(explanation.state, call.request, refs):
+            if step.answer is not None and step.applied and not changes(explanation, step):
+                yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
+
+    def _addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
+        """The explanation with the positions of a request's names.
+
+        A name that nothing has may be that of something whose name was not seen yet.
+        """
+        yield explanation, tuple(explanation.ref(arg) for arg in args)
+        for arg in args:
+            if arg != GONE and explanation.ref(arg) is None:
+                for own in explanation.names:
+                    if own < GONE:
+                        bound = unify(explanation, [(own, arg)])
+                        if bound:
+                            yield from self._addressed(bound, args)
+
+    def silent(self, explanation: Explanation, besides: int | None = None) -> Iterator[Sighting]:
+        """Everything that an explanation can become next without anybody seeing it.
+
+        Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves.
+        """
+        for step in self.urgent(explanation.state):
+            yield from self._sight(explanation, step, besides)
+        if all(len(channel.owed) < LAG for channel in explanation.channels):
+            for step in self.unseen(explanation.state):
+                yield from self._sight(explanation, step, besides)
+        for position, (request, args) in enumerate(explanation.lost):
+            if (request, args) in explanation.lost[:position]:
+                continue
+            rest = (*explanation.lost[:position], *explanation.lost[position + 1 :])
+            for where, refs in self._addressed(explanation, args):
+                for step in self.outcomes(where.state, request, refs):
+                    if step.after is not where.state and not step.opens:
+                        yield from self._sight(evolve(where, lost=rest), step, besides)
+        for position, call in enumerate(explanation.calls):
+            if call.done is None and call.name != besides:
+                yield from self._take_effect(explanation, position, besides)
+
+    def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
+        taken = self.advance(explanation, step, besides=besides)
+        if taken:
+            yield Sighting(tidy(taken[0]), step.rules)
+
+    def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
+        for where, refs in self._addressed(explanation, explanation.calls[position].args):
+            for step in self.outcomes(where.state, where.calls[position].request, refs):
+                if step.answer is None or not changes(where, step):
+                    continue
+                taken = self.advance(where, step, besides=besides)
+                if taken:
+                    after, names = taken
+                    done = Ready(step.answer, names, (), step.rules)
+                    calls = list(after.calls)
+                    calls[position] = InFlight(calls[position].name, calls[position].request, (), (), done)
+                    yield Sighting(tidy(evolve(after, calls=tuple(calls))), step.rules)
+
+    def closure(self, start: Explanation, besides: int | None = None) -> Iterator[Sighting]:
+        """An explanation and everything that it can silently become, nearest first.
+
+        One that has used up more lost calls than another at the same point is left out, and so is all that follows.
+        """
+        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
+        todo = [Sighting(start)]
+        while todo:
+            later: list[Sighting] = []
+            for sighting in todo:
+                if self._outdone(seen, sighting.explanation):
+                    continue
+                yield sighting
+                later += (
+                    Sighting(next_one.explanation, sighting.rules + next_one.rules)
+                    for next_one in self.silent(sighting.explanation, besides)
+                )
+            todo = later
+
+    def _outdone(self, seen: dict[Any, list[tuple[int, Counter[Any]]]], explanation: Explanation) -> bool:
+        """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
+        self._spend()
+        key = _point(explanation)
+        lost = Counter(explanation.lost)
+        others = seen.setdefault(key, [])
+        if any(explanation.assumed | assumed == assumed and lost <= left for assumed, left in others):
+            return True
+        others.append((explanation.assumed, lost))
+        return False
+
+    def _spend(self) -> None:
+        self._spent += 1
+        if self._spent > self.budget:
+            raise ExhaustedError
+
+    # One observation.
+
+    def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Sighting, ...]:  # noqa: ANN401
+        """Every explanation of what was observed before and of this event.
+
+        Args:
+            explanations: those of what was observed before.
+            kind: the class of the event in `missionfsm.kernel.history`.
+            what: its fields, with names as numbers (see `Explanation`).
+
+        Raises:
+            ExhaustedError: the event costs more than the budget.
+        """
+        self._spent = 0
+        observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
+        found = [sighting for explanation in explanations for sighting in observe(self, explanation, *what)]
+        return self._sift(found)
+
+    def _called(self, explanation: Explanation, request: Hashable, args: Names, lost: bool, call: int) -> Iterator[Sighting]:  # noqa: E501, FBT001
+        if lost:
+            yield Sighting(evolve(explanation, lost=(*explanation.lost, (request, args))))
+        else:
+            yield Sighting(evolve(explanation, calls=(*explanation.calls, InFlight(call, request, args))))
+
+    def _returned(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
+        for sighting in self.closure(explanation, besides=call):
+            here = sighting.explanation
+            position = next((at for at, one in enumerate(here.calls) if one.name == call), None)
+            if position is None:
+                return
+            for after, rules in self._answered(here, position, answer, names):
+                yield Sighting(tidy(after), sighting.rules + rules)
+            if here.calls[position].done:
+                return
+
+    def _answered(
+        self, here: Explanation, position: int, answer: Answer, names: Names
+    ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
+        call = here.calls[position]
+        rest = evolve(here, calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        if call.done:
+            if call.done.answer == answer:
+                bound = unify(rest, _pairs(call.done.answer, call.done.names, names))
+                if bound:
+                    yield bound, ()
+            return
+        for ready in call.ready:
+            assumed = meet(rest.assumed, ready.assumes) if ready.answer == answer else 0
+            bound = unify(rest, _pairs(ready.answer, ready.names, names)) if assumed else None
+            if bound:
+                yield evolve(bound, assumed=assumed), ready.rules
+        for where, refs in self._addressed(rest, call.args):
+            for step in self.outcomes(where.state, call.request, refs):
+                if step.answer != answer or len(step.refs) != len(names):
+                    continue
+                if not step.applied:
+                    late = (*where.lost, (call.request, call.args))
+                    taken = self.advance(evolve(where, lost=late), step)
+                else:
+                    taken = self.advance(where, step)
+                if taken:
+                    bound = unify(taken[0], _pairs(answer, taken[1], names))
+                    if bound:
+                        yield bound, step.rules
+
+    def _received(
+        self, explanation: Explanation, content: Hashable, names: Names, relations: tuple[str, ...], channel: int
+    ) -> Iterator[Sighting]:
+        sequence: list[Assumption] = []
+        for relation in relations:
+            right = self.spec.sequence(relation)
+            if isinstance(right, Mismatch):
+                return
+            sequence += right
+        assumed = meet(explanation.assumed, sequence)
+        if not assumed:
+            return
+        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
+        todo = [Sighting(evolve(explanation, assumed=assumed))]
+        while todo:
+            later: list[Sighting] = []
+            for sighting in todo:
+                if self._outdone(seen, sighting.explanation):
+                    continue
+                here = sighting.explanation
+                for position, one in enumerate(here.channels):
+                    if one.name == channel or (one.name < GONE and channel not in _channel_names(here)):
+                        yield from self._shown(sighting, position, channel, content, names)
+                skipped = self._skip_all(here, channel)
+                if skipped:
+                    later += (
+                        Sighting(one.explanation, sighting.rules + one.rules) for one in self.silent(skipped)
+                    )
+            todo = later
+
+    def _shown(
+        self, sighting: Sighting, position: int, name: int, content: Hashable, names: Names
+    ) -> Iterator[Sighting]:
+        """The explanations in which the message shows one of those that the channel owes, or its last one again."""
+        here = sighting.explanation
+        channel = here.channels[position]
+        delivery = self.spec.delivery(channel.topic)
+        candidates: list[tuple[Owed, tuple[Owed, ...], int]] = []
+        assumed = here.assumed
+        for index, owed in enumerate(channel.owed):
+            seen = meet(assumed, (owed.only,)) if owed.only else assumed
+            candidates.append((owed, channel.owed[index + 1 :], seen))
+            if not owed.passing:
+                assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
+            if not assumed:
+                break
+        if channel.last and delivery.repeats:
+            candidates.append((channel.last, channel.owed, meet(here.assumed, (delivery.repeats,))))
+        for owed, left, assumption in candidates:
+            matches = self.matches(owed, content)
+            if not assumption or isinstance(matches, Mismatch):
+                continue
+            for match in matches:
+                agreed = meet(assumption, match.assumes)
+                if not agreed:
+                    continue
+                shown = evolve(channel, last=Owed(owed.view, owed.names), owed=left)
+                channels = (*here.channels[:position], shown, *here.channels[position + 1 :])
+                after = evolve(here, assumed=agreed, channels=channels)
+                pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
+                bound = unify(after, pairs)
+                if bound:
+                    yield Sighting(tidy(bound), sighting.rules + match.rules)
+
+    def _skip_all(self, explanation: Explanation, name: int) -> Explanation | None:
+        """The explanation in which all that a channel owes is passed over, or None where it cannot be."""
+        assumed, channels = explanation.assumed, []
+        for channel in explanation.channels:
+            if channel.name == name:
+                skips = self.spec.delivery(channel.topic).skips
+                if not all(owed.passing for owed in channel.owed):
+                    assumed = meet(assumed, (skips,)) if skips else 0
+                channel = evolve(channel, owed=())  # noqa: PLW2901 - the same channel, further on
+            channels.append(channel)
+        return evolve(explanation, assumed=assumed, channels=tuple(channels)) if assumed else None
+
+    def _ended(self, explanation: Explanation, code: str, name: int) -> Iterator[Sighting]:
+        for position, channel in enumerate(explanation.channels):
+            if channel.name == name or channel.name < GONE:
+                assumes = self.spec.delivery(channel.topic).ends.get(code)
+                assumed = meet(explanation.assumed, assumes) if assumes is not None else 0
+                if assumed:
+                    rest = (*explanation.channels[:position], *explanation.channels[position + 1 :])
+                    yield Sighting(tidy(evolve(explanation, assumed=assumed, channels=rest)))
+
+    def _cancelled(self, explanation: Explanation, name: int) -> Iterator[Sighting]:
+        rest = tuple(channel for channel in explanation.channels if channel.name != name)
+        yield Sighting(tidy(evolve(explanation, channels=rest)))
+
+    def _driven(self, explanation: Explanation, event: Hashable, names: Names) -> Iterator[Sighting]:
+        drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
+        for sighting in self.closure(explanation):
+            here = sighting.explanation
+            for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
+                taken = self.advance(here, step, names)
+                if taken:
+                    yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
+
+    def _settled(self, explanation: Explanation) -> Iterator[Sighting]:
+        todo, seen = [Sighting(explanation)], {explanation}
+        while todo:
+            sighting = todo.pop()
+            steps = self.urgent(sighting.explanation.state)
+            if not steps:
+                rest = self._nothing_owed(sighting.explanation)
+                if rest:
+                    yield Sighting(rest, sighting.rules)
+                continue
+            for step in steps:
+                for one in self._sight(sighting.explanation, step):
+                    if one.explanation not in seen:
+                        self._spend()
+                        seen.add(one.explanation)
+                        todo.append(Sighting(one.explanation, sighting.rules + one.rules))
+
+    def _nothing_owed(self, explanation: Explanation) -> Explanation | None:
+        """The explanation in which every channel has shown where things stand, or None if one has not."""
+        assumed, channels = explanation.assumed, []
+        for channel in explanation.channels:
+            due = [owed for owed in channel.owed if not owed.passing]
+            if due:
+                # What is back where the subscriber saw it last may stay unsaid by one that sends only the latest.
+                skips = self.spec.delivery(channel.topic).skips
+                told = channel.last and (due[-1].view, due[-1].names) == (channel.last.view, channel.last.names)
+                assumed = meet(assumed, (skips,)) if skips and told else 0
+            channels.append(evolve(channel, owed=()) if channel.owed else channel)
+        return tidy(evolve(explanation, assumed=assumed, channels=tuple(channels))) if assumed else None
+
+    # Fewer explanations that say the same.
+
+    def _sift(self, found: Iterable[Sighting]) -> tuple[Sighting, ...]:
+        """Those among the explanations that the others do not already stand for."""
+        points: dict[Explanation, list[Sighting]] = {}
+        for sighting in found:
+            point = evolve(sighting.explanation, assumed=0)
+            points[point] = self._widened(points.get(point, []), sighting)
+        kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
+        return tuple(kept) if len(kept) <= 1 else tuple(self._without_later(kept))
+
+    def _widened(self, sightings: list[Sighting], new: Sighting) -> list[Sighting]:
+        """Explanations at one point with one more; those that differ in a single question become one."""
+        for position, other in enumerate(sightings):
+            union = merge(other.explanation.assumed, new.explanation.assumed, self.groups)
+            if union is not None:
+                if union == other.explanation.assumed:
+                    return sightings
+                rules = tuple(dict.fromkeys(other.rules + new.rules))
+                rest = [*sightings[:position], *sightings[position + 1 :]]
+                return self._widened(rest, Sighting(evolve(new.explanation, assumed=union), rules))
+        return [*sightings, new]
+
+    def _without_later(self, sightings: list[Sighting]) -> Iterator[Sighting]:
+        """Those that no other can silently become."""
+        reached: dict[Explanation, int] = {}
+        for sighting in sightings:
+            point = evolve(sighting.explanation, assumed=0)
+            if point in reached and sighting.explanation.assumed | reached[point] == reached[point]:
+                covered = True
+            else:
+                covered = False
+                yield sighting
+            base = reached[point] if covered else sighting.explanation.assumed
+            for later in self.silent(evolve(sighting.explanation, assumed=base)):
+                key = evolve(later.explanation, assumed=0)
+                if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
+                    reached[key] = later.explanation.assumed
+
+
+SPONTANEOUS_FAILURE = "a failure that nobody caused"
+"""The label of outcomes that stand for failure codes; where a tester drives faults, they come only when driven."""
+
+
+def _point(explanation: Explanation) -> Explanation:
+    """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
+    return evolve(explanation, assumed=0, lost=())
+
+
+def _channel_names(explanation: Explanation) -> set[int]:
+    return {channel.name for channel in explanation.channels}
+
+
+def _pairs(answer: Answer, own: Names, observed: Names) -> list[tuple[int, int]]:
+    """Which name of ours is which observed one. In an unordered answer those that are known go together first."""
+    if len(own) != len(observed):
+        return [(GONE, -2)]
+    if not answer.unordered:
+        return list(zip(own, observed, strict=True))
+    shared = [name for name in own if name in observed]
+    left = [name for name in own if name not in shared]
+    return [(name, name) for name in shared] + list(
+        zip(left, (name for name in observed if name not in shared), strict=False)
+    )
+
+
+def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
+    """Without those that have used up more lost calls than another at the same point, assuming no less."""
+    if not any(sighting.explanation.lost for sighting in sightings):
+        return sightings
+    kept: dict[Explanation, list[tuple[int, Counter[Any], Sighting]]] = {}
+    for sighting in sorted(sightings, key=lambda one: -len(one.explanation.lost)):
+        lost = Counter(sighting.explanation.lost)
+        others = kept.setdefault(_point(sighting.explanation), [])
+        assumed = sighting.explanation.assumed
+        if not any(assumed | other == other and lost <= left for other, left, _ in others):
+            others.append((assumed, lost, sighting))
+    return [sighting for others in kept.values() for _, _, sighting in others]
+
+
+def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:
+    """New numbers for the observed names that are still carried, in the order of first mention."""
+    seen = dict.fromkeys(name for one in explanations for name in mentioned(one) if name > GONE)
+    return {name: number for number, name in enumerate(seen)}
+
+
+_OBSERVERS: dict[type, Callable[..., Iterator[Sighting]]] = {
+    Called: Oracle._called,  # noqa: SLF001 - the table belongs to the class
+    Returned: Oracle._returned,  # noqa: SLF001
+    Received: Oracle._received,  # noqa: SLF001
+    Ended: Oracle._ended,  # noqa: SLF001
+    Cancelled: Oracle._cancelled,  # noqa: SLF001
+    Driven: Oracle._driven,  # noqa: SLF001
+    Settled: Oracle._settled,  # noqa: SLF001
+}
+
+__all__ = ["BUDGET", "GONE", "Channel", "ExhaustedError", "Oracle", "Sighting", "surviving_names"]

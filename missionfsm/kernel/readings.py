@@ -1,0 +1,147 @@
+"""Where a document can be read in more than one way, and what an execution has assumed so far.
+
+An `Ambiguity` is a question that the documents leave open; its `Reading`s are the answers that a sensible
+implementation may give. What an execution has assumed is one integer, a set of bits with one bit for every reading
+that is *still possible*: assuming something clears bits, and an execution whose question has no reading left is
+impossible. Sets of readings ("b or c") are therefore assumed as cheaply as single ones, and two executions that
+differ in one question alone can be merged by ``|``.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterable, Mapping
+
+from attrs import field, frozen
+
+_bits = itertools.count()
+"""Every reading has a bit of its own; the numbers have no meaning and are never written out."""
+
+
+@frozen(eq=False)
+class Assumption:
+    """That one ambiguity is read in one of some ways.
+
+    `keeps` has every bit but those of the readings ruled out; `group` has the bits of the whole ambiguity.
+    """
+
+    of: Ambiguity
+    keeps: int = field(repr=False)
+    group: int = field(repr=False)
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The readings that are left."""
+        return self.of.possible(self.keeps)
+
+    def __str__(self) -> str:
+        return f"{self.of.id}={'|'.join(self.letters)}"
+
+
+@frozen(eq=False)
+class Ambiguity:
+    """A question that the documents leave open.
+
+    Args:
+        id: the entry, such as ``AM-09``; an entry with several questions has one ambiguity for each (``AM-14.paused``).
+        question: what is asked, in one line.
+        readings: letter to answer, in our own words.
+        default: the letter that the reference model follows.
+        flagged: letters that are accepted, but depart from the letter of the text; a verdict says so.
+    """
+
+    id: str
+    question: str
+    readings: Mapping[str, str]
+    default: str
+    flagged: frozenset[str] = frozenset()
+    _bit: Mapping[str, int] = field(init=False, repr=False)
+    group: int = field(init=False, repr=False)
+    """The bits of all its readings."""
+
+    def __attrs_post_init__(self) -> None:
+        if self.default not in self.readings or not self.flagged <= self.readings.keys():
+            msg = f"{self.id}: the default and the flagged letters must be readings, {', '.join(self.readings)}"
+            raise ValueError(msg)
+        object.__setattr__(self, "_bit", {letter: 1 << next(_bits) for letter in self.readings})
+        object.__setattr__(self, "group", functools.reduce(int.__or__, self._bit.values()))
+
+    def __getitem__(self, letters: str | tuple[str, ...]) -> Assumption:
+        """The assumption that one of these letters is followed: ``AM_09["a"]``, ``AM_09["a", "b"]``."""
+        chosen = (letters,) if isinstance(letters, str) else letters
+        kept = functools.reduce(int.__or__, (self._bit[letter] for letter in chosen))
+        return self.where(kept)
+
+    def where(self, bits: int) -> Assumption:
+        """The assumption that a reading with one of these bits is followed."""
+        return Assumption(self, ~(self.group & ~bits), self.group)
+
+    def besides(self, *letters: str) -> Assumption:
+        """The assumption that none of these letters is followed."""
+        return self[tuple(letter for letter in self.readings if letter not in letters)]
+
+    def possible(self, assumed: int) -> tuple[str, ...]:
+        """The letters that an execution with these assumptions may still follow."""
+        return tuple(letter for letter, bit in self._bit.items() if assumed & bit)
+
+
+ANYTHING = -1
+"""What an execution has assumed at its start: every reading of everything is possible."""
+
+
+def meet(assumed: int, assumptions: Iterable[Assumption]) -> int:
+    """What is assumed once these are assumed as well; 0 when that is contradictory."""
+    for assumption in assumptions:
+        assumed &= assumption.keeps
+        if not assumed & assumption.group:
+            return 0
+    return assumed
+
+
+def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = None) -> int:
+    """One reading of every ambiguity: the defaults, but for those in `choice` (ambiguity id to letter).
+
+    An id without its part (``AM-14`` for ``AM-14.paused``) speaks for every part that has the letter.
+
+    Raises:
+        ValueError: an ambiguity or a letter that does not exist.
+    """
+    ambiguities = tuple(ambiguities)
+    wanted = constrain(ambiguities, choice or {})
+    for ambiguity in ambiguities:
+        left = ambiguity.possible(wanted)
+        wanted = meet(wanted, [ambiguity[ambiguity.default if ambiguity.default in left else left[0]]])
+    return wanted
+
+
+def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> int:
+    """Only what is in `choice` is decided; the rest stays open. Raises ValueError as `choose` does."""
+    ambiguities = tuple(ambiguities)
+    assumed = ANYTHING
+    for name, letter in choice.items():
+        named = [one for one in ambiguities if name in (one.id, one.id.partition(".")[0])]
+        if not named:
+            known = ", ".join(one.id for one in ambiguities)
+            msg = f"there is no ambiguity {name}; there are {known}"
+            raise ValueError(msg)
+        fitting = [one for one in named if letter in one.readings]
+        if not fitting:
+            letters = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
+            msg = f"{name} has no reading {letter}: {letters}"
+            raise ValueError(msg)
+        assumed = meet(assumed, [one[letter] for one in fitting])
+    return assumed
+
+
+def merge(first: int, second: int, groups: Iterable[int]) -> int | None:
+    """One set of assumptions that stands for exactly these two, or None where there is none.
+
+    A set of assumptions is a box: a choice for every question, independently. Two boxes make a box when one holds the
+    other or when they differ in a single question.
+    """
+    union = first | second
+    if union in (first, second):
+        return union
+    differing = first ^ second
+    return union if any(not differing & ~group for group in groups) else None

@@ -1,0 +1,237 @@
+"""Documented conditions and what they allow: a `Rule` is a citation, a condition and a message in one function."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from attrs import evolve, field, frozen
+
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
+
+OK = "OK"
+CANCELLED = "CANCELLED"
+INVALID_ARGUMENT = "INVALID_ARGUMENT"
+DEADLINE_EXCEEDED = "DEADLINE_EXCEEDED"
+NOT_FOUND = "NOT_FOUND"
+PERMISSION_DENIED = "PERMISSION_DENIED"
+RESOURCE_EXHAUSTED = "RESOURCE_EXHAUSTED"
+FAILED_PRECONDITION = "FAILED_PRECONDITION"
+UNIMPLEMENTED = "UNIMPLEMENTED"
+INTERNAL = "INTERNAL"
+UNAVAILABLE = "UNAVAILABLE"
+UNAUTHENTICATED = "UNAUTHENTICATED"
+
+STATUS_NUMBERS: Mapping[str, int] = {
+    OK: 0,
+    CANCELLED: 1,
+    "UNKNOWN": 2,
+    INVALID_ARGUMENT: 3,
+    DEADLINE_EXCEEDED: 4,
+    NOT_FOUND: 5,
+    "ALREADY_EXISTS": 6,
+    PERMISSION_DENIED: 7,
+    RESOURCE_EXHAUSTED: 8,
+    FAILED_PRECONDITION: 9,
+    "ABORTED": 10,
+    "OUT_OF_RANGE": 11,
+    UNIMPLEMENTED: 12,
+    INTERNAL: 13,
+    UNAVAILABLE: 14,
+    "DATA_LOSS": 15,
+    UNAUTHENTICATED: 16,
+}
+"""The gRPC status names and their numbers."""
+
+
+@frozen
+class Citation:
+    """A place in a document: its short name and the headings that lead there."""
+
+    document: str
+    headings: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return " › ".join((self.document, *self.headings))
+
+
+@frozen
+class Document:
+    """A page that is modelled. ``MISSION["CreateMission", "Errors"]`` cites a place in it."""
+
+    name: str
+    title: str
+
+    def __getitem__(self, headings: str | tuple[str, ...]) -> Citation:
+        return Citation(self.name, (headings,) if isinstance(headings, str) else headings)
+
+
+Condition = Callable[[Any, Any], bool]
+
+
+@frozen
+class Rule:
+    """A documented sentence that can be checked.
+
+    A rule with a `code` is a *refusal*: where its condition holds, the operation may be (and if nothing else is said,
+    must be) answered with that code and changes nothing. A rule without one is a *promise* about what happens or what
+    is seen; it is checked by the step or by the reading of a message that names it.
+
+    Attributes:
+        name: the condition or the promise as a phrase, words joined by hyphens.
+        says: one line for people.
+        argues: why the sentence is read so; may be empty.
+        under: the reading that makes the condition refuse, or None where no reading matters.
+        id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
+    """
+
+    name: str
+    says: str
+    argues: str
+    cite: Citation
+    code: str | None = None
+    holds: Condition | None = field(default=None, eq=False, repr=False)
+    under: Assumption | None = None
+    kind: str = ""
+    id: str = ""
+
+    def __call__(self, state: Any, call: Any) -> bool:  # noqa: ANN401 - a rule of any system
+        """Whether the condition of a refusal holds."""
+        return self.holds is not None and self.holds(state, call)
+
+    def of(self, *place: str) -> Rule:
+        """This rule, registered at a place: ``rule.of("bear.mission", "CreateMission")``."""
+        middle = (*place, self.code) if self.code else place
+        return evolve(self, id="/".join((*middle, self.name)))
+
+
+def _words(function: Callable[..., Any]) -> tuple[str, str, str]:
+    text = inspect.getdoc(function) or ""
+    says, _, argues = text.partition("\n")
+    if not says:
+        message = f"{function.__qualname__} has no docstring: its first line is what a person is told"
+        raise TypeError(message)
+    return function.__name__.strip("_").replace("_", "-"), says.strip(), " ".join(argues.split())
+
+
+def rule(
+    code: str, *, cite: Citation, under: Assumption | None = None, kind: str = ""
+) -> Callable[[Condition], Rule]:
+    """Make a refusal of a condition: its name is the name, its docstring the message and the argument.
+
+    Args:
+        code: the gRPC status that the document gives.
+        cite: where it stands.
+        under: the reading that makes the condition refuse.
+        kind: what sort of check it is, for readings that rank the sorts (shape before state, say).
+    """
+
+    def register(condition: Condition) -> Rule:
+        name, says, argues = _words(condition)
+        return Rule(name, says, argues, cite, code, condition, under, kind)
+
+    return register
+
+
+def promise(name: str, says: str, *, cite: Citation, argues: str = "") -> Rule:
+    """A documented sentence that is no error: an effect, an order, a range, a move of a lifecycle."""
+    return Rule(name, says, argues, cite)
+
+
+@frozen
+class Operation:
+    """What a caller may ask, with the rules of its Errors table in the order in which a reader meets them.
+
+    Attributes:
+        refusals: rules with a code, registered under this operation.
+        failures: codes that may come at any time without anybody's doing (INTERNAL, DEADLINE_EXCEEDED).
+        streaming: whether the answer opens a stream.
+        promises: rules that its effects are justified by.
+    """
+
+    name: str
+    system: str
+    cite: Citation
+    refusals: tuple[Rule, ...] = ()
+    promises: tuple[Rule, ...] = ()
+    failures: tuple[str, ...] = ()
+    streaming: bool = False
+
+    @classmethod
+    def of(  # noqa: PLR0913 - one line of a table
+        cls,
+        name: str,
+        system: str,
+        cite: Citation,
+        *,
+        refusals: Iterable[Rule] = (),
+        promises: Iterable[Rule] = (),
+        failures: Iterable[str] = (),
+        streaming: bool = False,
+    ) -> Operation:
+        """An operation whose rules are registered under its name."""
+        return cls(
+            name,
+            system,
+            cite,
+            tuple(rule.of(system, name) for rule in refusals),
+            tuple(rule.of(system, name) for rule in promises),
+            tuple(failures),
+            streaming,
+        )
+
+    def blocking(self, state: Any, call: Any) -> tuple[Rule, ...]:  # noqa: ANN401 - of any system
+        """The refusals whose condition holds."""
+        return tuple(rule for rule in self.refusals if rule(state, call))
+
+
+@frozen
+class Decision:
+    """What the rules allow in one case of the readings: a refusal with one code, or (None) that it takes effect."""
+
+    code: str | None
+    rules: tuple[Rule, ...]
+    assumes: tuple[Assumption, ...]
+
+
+Ranking = Callable[[tuple[Rule, ...]], Iterable[tuple[str, tuple[Assumption, ...]]]]
+"""Of rules that hold together: the codes that may be answered, each with the readings that this assumes."""
+
+
+def unranked(holding: tuple[Rule, ...]) -> Iterable[tuple[str, tuple[Assumption, ...]]]:
+    """Any code of a rule that holds: no document ranks one above another."""
+    return tuple((code, ()) for code in dict.fromkeys(str(rule.code) for rule in holding))
+
+
+def decide(holding: tuple[Rule, ...], rank: Ranking = unranked) -> tuple[Decision, ...]:
+    """Every decision that some consistent choice of readings allows where these rules hold.
+
+    A rule under a reading holds in those cases of its ambiguity alone; the cases are told apart only as far as the
+    rules at hand do. Without any rule the one decision is to let the operation take effect.
+    """
+    always = tuple(rule for rule in holding if rule.under is None)
+    if always and len({rule.code for rule in holding}) == 1:
+        return (Decision(always[0].code, always, ()),)
+    decisions: list[Decision] = []
+    for case in itertools.product(*_cases([rule.under for rule in holding if rule.under is not None])):
+        active = tuple(rule for rule in holding if rule.under is None or meet(ANYTHING, (*case, rule.under)))
+        if not active:
+            decisions.append(Decision(None, (), case))
+            continue
+        codes = {rule.code for rule in active}
+        for code, assumes in rank(active) if len(codes) > 1 else ((str(active[0].code), ()),):
+            justified = tuple(rule for rule in active if rule.code == code)
+            decisions.append(Decision(code, justified, (*case, *assumes)))
+    return tuple(decisions)
+
+
+def _cases(assumptions: Iterable[Assumption]) -> list[list[Assumption]]:
+    """For every ambiguity its readings, split as far as the assumptions tell them apart."""
+    cells: dict[Ambiguity, list[int]] = {}
+    for assumption in assumptions:
+        ambiguity, kept = assumption.of, assumption.keeps & assumption.group
+        split = (part for cell in cells.get(ambiguity, [ambiguity.group]) for part in (cell & kept, cell & ~kept))
+        cells[ambiguity] = [part for part in split if part]
+    return [[ambiguity.where(cell) for cell in parts] for ambiguity, parts in cells.items()]

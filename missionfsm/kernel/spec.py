@@ -1,0 +1,221 @@
+"""What a specification is: a nondeterministic labelled transition system whose steps say what they assume.
+
+The laws that every `Spec` obeys (``tests/test_laws.py`` holds the shipped ones to them):
+
+1. *Pure.* Its functions return the same for the same arguments, in the same order, under any hash seed.
+2. *Total.* Every call of the alphabet has at least one outcome in every reachable state, under every choice of
+   readings; so has every drive, or it is said not to apply by having no step.
+3. *A refusal changes nothing.* An outcome whose code is neither OK nor a failure keeps the state, emits nothing.
+4. *Names are kept apart.* A step says which names of the state it keeps and how many it adds; every name that an
+   answer or a message mentions is one of those; a state has `names(state)` of them.
+5. *Urgency ends.* Urgent steps alone come to rest after finitely many.
+6. *Invariants* hold in every reachable state, every *possibility* is met in some.
+7. *What is shown is recognised.* A message made from a view under some choice of readings is accepted for that view,
+   with assumptions that agree with the choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any
+
+from attrs import field, frozen
+
+from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.rules import Citation, Operation, Rule
+
+State = Any
+"""A frozen, hashable value of the system."""
+
+View = Any
+"""What one message shows, as a frozen, hashable value; names are left out and stand beside it."""
+
+
+@frozen
+class Emission:
+    """A message that a step owes to every channel of a topic.
+
+    `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
+    the state after the step.
+    `only` is the assumption without which the message is not sent at all; such a message may always be left out.
+    """
+
+    topic: Hashable
+    view: View
+    refs: tuple[int, ...] | None = None
+    only: Assumption | None = None
+
+
+@frozen
+class Opening:
+    """A channel that a step opens: its topic, and its name as a reference like those in `Step.names`.
+
+    `owed` are the messages that it starts with.
+    """
+
+    topic: Hashable
+    ref: int
+    owed: tuple[Emission, ...] = ()
+
+
+@frozen
+class Step:
+    """Something that may happen, with the state after it.
+
+    Names are referred to by number: 0…n-1 are those of the state before, n… are new ones that this step adds, and -1,
+    -2… are the first, second… that the event itself brought along (a connection's).
+
+    Attributes:
+        after: the state after it; the very same object where nothing changes.
+        names: the names of `after`, in order; None keeps those before.
+        emits: what subscribers come to see, in order.
+        opens: channels that come into being.
+        closes: topics whose channels are gone, with what was still owed to them.
+        rules: ids of the rules that justify it.
+        assumes: the readings without which it does not happen.
+        answer: for the outcome of a call, what is answered.
+        refs: the names that the answer mentions, in order.
+        label: what happened, for people.
+        applied: False for an outcome that may still take effect after its answer (a deadline that passed).
+    """
+
+    after: State
+    names: tuple[int, ...] | None = None
+    emits: tuple[Emission, ...] = ()
+    opens: tuple[Opening, ...] = ()
+    closes: tuple[Hashable, ...] = ()
+    rules: tuple[str, ...] = ()
+    assumes: tuple[Assumption, ...] = ()
+    answer: Answer | None = None
+    refs: tuple[int, ...] = ()
+    label: str = ""
+    applied: bool = True
+
+
+@frozen
+class Match:
+    """One way in which a message can be the showing of a view.
+
+    `names` pairs each position among the names of the view with a position among those of the message.
+    """
+
+    assumes: tuple[Assumption, ...] = ()
+    names: tuple[tuple[int, int], ...] = ()
+    rules: tuple[str, ...] = ()
+
+
+@frozen
+class Mismatch:
+    """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong."""
+
+    rule: str
+    says: str
+
+
+@frozen
+class Delivery:
+    """How messages of a topic travel.
+
+    Attributes:
+        skips: the assumption under which only the latest of several owed messages needs to be sent; None: never.
+        repeats: the assumption under which the last message may come again; None: never.
+        ends: status name to the readings under which the channel may end with it; one that is missing may not end it.
+    """
+
+    skips: Assumption | None = None
+    repeats: Assumption | None = None
+    ends: Mapping[str, tuple[Assumption, ...]] = field(factory=dict)
+
+
+RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative")
+"""How a number compares with its predecessor on its track; 0 is "zero" and less is "negative", whatever came before."""
+
+
+@frozen
+class Drive:
+    """Something that a tester may be able to make happen.
+
+    Attributes:
+        steps: (state, event, refs) to the ways in which it happens; none where it does not apply. `refs` are the
+            positions of the event's names among those of the state, as for outcomes.
+        by_itself: the events that the environment may produce unseen where nobody drives them.
+    """
+
+    name: str
+    steps: Callable[[State, Any, tuple[int | None, ...]], tuple[Step, ...]]
+    by_itself: tuple[Hashable, ...] = ()
+    cite: Citation | None = None
+
+
+@frozen
+class Invariant:
+    """A condition on states that holds in all reachable ones, or (a possibility) in at least one."""
+
+    name: str
+    says: str
+    holds: Callable[[State], bool]
+
+
+@frozen(eq=False)
+class Spec:
+    """A system as a nondeterministic labelled transition system.
+
+    Attributes:
+        system: its name on the command line.
+        title: what it is, in a few words.
+        initial: the state in a world (the parameters that `reset` is given, as a value of the system).
+        operations: what callers may ask, by name.
+        outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
+            are the positions of the request's names among those of the state, None for one that the state has not.
+        drives: what a tester may make happen, by name.
+        urgent: what must have happened once things have settled.
+        spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
+        matches: (view, content) to the ways in which the message shows the view, or why it does not.
+        delivery: topic to how its messages travel.
+        sequence: how a number on a track compares with the one before (one of `RELATIONS`) to the readings under which
+            that is right, or why it is wrong.
+        names: how many names a state has.
+        request_operation: request to the name of its operation.
+        describe: a request, a view or a state in a few words for people.
+        rules: all rules of the system that belong to no operation.
+        shortcut: (state, requests, drives) to the states after every step, for the explorer; equal to what the
+            functions above give, only faster.
+    """
+
+    system: str
+    title: str
+    initial: Callable[[Any], State]
+    operations: Mapping[str, Operation]
+    outcomes: Callable[[State, Any, tuple[int | None, ...]], tuple[Step, ...]]
+    drives: Mapping[str, Drive]
+    urgent: Callable[[State], tuple[Step, ...]]
+    matches: Callable[[View, Any], tuple[Match, ...] | Mismatch]
+    delivery: Callable[[Hashable], Delivery]
+    sequence: Callable[[str], tuple[Assumption, ...] | Mismatch]
+    names: Callable[[State], int]
+    request_operation: Callable[[Any], str]
+    ambiguities: tuple[Ambiguity, ...] = ()
+    spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
+    describe: Callable[[Any], str] = repr
+    rules: tuple[Rule, ...] = ()
+    charts: tuple[Chart, ...] = ()
+    invariants: tuple[Invariant, ...] = ()
+    possibilities: tuple[Invariant, ...] = ()
+    shortcut: Callable[..., Any] | None = field(default=None)
+
+    @property
+    def all_rules(self) -> tuple[Rule, ...]:
+        """Every rule: the refusals and promises of each operation, then those of the system."""
+        own = (rule for operation in self.operations.values() for rule in (*operation.refusals, *operation.promises))
+        return (*own, *self.rules)
+
+    def rule(self, rule_id: str) -> Rule:
+        """The rule with this id. Raises KeyError."""
+        return self.rules_by_id[rule_id]
+
+    @property
+    def rules_by_id(self) -> Mapping[str, Rule]:
+        """Every rule by its id."""
+        return {rule.id: rule for rule in self.all_rules}

@@ -19,6 +19,7 @@ from missionfsm.bear.mission import (
     NOT_CHOSEN,
     PATROLS,
     RETURN_POINT,
+    SYSTEM,
     Edit,
     Fault,
     Kind,
@@ -54,7 +55,7 @@ from missionfsm.bear.mission_readings import (
     AM_64,
 )
 from missionfsm.bear.mission_requests import Call, Request, Target, Wanted
-from missionfsm.bear.mission_rules import OPERATIONS, ranking
+from missionfsm.bear.mission_rules import CHARGING, LAST_GOAL, OPERATIONS, ranking
 from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
@@ -66,6 +67,7 @@ from missionfsm.kernel.rules import (
     UNAUTHENTICATED,
     UNAVAILABLE,
     UNIMPLEMENTED,
+    Rule,
     decide,
 )
 
@@ -279,13 +281,17 @@ def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
 # The active mission.
 
 
+def _cited(rule: Rule) -> tuple[str, ...]:
+    return (rule.of(SYSTEM, "SkipGoal").id,)
+
+
 def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
     mission = robot.active
     assert mission is not None, "without an active mission it is refused"  # noqa: S101 - as above
     if mission.kind in GOALLESS:
         yield from _skip_last(robot, mission, AM_17_LAST, (AM_19["a"],))
-        yield Outcome(FAILED_PRECONDITION, assumes=(AM_19["b"],))
-        yield Outcome(INTERNAL, assumes=(AM_19["c"],))
+        yield Outcome(FAILED_PRECONDITION, assumes=(AM_19["b"],), rules=_cited(CHARGING[FAILED_PRECONDITION]))
+        yield Outcome(INTERNAL, assumes=(AM_19["c"],), rules=_cited(CHARGING[INTERNAL]))
     elif mission.kind in AUTOMATIC:
         yield from _skip_automatic(robot, mission)
     elif mission.goal + 1 < len(mission.goals) and not mission.finishing:
@@ -309,8 +315,8 @@ def _skip_automatic(robot: Situation, mission: Mission) -> Iterator[Outcome]:
 def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assumed) -> Iterator[Outcome]:
     succeeded = evolve(mission, state=State.STATE_RUNNING).moved("succeed")
     yield Outcome(OK, ((Op.END, succeeded),), ACTIVE, (*assumes, how["a"]))
-    yield Outcome(FAILED_PRECONDITION, assumes=(*assumes, how["b"]))
-    yield Outcome(INTERNAL, assumes=(*assumes, how["c"]))
+    for code, letter in ((FAILED_PRECONDITION, "b"), (INTERNAL, "c")):
+        yield Outcome(code, assumes=(*assumes, how[letter]), rules=_cited(LAST_GOAL[code]))
     for edit, queue in _cancelled(robot, mission):
         yield Outcome(OK, edit, ACTIVE, (*assumes, how["d"], *queue))
     if "f" in how.readings:

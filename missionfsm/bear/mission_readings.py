@@ -344,7 +344,13 @@ AM_51 = Ambiguity(
 AM_53 = Ambiguity(
     "AM-53",
     "A robot is unable to start a mission: does that forbid more than CreateMissionBatch?",
-    {"a": "yes, every call that creates a first mission", "b": "no, other missions are accepted and wait"},
+    {"a": "yes, CreateMission and CreateMissionWorkflow too", "b": "no, other missions are accepted and wait"},
+    default="a",
+)
+AM_53_CHARGE = Ambiguity(
+    "AM-53.charge",
+    "A robot is unable to start a mission: does that forbid ChargeRobot?",
+    {"a": "yes", "b": "no, charging waits"},
     default="a",
 )
 AM_54 = Ambiguity(
@@ -430,6 +436,7 @@ AMBIGUITIES: tuple[Ambiguity, ...] = (
     AM_50_MEMBER,
     AM_51,
     AM_53,
+    AM_53_CHARGE,
     AM_54,
     AM_58,
     AM_61,

@@ -33,6 +33,7 @@ from missionfsm.bear.mission_readings import (
     AM_44,
     AM_45_NONE,
     AM_53,
+    AM_53_CHARGE,
     AM_58,
 )
 from missionfsm.bear.mission_requests import Call, Defect, Target, Wanted
@@ -203,6 +204,12 @@ def the_robot_is_unable_to_start_any_mission(robot: Situation, _: Call) -> bool:
     return robot.world.blocked
 
 
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_53_CHARGE["a"], kind=STATE)
+def the_robot_is_unable_to_start_charging(robot: Situation, _: Call) -> bool:
+    """The robot is unable to start a mission, and charging is one (AM-53)."""
+    return robot.world.blocked
+
+
 @rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], kind=STATE)
 def another_mission_is_active(robot: Situation, _: Call) -> bool:
     """A mission is running or paused, so a workflow cannot be created."""
@@ -325,6 +332,21 @@ def the_robot_is_not_on_a_mission(robot: Situation, _: Call) -> bool:
 def the_mission_is_paused(robot: Situation, _: Call) -> bool:
     """The mission is paused, not actively running (AM-16)."""
     return _is_paused(robot)
+
+
+def _consequence(code: str, name: str, says: str) -> Rule:
+    """A refusal whose condition is the effect's to find: it depends on what skipping means for the mission."""
+    return Rule(name, says, "", MISSION["SkipGoal"], code, None, None, STATE)
+
+
+LAST_GOAL = {
+    code: _consequence(code, "there-is-no-next-goal", "The mission is at its last goal (AM-17).")
+    for code in (FAILED_PRECONDITION, INTERNAL)
+}
+CHARGING = {
+    code: _consequence(code, "charging-has-no-goals", "The robot is charging, which has no goals (AM-19).")
+    for code in (FAILED_PRECONDITION, INTERNAL)
+}
 
 
 # UpdateMission.
@@ -587,11 +609,12 @@ OPERATIONS: Mapping[str, Operation] = {
         _operation(
             "ChargeRobot",
             (
+                the_request_is_malformed,
                 a_field_is_unknown,
                 a_mission_is_running,
                 a_mission_is_paused,
                 a_mission_is_queued,
-                the_robot_is_unable_to_start_any_mission,
+                the_robot_is_unable_to_start_charging,
                 *_DOCK,
                 the_map_has_no_charging_location,
             ),
@@ -613,7 +636,14 @@ OPERATIONS: Mapping[str, Operation] = {
         ),
         _operation(
             "SkipGoal",
-            (a_field_is_unknown, the_robot_is_not_on_a_mission, the_mission_is_paused),
+            (
+                the_request_is_malformed,
+                a_field_is_unknown,
+                the_robot_is_not_on_a_mission,
+                the_mission_is_paused,
+                *LAST_GOAL.values(),
+                *CHARGING.values(),
+            ),
             _SKIPPED,
             failures=(INTERNAL,),
         ),

@@ -8,7 +8,7 @@ become later; and it is what keeps the number of explanations small.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from attrs import evolve, frozen
 
@@ -191,12 +191,20 @@ def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owe
     return Owed(emission.view, names, passing or emission.only is not None, emission.only)
 
 
-def take(explanation: Explanation, step: Step, given: Names, *, passing: bool) -> tuple[Explanation, Names] | None:
+def take(
+    explanation: Explanation,
+    step: Step,
+    given: Names,
+    *,
+    passing: bool,
+    concerns: Callable[[Hashable, Hashable], bool],
+) -> tuple[Explanation, Names] | None:
     """The explanation after a step, and the names that its answer mentions; None where the step assumes too much.
 
     Args:
         given: the names that the event brought along.
         passing: whether the state after it does not last, so that what it shows may never be seen.
+        concerns: `Spec.concerns`.
     """
     assumed = meet(explanation.assumed, step.assumes)
     if not assumed:
@@ -222,7 +230,7 @@ def take(explanation: Explanation, step: Step, given: Names, *, passing: bool) -
                     *(
                         owes(emission, pool, names, passing=passing)
                         for emission in step.emits
-                        if emission.topic == channel.topic
+                        if concerns(channel.topic, emission.topic)
                     ),
                 ),
             )

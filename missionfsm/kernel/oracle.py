@@ -125,7 +125,8 @@ class Oracle:
         """
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
-        return take(explanation, step, given, passing=bool(self.urgent(step.after)))
+        passing = bool(self.urgent(step.after))
+        return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)
 
     def _remember(self, explanation: Explanation, besides: int | None) -> Explanation:
         if all(call.done or call.name == besides for call in explanation.calls):
@@ -303,7 +304,10 @@ class Oracle:
         self, explanation: Explanation, content: Hashable, names: Names, relations: tuple[str, ...], channel: int
     ) -> Iterator[Sighting]:
         sequence: list[Assumption] = []
+        echo = "equal" in relations
         for relation in relations:
+            if relation == "equal" and self._echoed(explanation, channel):
+                continue
             right = self.spec.sequence(relation)
             if isinstance(right, Mismatch):
                 return
@@ -321,7 +325,7 @@ class Oracle:
                 here = sighting.explanation
                 for position, one in enumerate(here.channels):
                     if one.name == channel or (one.name < GONE and channel not in _channel_names(here)):
-                        yield from self._shown(sighting, position, channel, content, names)
+                        yield from self._shown(sighting, position, channel, content, names, echo=echo)
                 skipped = self._skip_all(here, channel)
                 if skipped:
                     later += (
@@ -329,25 +333,31 @@ class Oracle:
                     )
             todo = later
 
-    def _shown(
-        self, sighting: Sighting, position: int, name: int, content: Hashable, names: Names
+    def _echoed(self, explanation: Explanation, name: int) -> bool:
+        """Whether a channel of that name may send its last message again under its old number."""
+        channels = (channel for channel in explanation.channels if channel.name == name)
+        return any(self.spec.delivery(channel.topic).echoes for channel in channels)
+
+    def _candidates(self, channel: Channel, assumed: int, *, echo: bool) -> Iterator[tuple[Owed, tuple[Owed, ...], int]]:
+        """What a channel may show next: the message, those owed after it, and what is assumed then."""
+        delivery = self.spec.delivery(channel.topic)
+        again = delivery.echoes if echo else delivery.repeats
+        if channel.last and again:
+            yield channel.last, channel.owed, meet(assumed, (again,))
+        for index, owed in enumerate(() if echo else channel.owed):
+            yield owed, channel.owed[index + 1 :], meet(assumed, (owed.only,)) if owed.only else assumed
+            if not owed.passing:
+                assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
+            if not assumed:
+                return
+
+    def _shown(  # noqa: PLR0913 - what a message is made of
+        self, sighting: Sighting, position: int, name: int, content: Hashable, names: Names, *, echo: bool
     ) -> Iterator[Sighting]:
         """The explanations in which the message shows one of those that the channel owes, or its last one again."""
         here = sighting.explanation
         channel = here.channels[position]
-        delivery = self.spec.delivery(channel.topic)
-        candidates: list[tuple[Owed, tuple[Owed, ...], int]] = []
-        assumed = here.assumed
-        for index, owed in enumerate(channel.owed):
-            seen = meet(assumed, (owed.only,)) if owed.only else assumed
-            candidates.append((owed, channel.owed[index + 1 :], seen))
-            if not owed.passing:
-                assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
-            if not assumed:
-                break
-        if channel.last and delivery.repeats:
-            candidates.append((channel.last, channel.owed, meet(here.assumed, (delivery.repeats,))))
-        for owed, left, assumption in candidates:
+        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo):
             matches = self.matches(owed, content)
             if not assumption or isinstance(matches, Mismatch):
                 continue

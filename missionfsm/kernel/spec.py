@@ -16,6 +16,7 @@ The laws that every `Spec` obeys (``tests/test_laws.py`` holds the shipped ones 
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
@@ -35,7 +36,7 @@ View = Any
 
 @frozen
 class Emission:
-    """A message that a step owes to every channel of a topic.
+    """A message that a step owes to every channel that its topic concerns.
 
     `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
     the state after the step.
@@ -121,11 +122,13 @@ class Delivery:
     Attributes:
         skips: the assumption under which only the latest of several owed messages needs to be sent; None: never.
         repeats: the assumption under which the last message may come again; None: never.
+        echoes: the assumption under which the last message may come again with its old number; None: never.
         ends: status name to the readings under which the channel may end with it; one that is missing may not end it.
     """
 
     skips: Assumption | None = None
     repeats: Assumption | None = None
+    echoes: Assumption | None = None
     ends: Mapping[str, tuple[Assumption, ...]] = field(factory=dict)
 
 
@@ -176,6 +179,7 @@ class Spec:
         delivery: topic to how its messages travel.
         sequence: how a number on a track compares with the one before (one of `RELATIONS`) to the readings under which
             that is right, or why it is wrong.
+        concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
         names: how many names a state has.
         request_operation: request to the name of its operation.
         describe: a request, a view or a state in a few words for people.
@@ -198,6 +202,7 @@ class Spec:
     request_operation: Callable[[Any], str]
     ambiguities: tuple[Ambiguity, ...] = ()
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
+    concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr
     rules: tuple[Rule, ...] = ()
     charts: tuple[Chart, ...] = ()

@@ -1,0 +1,244 @@
+"""The Mission page as a `Spec`: the rules and effects of the other modules, put together."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+
+from missionfsm.bear.messages import Goal, State
+from missionfsm.bear.mission import (
+    ENDED,
+    GOALLESS,
+    LIFECYCLE,
+    MISSION,
+    NOT_CHOSEN,
+    SYSTEM,
+    Edit,
+    Mission,
+    Op,
+    Robot,
+    World,
+    apply,
+    renumber,
+    situation,
+)
+from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, happens, outcomes
+from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
+from missionfsm.bear.mission_requests import Request
+from missionfsm.bear.mission_rules import OPERATIONS
+from missionfsm.bear.mission_status import RULES as STATUS_RULES
+from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, promise
+from missionfsm.kernel.spec import Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
+
+_BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
+
+_MOVES = {
+    trigger: promise(
+        trigger.replace(" ", "-"), f"A mission moves by {trigger}.", cite=MISSION["MissionState", "State enum"]
+    ).of(SYSTEM, "lifecycle")
+    for trigger in ("start", "succeed", "fail")
+}
+"""The moves of the lifecycle that no call makes."""
+
+_NEXT_GOAL = promise(
+    "goals-are-taken-up-in-order", "A mission goes from goal to goal in order.", cite=MISSION["MissionState"]
+).of(SYSTEM, "lifecycle")
+RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
+
+
+def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
+    """What an edit does to a robot, to its names and to those who watch."""
+    after = apply(edit, robot)
+    if after is robot:
+        return Step(robot, assumes=assumes, rules=rules)
+    names, _ = renumber(edit, robot)
+    shown = listing(after)
+    emits = () if shown == listing(robot) else (Emission(TOPIC, shown, names),)
+    return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
+
+
+def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
+    step = _step(robot, outcome.edit, outcome.assumes, outcome.rules)
+    refs: tuple[int, ...] = ()
+    emits = step.emits
+    if outcome.whose == ADDED:
+        before = len(robot.listed)
+        refs = tuple(sorted(name for name in step.names or () if name >= before))
+        if request.operation in _BATCHES:
+            emits = (*_growing(robot, outcome.edit), *emits)
+    elif outcome.whose == ACTIVE:
+        refs = (len(robot.done),)
+    elif outcome.whose == GONE:
+        refs = renumber(outcome.edit, robot)[1]
+    answer = Answer(outcome.code, unordered=outcome.whose == GONE)
+    return Step(
+        step.after,
+        names=step.names,
+        emits=emits,
+        rules=step.rules,
+        assumes=step.assumes,
+        answer=answer,
+        refs=refs,
+        label=outcome.label,
+        applied=outcome.applied,
+    )
+
+
+def _growing(robot: Robot, edit: Edit) -> Iterator[Emission]:
+    """AM-54: what a subscriber may see of a batch before it is complete."""
+    added = next(what for op, what in edit if op is Op.ADD)
+    for size in range(1, len(added)):
+        part = tuple((op, what[:size]) if op is Op.ADD else (op, what) for op, what in edit)
+        yield Emission(TOPIC, listing(apply(part, robot)), renumber(part, robot)[0], only=AM_54["b"])
+
+
+def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
+    """A subscription: the latest state is owed at once, unless (AM-36) there never was one."""
+    stream = len(robot.listed)
+    first = Emission(TOPIC, listing(robot), tuple(range(stream)))
+    ways: list[tuple[tuple[Emission, ...], tuple[Assumption, ...]]] = [((first,), ())]
+    if robot.fresh:
+        ways = [((first,), (AM_36["a", "b"],)), ((), (AM_36["c"],))]
+    for owed, assumes in ways:
+        yield Step(
+            robot,
+            opens=(Opening(TOPIC, stream, owed),),
+            rules=outcome.rules,
+            assumes=(*outcome.assumes, *assumes),
+            answer=Answer(OK),
+            refs=(stream,),
+        )
+
+
+def _outcomes(robot: Robot, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+    found: list[Step] = []
+    for outcome in outcomes(situation(robot), call_of(robot, request, refs)):
+        if outcome.whose == "stream":
+            found += _opened(robot, outcome)
+        else:
+            found.append(_answered(robot, request, outcome))
+    return tuple(found)
+
+
+def _urgent(robot: Robot) -> tuple[Step, ...]:
+    head = robot.pending[0] if robot.pending else None
+    ways = due(robot.world, robot.active, head, halted=robot.halted, queued=head is not None)
+    starts = robot.active is None
+    rules = (_MOVES["start"].id,) if starts else ()
+    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in ways)
+
+
+_JUSTIFIED = {
+    "goalReached": (_NEXT_GOAL.id,),
+    "missionSucceeded": (_MOVES["succeed"].id,),
+    "missionFailed": (_MOVES["fail"].id,),
+}
+
+
+def _drive(robot: Robot, happening: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    rules = _JUSTIFIED.get(happening.name, ())
+    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in happens(situation(robot), happening))
+
+
+def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
+    if relation in ("first", "larger", "zero"):
+        return ()
+    return Mismatch(SEQUENCE.id, f"the sequence number is {relation}")
+
+
+@functools.cache
+def _delivery(_: object) -> Delivery:
+    # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
+    return Delivery(
+        skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends={INTERNAL: (), UNAVAILABLE: (AM_61["b"],)}
+    )
+
+
+# What holds of every robot, and what some robot can come to.
+
+
+def _has_state(mission: Mission, *states: State) -> bool:
+    return mission.state in states
+
+
+INVARIANTS = (
+    Invariant(
+        "ended-missions-come-first",
+        "Listed missions stand in the order ended, active, waiting.",
+        lambda robot: (
+            all(_has_state(one, *ENDED) for one in robot.done)
+            and (robot.active is None or _has_state(robot.active, State.STATE_RUNNING, State.STATE_PAUSED))
+            and all(_has_state(one, State.STATE_DEFAULT) for one in robot.pending)
+        ),
+    ),
+    Invariant(
+        "the-goal-index-is-a-goal",
+        "The current goal of an active mission is one of its goals, or none has been selected.",
+        lambda robot: (
+            robot.active is None
+            or robot.active.kind in GOALLESS
+            or NOT_CHOSEN <= robot.active.goal < len(robot.active.goals)
+        ),
+    ),
+    Invariant(
+        "only-waiting-missions-halt",
+        "A queue without missions is not halted.",
+        lambda robot: bool(robot.pending) or not robot.halted,
+    ),
+    Invariant("a-used-robot-is-not-fresh", "A robot that lists a mission was used.", lambda robot: not (robot.fresh and robot.listed)),
+)
+POSSIBILITIES = (
+    *(
+        Invariant(f"a-mission-is-{state.name.lower()}", f"Some mission is in {state.name}.", holds)
+        for state, holds in (
+            (state, lambda robot, state=state: any(one.state is state for one in robot.listed))
+            for state in LIFECYCLE.states
+        )
+    ),
+    Invariant("a-queue-forms", "Missions wait behind another.", lambda robot: bool(robot.active and robot.pending)),
+    Invariant("a-goal-is-left-behind", "A mission is past its first goal.", lambda robot: bool(robot.active and robot.active.goal > 0)),
+    Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.listed),
+)
+
+
+def _describe(value: object) -> str:
+    from missionfsm.bear.mission_words import describe  # noqa: PLC0415 - words are for people and seldom needed
+
+    return describe(value)
+
+
+SPEC = Spec(
+    system=SYSTEM,
+    title="one robot's missions",
+    initial=lambda world: Robot(world),
+    operations=OPERATIONS,
+    outcomes=_outcomes,
+    drives={
+        one.name: one
+        for one in (
+            Drive("goalReached", _drive, (Happening("goalReached"),)),
+            Drive("missionSucceeded", _drive, (Happening("missionSucceeded"),)),
+            Drive("missionFailed", _drive, (Happening("missionFailed"),)),
+            # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
+            Drive("world", _drive),
+            Drive("fault", _drive),
+        )
+    },
+    urgent=_urgent,
+    matches=matches,
+    delivery=_delivery,
+    sequence=_sequence,
+    names=lambda robot: len(robot.listed),
+    request_operation=lambda request: request.operation,
+    ambiguities=AMBIGUITIES,
+    describe=_describe,
+    rules=RULES,
+    charts=(LIFECYCLE,),
+    invariants=INVARIANTS,
+    possibilities=POSSIBILITIES,
+)
+
+__all__ = ["SPEC", "Goal", "Listing", "World"]

@@ -1,0 +1,458 @@
+"""The status stream of the Mission page: what a message shows, what it may look like, and how one is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.bear.messages import (
+    BaseFeedback,
+    BaseStatus,
+    BaseType,
+    CartiType,
+    FamilyFeedback,
+    FamilyStatus,
+    Goal,
+    MissionFeedback,
+    MissionState,
+    MissionStates,
+    MissionType,
+    ServiType,
+    State,
+)
+from missionfsm.bear.mission import (
+    AUTOMATIC,
+    ENDED,
+    FAMILY,
+    GOALLESS,
+    MISSION,
+    NOT_CHOSEN,
+    RETURN_POINT,
+    SYSTEM,
+    Family,
+    Kind,
+    Mission,
+    Robot,
+)
+from missionfsm.bear.mission_readings import (
+    AM_08,
+    AM_14_ENDED,
+    AM_14_GAP,
+    AM_14_PAUSED,
+    AM_26,
+    AM_35,
+    AM_36,
+    AM_50_MEMBER,
+    AM_50_SHAPE,
+    AM_51,
+    AM_63,
+)
+from missionfsm.kernel.readings import Ambiguity, Assumption, meet
+from missionfsm.kernel.rules import Rule, promise
+from missionfsm.kernel.spec import Match, Mismatch
+
+TOPIC = "mission status"
+
+
+@frozen(cache_hash=True)
+class Listing:
+    """What a status message shows: the listed missions in order, which of them is active, and on what robot.
+
+    `fresh`: no mission was ever assigned.
+    """
+
+    missions: tuple[Mission, ...]
+    active: int | None
+    family: Family
+    fresh: bool = False
+
+
+def listing(robot: Robot) -> Listing:
+    """What a subscriber of the robot is shown."""
+    return Listing(
+        tuple(mission.visible for mission in robot.listed),
+        len(robot.done) if robot.active else None,
+        robot.world.family,
+        robot.fresh,
+    )
+
+
+@frozen(cache_hash=True)
+class Seen:
+    """A status message without its mission ids and metadata; `named` tells which missions have an id.
+
+    `bare` tells of each mission whether its feedback came as a bare enum instead of a message.
+    """
+
+    states: MissionStates
+    named: tuple[bool, ...]
+    bare: tuple[bool, ...]
+
+
+@frozen(cache_hash=True)
+class Garbled:
+    """A status message that is not of the documented form."""
+
+    says: str
+
+
+def _promise(name: str, says: str, *place: str) -> Rule:
+    return promise(name, says, cite=MISSION[("SubscribeMissionStatus", *place)]).of(SYSTEM, "SubscribeMissionStatus")
+
+
+WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "Response")
+SEQUENCE = _promise(
+    "sequence-numbers-grow", "A sequence number is larger than the one before, or 0; never negative.", "EventMetadata"
+)
+ALL_LISTED = _promise(
+    "all-missions-are-listed", "Every mission of the robot is listed once, and no other.", "MissionStates"
+)
+CURRENT = _promise(
+    "the-current-mission-index-is-the-active-mission",
+    "current_mission_index is that of the active mission, -1 if none is active.",
+    "MissionStates",
+)
+STATE = _promise("the-state-is-reported", "A mission is reported in the state that it is in.", "State enum")
+GOALS = _promise("the-goals-are-those-requested", "A mission lists its goals in the order of the request.", "MissionState")
+GOAL_INDEX = _promise(
+    "the-current-goal-index-is-the-active-goal", "current_goal_index is that of the active goal.", "MissionState"
+)
+FEEDBACK = _promise("the-feedback-fits-the-mission", "Feedback is of the mission's kind.", "MissionFeedback")
+TYPE = _promise("the-type-is-that-requested", "A mission has the type that was asked for.", "MissionType")
+OWED = _promise(
+    "updates-follow-the-state", "Every state that lasts is shown, in order, and none that was never reached."
+)
+RULES = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE, OWED)
+
+_SHOWN = tuple(rule.id for rule in (OWED, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE))
+
+_TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
+    Kind.BASE_NAVIGATE: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),),
+    Kind.BASE_NAVIGATE_AUTO: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),),
+    Kind.SERVI_DELIVERY: (
+        MissionType(servi_type=ServiType.SERVI_TYPE_SERVING),
+        MissionType(servi_type=ServiType.SERVI_TYPE_UNKNOWN),
+    ),
+    Kind.SERVI_DELIVERY_PATROL: (
+        MissionType(servi_type=ServiType.SERVI_TYPE_SERVING_PATROL),
+        MissionType(servi_type=ServiType.SERVI_TYPE_UNKNOWN),
+    ),
+    Kind.SERVI_BUSSING: (MissionType(servi_type=ServiType.SERVI_TYPE_BUSSING),),
+    Kind.SERVI_BUSSING_PATROL: (MissionType(servi_type=ServiType.SERVI_TYPE_BUSSING_PATROL),),
+    Kind.SERVI_NAVIGATE: (MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE),),
+    Kind.SERVI_NAVIGATE_AUTO: (MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE_AUTO),),
+    Kind.CARTI_TRAVERSE: (MissionType(carti_type=CartiType.CARTI_TYPE_TRAVERSE),),
+    Kind.CARTI_TRAVERSE_PATROL: (MissionType(carti_type=CartiType.CARTI_TYPE_TRAVERSE_PATROL),),
+    Kind.CARTI_NAVIGATE: (MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE),),
+    Kind.CARTI_NAVIGATE_AUTO: (MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE_AUTO),),
+}
+"""The types that a kind may report, the expected one first. AM-26: a delivery is a serving mission."""
+
+_FAMILY_TYPES: Mapping[tuple[Kind, Family], MissionType] = {
+    (Kind.BASE_NAVIGATE, Family.SERVI): _TYPES[Kind.SERVI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.SERVI): _TYPES[Kind.SERVI_NAVIGATE_AUTO][0],
+    (Kind.BASE_NAVIGATE, Family.CARTI): _TYPES[Kind.CARTI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.CARTI): _TYPES[Kind.CARTI_NAVIGATE_AUTO][0],
+}
+_UNNAMED: Mapping[Kind, Ambiguity] = {
+    Kind.SERVI_BIRTHDAY: AM_26[0],
+    Kind.SERVI_HOSTING: AM_26[1],
+    Kind.SERVI_HOSTING_PATROL: AM_26[2],
+}
+"""Workflows whose types no enum names (AM-26)."""
+
+Assumed = tuple[Assumption, ...]
+
+
+class _WrongError(Exception):
+    """The message cannot show the view."""
+
+    def __init__(self, rule: Rule, says: str) -> None:
+        self.mismatch = Mismatch(rule.id, says)
+
+
+def matches(view: Listing, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch:
+    """The ways in which a message shows a listing, or the first thing that is wrong with it."""
+    if isinstance(content, Garbled):
+        return Mismatch(WELL_FORMED.id, content.says)
+    try:
+        if not view.missions and content.states.missions:
+            assumes: Assumed = _placeholder(view, content)
+        else:
+            assumes = _listed(view, content)
+    except _WrongError as wrong:
+        return wrong.mismatch
+    # Readings that contradict each other in one message leave no explanation; the belief would find out as well.
+    return (Match(assumes, tuple((index, index) for index in range(len(view.missions))), _SHOWN),)
+
+
+def _placeholder(view: Listing, content: Seen) -> Assumed:
+    """AM-35, AM-36: an empty list may be shown as one mission in STATE_DEFAULT without an id."""
+    only = content.states.missions[0]
+    if len(content.states.missions) > 1 or content.named[0] or only.state != State.STATE_DEFAULT or only.goals:
+        raise _WrongError(ALL_LISTED, f"{len(content.states.missions)} missions are listed; the robot has none")
+    return (AM_36["b"] if view.fresh else AM_35["c"],)
+
+
+def _listed(view: Listing, content: Seen) -> Assumed:
+    shown = content.states.missions
+    if len(shown) != len(view.missions):
+        raise _WrongError(ALL_LISTED, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
+    if not all(content.named):
+        raise _WrongError(ALL_LISTED, f"mission {content.named.index(False)} has no id")
+    assumes = list(_current(view, content.states.current_mission_index))
+    if not view.missions:
+        assumes.append(AM_36["a", "c"] if view.fresh else AM_35["a"])
+    for index, (mission, message) in enumerate(zip(view.missions, shown, strict=True)):
+        where = f"mission {index}"
+        assumes += _state(view, index, message, where)
+        _goals(mission, message, where)
+        _goal_index(mission, message, where)
+        assumes += _feedback(view, mission, message, where, bare=content.bare[index])
+        assumes += _type(view, mission, message, where)
+    assumes += _first_start(view)
+    return tuple(dict.fromkeys(assumes))
+
+
+def _first_start(view: Listing) -> Assumed:
+    """AM-63: a first mission that is seen waiting did not run at once."""
+    waiting = view.active is None and view.missions
+    return (AM_63["b"],) if waiting and all(one.state is State.STATE_DEFAULT for one in view.missions) else ()
+
+
+def current_index(view: Listing) -> Mapping[int, Assumed]:
+    """The values that current_mission_index may have, and what each assumes (AM-14)."""
+    if view.active is not None:
+        if view.missions[view.active].state is State.STATE_PAUSED:
+            return {view.active: (AM_14_PAUSED["f"],), -1: (AM_14_PAUSED["g"],)}
+        return {view.active: ()}
+    ended = sum(mission.state in ENDED for mission in view.missions)
+    if ended == len(view.missions):
+        return {-1: (AM_14_ENDED["a"],), ended - 1: (AM_14_ENDED["b"],)} if ended else {-1: ()}
+    found: dict[int, Assumed] = {-1: (AM_14_GAP["c"],), ended: (AM_14_GAP["e"],)}
+    if ended:
+        found[ended - 1] = (AM_14_GAP["d"],)
+    return found
+
+
+def _current(view: Listing, index: int) -> Assumed:
+    allowed = current_index(view)
+    if index not in allowed:
+        values = " or ".join(str(value) for value in allowed)
+        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected {values}")
+    return allowed[index]
+
+
+def _state(view: Listing, index: int, message: MissionState, where: str) -> Assumed:
+    state = view.missions[index].state
+    if state is not State.STATE_DEFAULT:
+        if message.state != state:
+            raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected {state.name}")
+        return ()
+    letter = {State.STATE_DEFAULT: "a", State.STATE_UNKNOWN: "b", State.STATE_PAUSED: "c"}.get(message.state)
+    if letter is None:
+        raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected STATE_DEFAULT since it waits")
+    return (AM_08[letter],)
+
+
+def _name(state: State | int) -> str:
+    return state.name if isinstance(state, State) else f"state {state}"
+
+
+def _goals(mission: Mission, message: MissionState, where: str) -> None:
+    if mission.kind in GOALLESS:
+        if len(message.goals) > 1:
+            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected its own place at most")
+        return
+    wanted = mission.goals
+    if wanted and wanted[-1] == RETURN_POINT:
+        if len(message.goals) != len(wanted):
+            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected {len(wanted)}")
+        wanted = (*wanted[:-1], message.goals[-1])
+    if not _same_goals(wanted, message.goals):
+        raise _WrongError(GOALS, f"{where} has the goals {_told(message.goals)}, expected {_told(wanted)}")
+
+
+FLOAT_STEP = 1e-6
+"""Poses travel as 32-bit floats: what comes back is as close to what was asked as that."""
+
+
+def _same_goals(wanted: tuple[Goal, ...], shown: tuple[Goal, ...]) -> bool:
+    if wanted == shown:
+        return True
+    return len(wanted) == len(shown) and all(map(_same_goal, wanted, shown))
+
+
+def _same_goal(wanted: Goal, shown: Goal) -> bool:
+    if wanted.pose is None or shown.pose is None:
+        return wanted == shown
+    pairs = (
+        (wanted.pose.x_meters, shown.pose.x_meters),
+        (wanted.pose.y_meters, shown.pose.y_meters),
+        (wanted.pose.heading_radians, shown.pose.heading_radians),
+    )
+    return all(abs(one - other) <= FLOAT_STEP * max(1.0, abs(one)) for one, other in pairs)
+
+
+def _told(goals: tuple[Goal, ...]) -> str:
+    return "[" + ", ".join(goal.destination_id or "a pose" for goal in goals) + "]"
+
+
+def _goal_index(mission: Mission, message: MissionState, where: str) -> None:
+    index, last = message.current_goal_index, max(len(message.goals), len(mission.goals))
+    active = mission.state in (State.STATE_RUNNING, State.STATE_PAUSED)
+    if active and mission.kind not in GOALLESS and mission.goal != NOT_CHOSEN:
+        if index != mission.goal:
+            raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, expected {mission.goal}")
+    elif not -1 <= index <= last:
+        raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, outside of its goals")
+
+
+_MEMBERS: Mapping[Family | None, str] = {
+    None: "base_feedback",
+    Family.BASE: "base_feedback",
+    Family.SERVI: "servi_feedback",
+    Family.CARTI: "carti_feedback",
+}
+
+
+def _feedback(view: Listing, mission: Mission, message: MissionState, where: str, *, bare: bool) -> Assumed:
+    feedback = message.mission_feedback
+    given = [name for name in dict.fromkeys(_MEMBERS.values()) if feedback and getattr(feedback, name) is not None]
+    if not given:
+        return ()
+    status = getattr(feedback, given[0]).status
+    if mission.state is State.STATE_DEFAULT and status:
+        raise _WrongError(FEEDBACK, f"{where} waits and has feedback")
+    assumes: list[Assumption] = []
+    own, robots = _MEMBERS[FAMILY[mission.kind]], _MEMBERS[view.family]
+    if mission.kind not in GOALLESS and own != robots and given[0] in (own, robots):
+        assumes.append(AM_50_MEMBER["c" if given[0] == own else "d"])
+    elif given[0] not in (own, robots):
+        raise _WrongError(FEEDBACK, f"{where} has {given[0]}, expected {own}")
+    if given[0] != "base_feedback":
+        assumes.append(AM_50_SHAPE["b" if bare else "a"])
+    return tuple(assumes)
+
+
+def _type(view: Listing, mission: Mission, message: MissionState, where: str) -> Assumed:
+    shown = message.mission_type or MissionType()
+    if mission.kind in GOALLESS:
+        return ()
+    if mission.kind in _UNNAMED:
+        if shown.base_type is not None or shown.carti_type is not None:
+            raise _WrongError(TYPE, f"{where} has a type of another family")
+        number = shown.servi_type or ServiType.SERVI_TYPE_UNKNOWN
+        documented = isinstance(number, ServiType)
+        return (_UNNAMED[mission.kind]["a" if not number else "c" if documented else "b"],)
+    expected = _TYPES[mission.kind]
+    if shown in expected:
+        return (AM_51["a"],) if (mission.kind, view.family) in _FAMILY_TYPES else ()
+    if shown == _FAMILY_TYPES.get((mission.kind, view.family)):
+        return (AM_51["b"],)
+    if mission.kind in (Kind.SERVI_DELIVERY, Kind.SERVI_DELIVERY_PATROL) and shown == MissionType():
+        return ()
+    raise _WrongError(TYPE, f"{where} has {_type_name(shown)}, expected {_type_name(expected[0])}")
+
+
+def _type_name(shown: MissionType) -> str:
+    for value in (shown.base_type, shown.servi_type, shown.carti_type):
+        if value is not None:
+            return value.name if hasattr(value, "name") else f"type {value}"
+    return "no type"
+
+
+# A message made from a listing, under one choice of readings.
+
+
+def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
+    """The message that an implementation with these readings sends; `choice` leaves one of each (see `choose`)."""
+    if not view.missions:
+        unnamed = meet(choice, (AM_36["b"] if view.fresh else AM_35["c"],))
+        missions = (MissionState(state=State.STATE_DEFAULT),) if unnamed else ()
+        return MissionStates(missions, -1)
+    indices = current_index(view)
+    index = next(value for value, assumes in indices.items() if meet(choice, assumes))
+    missions = tuple(
+        _shown(view, mission, mission_id, choice)
+        for mission, mission_id in zip(view.missions, ids, strict=True)
+    )
+    return MissionStates(missions, index)
+
+
+def _pick(choice: int, cases: Mapping[Assumption, Any]) -> Any:  # noqa: ANN401 - whatever the cases are of
+    return next(value for assumption, value in cases.items() if meet(choice, (assumption,)))
+
+
+def _shown(view: Listing, mission: Mission, mission_id: str, choice: int) -> MissionState:
+    state = mission.state
+    if state is State.STATE_DEFAULT:
+        state = _pick(
+            choice,
+            {AM_08["a"]: State.STATE_DEFAULT, AM_08["b"]: State.STATE_UNKNOWN, AM_08["c"]: State.STATE_PAUSED},
+        )
+    goals = tuple(Goal(destination_id="return point") if goal == RETURN_POINT else goal for goal in mission.goals)
+    return MissionState(
+        mission_id,
+        state,
+        goals,
+        max(mission.goal, 0),
+        _shown_feedback(view, mission, choice),
+        _shown_type(view, mission, choice),
+        "api",
+    )
+
+
+def _shown_feedback(view: Listing, mission: Mission, choice: int) -> MissionFeedback | None:
+    if mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
+        return None
+    own = _MEMBERS[FAMILY[mission.kind]]
+    name = own
+    if own != _MEMBERS[view.family]:
+        name = _pick(choice, {AM_50_MEMBER["c"]: own, AM_50_MEMBER["d"]: _MEMBERS[view.family]})
+    waiting = mission.kind in AUTOMATIC and mission.goal == NOT_CHOSEN
+    if name == "base_feedback":
+        status = BaseStatus.STATUS_UNKNOWN if waiting else BaseStatus.STATUS_NAVIGATING
+        return MissionFeedback(base_feedback=BaseFeedback(status))
+    family_status = FamilyStatus.STATUS_UNKNOWN if waiting else FamilyStatus.STATUS_NAVIGATING
+    build: Callable[..., MissionFeedback] = MissionFeedback
+    return build(**{name: FamilyFeedback(family_status)})
+
+
+def _shown_type(view: Listing, mission: Mission, choice: int) -> MissionType | None:
+    if mission.kind in GOALLESS:
+        return None
+    if mission.kind in _UNNAMED:
+        which = _UNNAMED[mission.kind]
+        undocumented: Any = 7
+        number = _pick(
+            choice,
+            {
+                which["a"]: ServiType.SERVI_TYPE_UNKNOWN,
+                which["b"]: undocumented,
+                which["c"]: ServiType.SERVI_TYPE_SERVING,
+            },
+        )
+        return MissionType(servi_type=number)
+    of_family = _FAMILY_TYPES.get((mission.kind, view.family))
+    if of_family is not None and meet(choice, (AM_51["b"],)):
+        return of_family
+    return _TYPES[mission.kind][0]
+
+
+def with_bare_feedback(message: dict[str, Any], choice: int) -> dict[str, Any]:
+    """AM-50: the same JSON with the feedback of a family as a bare enum, if that is what is chosen."""
+    if meet(choice, (AM_50_SHAPE["b"],)):
+        for mission in message.get("missions", ()):
+            feedback = mission.get("missionFeedback") or {}
+            for name in ("serviFeedback", "cartiFeedback"):
+                if name in feedback:
+                    feedback[name] = feedback[name]["status"]
+    return message
+
+
+def without_ids(states: MissionStates) -> MissionStates:
+    """The message with its mission ids taken out."""
+    return evolve(states, missions=tuple(evolve(one, mission_id="") for one in states.missions))

@@ -1,0 +1,71 @@
+"""How the JSON of a system's wire becomes what the oracle sees, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.history import Answer, Mark, Name
+
+JSON = Any
+"""What a JSON text stands for: dicts, lists, texts, numbers, booleans and None."""
+
+
+class UnreadableError(ValueError):
+    """Something that was to be read is not what it should be; the message says what is wrong and where."""
+
+
+@frozen
+class Garbled:
+    """What an implementation sent in the place of a documented result or message; nothing explains it."""
+
+    says: str
+
+    def __str__(self) -> str:
+        return f"(malformed: {self.says})"
+
+
+Part = tuple[tuple[Name, ...], tuple[Mark, ...], JSON]
+"""A part of a message: its names, its marks, and the rest."""
+
+
+@frozen
+class Codec:
+    """The JSON of one system.
+
+    Whatever an implementation sends has a meaning: a result or a message that is not of the documented form becomes
+    `Garbled`. What a tester or the author of a log writes (worlds, drives, methods) is refused with `UnreadableError`.
+
+    Attributes:
+        methods: the documented calls.
+        streams: those among them that open a stream.
+        world: the parameters of `reset`, defaults filled in.
+        request: (method, params) to the request and its names.
+        answer: (method, result) to the answer and its names.
+        strip: a message to its parts, each with its names, its marks and what is left of it, which is JSON again. Most
+            messages are one part; one about several robots has a part for each.
+        content: what is left of a part to its content.
+        drive: a drive's JSON to the event and its names.
+        write_request: (request, names) to params.
+        write_answer: (method, answer, names) to a result.
+        write_message: (view, names, choice, number, seconds) to a message: the sequence number is `number`, the
+            timestamp so many seconds after the epoch.
+        write_world: a world to the parameters of `reset`.
+        write_drive: (event, names) to JSON.
+    """
+
+    methods: tuple[str, ...]
+    streams: tuple[str, ...]
+    world: Callable[[JSON], Any]
+    request: Callable[[str, JSON], tuple[Any, tuple[Name, ...]]]
+    answer: Callable[[str, JSON], tuple[Answer, tuple[Name, ...]]]
+    strip: Callable[[JSON], tuple[Part, ...]]
+    content: Callable[[JSON], Hashable]
+    drive: Callable[[JSON], tuple[Any, tuple[Name, ...]]]
+    write_request: Callable[[Any, tuple[Name, ...]], JSON]
+    write_answer: Callable[[str, Answer, tuple[Name, ...]], JSON]
+    write_message: Callable[[Any, tuple[Name, ...], int, int, float], JSON]
+    write_world: Callable[[Any], JSON]
+    write_drive: Callable[[Any, tuple[Name, ...]], JSON]

@@ -4,28 +4,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from typing import Any
 
-from attrs import frozen
-
-from missionfsm.kernel.codec import Codec, UnreadableError
-from missionfsm.kernel.spec import Spec
-
-
-@frozen
-class System:
-    """A specification, how its JSON is read, and what the tools try on it.
-
-    Attributes:
-        alphabet: (bounds) to the requests, drives and worlds that exploration and generation draw from; the class of
-            the bounds is the system's own (`missionfsm.kernel.alphabet.Bounds` by default).
-    """
-
-    name: str
-    spec: Spec
-    codec: Codec
-    alphabet: Any
-
+from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.system import System
 
 _MODULES: Mapping[str, str] = {
     "bear.mission": "missionfsm.bear.mission_system",

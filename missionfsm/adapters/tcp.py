@@ -145,7 +145,8 @@ class TcpMissionServer:
             if isinstance(effect, Send):
                 self._send(effect)
             elif isinstance(effect, Close):
-                self._connections[effect.connection].close()
+                if (closed := self._connections.get(effect.connection)) is not None:
+                    closed.close()
             elif isinstance(effect, Ignored):
                 LOG.debug("connection %d: %s", effect.connection, effect.reason)
             self._observer(effect)

@@ -136,25 +136,33 @@ _READERS: Mapping[str, tuple[Callable[[str, JSON], Request], type]] = {
 }
 
 
-def request(method: str, params: JSON) -> tuple[Request, tuple[Name, ...]]:
-    """The request that a call makes, and the mission id in it."""
+def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+    """The mission id of an UpdateMission and the params with a dash in its place; other requests have none."""
+    command = params.get("missionCommand", params.get("mission_command")) if isinstance(params, dict) else None
+    if method != "UpdateMission" or not isinstance(command, dict):
+        return (), params
+    key = "missionId" if "missionId" in command else "mission_id"
+    named = command.get(key)
+    if not isinstance(named, str) or not named:
+        return (), params
+    outer = "missionCommand" if "missionCommand" in params else "mission_command"
+    return (named,), {**params, outer: {**command, key: "-"}}
+
+
+def request(method: str, params: JSON) -> Request:
+    """The request that a call makes, whatever its names are."""
     if method not in _READERS:
-        message = f"{brief(method)} is not a method of bear.mission"
+        message = f"{brief(method)} is not a method of bear.mission; those are {', '.join(_READERS)}"
         raise UnreadableError(message)
     reader, kind = _READERS[method]
     params = {} if params is None else params
     try:
         found = reader(method, params)
     except MalformedError as error:
-        return Request(method, (), None, (Defect.FORMAT,), str(error)), ()
+        return Request(method, (), None, (Defect.FORMAT,), str(error))
     if unknown_fields(kind, params):
         found = evolve(found, defects=_ordered({*found.defects, Defect.FIELD}))
-    return found, _mission_id(params) if method == "UpdateMission" else ()
-
-
-def _mission_id(params: JSON) -> tuple[Name, ...]:
-    command = read(wire.UpdateRequest, params).mission_command
-    return (command.mission_id,) if command and command.mission_id else ()
+    return found
 
 
 def write_request(asked: Request, names: tuple[Name, ...]) -> JSON:
@@ -402,6 +410,7 @@ CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=STREAMS,
     world=world,
+    split=split,
     request=request,
     answer=answer,
     strip=strip,

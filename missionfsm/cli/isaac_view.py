@@ -4,7 +4,6 @@ import contextlib
 import heapq
 import os
 import sys
-from collections import Counter
 from types import TracebackType
 from typing import Final, Self
 
@@ -57,7 +56,9 @@ class View:
         self.statuses = [Status.CREATED] * len(file.missions)
         self.robots: dict[str, bool] = {}
         self._numbers: dict[Uuid, int] = {}
-        self._counts = Counter(self.statuses)
+        self._counts = dict.fromkeys(Status, 0)
+        self._counts[Status.CREATED] = len(self.statuses)
+        self._expected = {entry.robot for entry in file.missions}
         self._printer = Printer()
 
     @property
@@ -87,7 +88,10 @@ class View:
             self.robots[effect.robot] = True
             self.say(f"robot {effect.robot}: connected")
         elif isinstance(effect, RobotOffline):
-            self.robots[effect.robot] = False
+            if effect.robot in self._expected:
+                self.robots[effect.robot] = False
+            else:  # anybody may connect; only those whom the file names are remembered
+                self.robots.pop(effect.robot, None)
             self.say(f"robot {effect.robot}: disconnected")
 
     def say(self, line: str) -> None:
@@ -115,7 +119,7 @@ class TableView(View):
         super().__init__(file)
         self._console = console or Console()
         self._title = ""
-        self._live = Live(get_renderable=self.render, console=self._console, refresh_per_second=8)
+        self._live = Live(get_renderable=self.render, console=self._console, refresh_per_second=4)
 
     def say(self, line: str) -> None:
         """Keep only what the title says."""
@@ -124,9 +128,8 @@ class TableView(View):
     def render(self) -> Group:
         """The tables as they are now."""
         room = max(self._console.height - _FRAME, 4)
-        robots = Table("robot", "connection", title=Text(self._title))
-        for robot in list(self.robots)[: room // 3]:
-            connected = self.robots[robot]
+        robots = Table("robot", "connection")
+        for robot, connected in list(self.robots.items())[: room // 3]:  # a copy: Live looks from a thread of its own
             robots.add_row(
                 Text(printable(robot)),
                 Text("connected", style="green") if connected else Text("disconnected", style="red"),
@@ -143,14 +146,10 @@ class TableView(View):
                 Text(status.value, style=style),
                 Text(", ".join(upstream[:9])),
             )
-        total = ", ".join(
-            f"{count} {status.value}"
-            for status, count in sorted(
-                ((status, count) for status, count in self._counts.items() if count), key=lambda item: item[0].value
-            )
-        )
+        total = ", ".join(f"{count} {status.value}" for status, count in self._counts.items() if count)
         hidden = len(self.statuses) - len(rows)
-        return Group(robots, missions, Text(total + (f" ({hidden} not shown)" if hidden else "")))
+        total += f" ({hidden} not shown)" if hidden else ""
+        return Group(Text(self._title), robots, missions, Text(total))
 
     def _most_telling(self, room: int) -> list[int]:
         """The missions to show where not all have room: what runs, then what waits, then what has ended."""

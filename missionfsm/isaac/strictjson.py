@@ -64,6 +64,8 @@ def parse(text: str) -> object | JsonFault:
 
 def faults(value: object, path: str = "") -> Iterator[tuple[str, str]]:
     """Every (path, problem) inside a parsed value: doubled keys, infinite numbers, broken Unicode, depth."""
+    if _is_sound(value):
+        return
     stack: list[tuple[str, object, int]] = [(path, value, 1)]
     while stack:
         here, item, depth = stack.pop()
@@ -78,6 +80,29 @@ def faults(value: object, path: str = "") -> Iterator[tuple[str, str]]:
             stack.extend((below(here, key), item[key], depth + 1) for key in reversed(item))
         elif isinstance(item, list):
             stack.extend((f"{here}[{index}]", item[index], depth + 1) for index in reversed(range(len(item))))
+
+
+def _is_sound(value: object) -> bool:
+    """A quick look without paths, for the usual case; False where a closer one is needed."""
+    level: list[object] = [value]
+    for _ in range(MAX_DEPTH):
+        below_level: list[object] = []
+        for item in level:
+            if isinstance(item, str):
+                if not _is_unicode(item):
+                    return False
+            elif isinstance(item, dict):
+                if not isinstance(item, JsonObject) or item.doubled or not all(map(_is_unicode, item)):
+                    return False
+                below_level += item.values()
+            elif isinstance(item, list):
+                below_level += item
+            elif isinstance(item, float) and not math.isfinite(item):
+                return False
+        if not below_level:
+            return True
+        level = below_level
+    return False
 
 
 def _key_faults(value: dict[str, Any], path: str) -> Iterator[tuple[str, str]]:

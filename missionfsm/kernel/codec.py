@@ -42,7 +42,8 @@ class Codec:
         methods: the documented calls.
         streams: those among them that open a stream.
         world: the parameters of `reset`, defaults filled in.
-        request: (method, params) to the request and its names.
+        split: (method, params) to the names in a request and what is left of it, which is JSON again.
+        request: (method, what is left of the params) to the request.
         answer: (method, result) to the answer and its names.
         strip: a message to its parts, each with its names, its marks and what is left of it, which is JSON again. Most
             messages are one part; one about several robots has a part for each.
@@ -59,7 +60,8 @@ class Codec:
     methods: tuple[str, ...]
     streams: tuple[str, ...]
     world: Callable[[JSON], Any]
-    request: Callable[[str, JSON], tuple[Any, tuple[Name, ...]]]
+    split: Callable[[str, JSON], tuple[tuple[Name, ...], JSON]]
+    request: Callable[[str, JSON], Any]
     answer: Callable[[str, JSON], tuple[Answer, tuple[Name, ...]]]
     strip: Callable[[JSON], tuple[Part, ...]]
     content: Callable[[JSON], Hashable]

@@ -71,6 +71,10 @@ class Oracle:
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
         self._spent = 0
 
+    def reset(self) -> None:
+        """Start counting against the budget anew."""
+        self._spent = 0
+
     # What the spec says, remembered.
 
     def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
@@ -248,7 +252,7 @@ class Oracle:
         Raises:
             ExhaustedError: the event costs more than the budget.
         """
-        self._spent = 0
+        self.reset()
         observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
         found = [sighting for explanation in explanations for sighting in observe(self, explanation, *what)]
         return self._sift(found)

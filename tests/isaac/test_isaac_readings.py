@@ -540,11 +540,13 @@ def test_isaac_as_shipped_deviations() -> None:
 def profiles(draw: st.DrawFn) -> Profile:
     letters = {field.name: field.metadata.get("letters") for field in attrs.fields(Profile)}
     choice = {name: draw(st.sampled_from(options)) for name, options in letters.items() if options}
-    return Profile(**choice, scheduling_period=draw(st.sampled_from([0.0, 0.75])))  # type: ignore[arg-type]
+    return Profile(**choice, scheduling_period=draw(st.sampled_from([0.0, 0.75])))
 
 
 @given(profiles(), st.data())
-def test_isaac_invariants_hold_under_every_profile(profile: Profile, data: st.DataObject) -> None:
+def test_isaac_invariants_hold_under_every_profile(  # noqa: C901, PLR0915 - one walk through all events
+    profile: Profile, data: st.DataObject
+) -> None:
     """Whatever the readings and the events: nothing is sent before its upstreams have succeeded, nor twice save by
     AI-15 b, a status never goes back save by AI-15 b and AI-09, the count of unfinished missions is right, cutting
     virtual time into pieces changes nothing.

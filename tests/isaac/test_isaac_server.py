@@ -34,15 +34,11 @@ def test_isaac_server_a_mission_from_creation_to_success() -> None:
         StatusChanged(uuid(0), Status.QUEUED, Status.STARTED),
     )
     assert core.next_deadline() == 5.0
-    assert core.received(1, says_status(0, RUNNING), 1.0) == (
-        StatusChanged(uuid(0), Status.STARTED, Status.RUNNING),
-    )
+    assert core.received(1, says_status(0, RUNNING), 1.0) == (StatusChanged(uuid(0), Status.STARTED, Status.RUNNING),)
     assert core.next_deadline() is None
     assert core.received(1, says_status(0, RUNNING), 2.0) == ()
     assert core.robots() == (RobotView("r", 1, 1, (uuid(0),)),)
-    assert core.received(1, says_status(0, SUCCESS), 3.0) == (
-        StatusChanged(uuid(0), Status.RUNNING, Status.SUCCESS),
-    )
+    assert core.received(1, says_status(0, SUCCESS), 3.0) == (StatusChanged(uuid(0), Status.RUNNING, Status.SUCCESS),)
     assert core.unfinished == 0
     assert core.disconnected(1, 4.0) == (RobotOffline("r", 1),)
     assert core.robots() == ()

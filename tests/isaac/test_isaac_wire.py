@@ -1,5 +1,6 @@
 """The wire: bytes in, messages out. Each test states one claim."""
 
+import itertools
 import json
 
 import pytest
@@ -22,7 +23,7 @@ from missionfsm.isaac.wire import Decoder, WireError, decode_line, encode
 
 U64 = st.integers(0, 2**64 - 1)
 UUIDS = st.builds(Uuid, U64, U64)
-TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=20)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 TIMES = st.none() | st.integers(-(2**63), 2**63 - 1)
 PAYLOADS = (
     st.builds(TextProto, TEXTS)
@@ -46,7 +47,9 @@ TEXT_ID = str(signed(TYPE_IDS[TextProto]))
 
 @given(st.lists(MESSAGES, max_size=5), st.lists(st.integers(0, 600), max_size=6), st.booleans())
 def test_isaac_messages_come_back_whole_however_the_bytes_are_cut(
-    messages: list[Message], cuts: list[int], windows: bool
+    messages: list[Message],
+    cuts: list[int],
+    windows: bool,  # noqa: FBT001
 ) -> None:
     """What is encoded is decoded to the same values, under every fragmentation and with either line end."""
     data = b"".join(encode(message) for message in messages)
@@ -54,14 +57,15 @@ def test_isaac_messages_come_back_whole_however_the_bytes_are_cut(
         data = data.replace(b"\n", b"\r\n")
     decoder = Decoder()
     places = [0, *sorted(cut for cut in cuts if cut < len(data)), len(data)]
-    found = [item for a, b in zip(places, places[1:], strict=False) for item in decoder.feed(data[a:b])]
+    found = [item for a, b in itertools.pairwise(places) for item in decoder.feed(data[a:b])]
     assert found == messages
     assert decoder.close() == []
 
 
 @given(
     st.lists(
-        st.binary(max_size=30) | MESSAGES.map(encode) | st.sampled_from([b"\n", b"\r\n", b"[" * 9, b"x" * 90]), max_size=8
+        st.binary(max_size=30) | MESSAGES.map(encode) | st.sampled_from([b"\n", b"\r\n", b"[" * 9, b"x" * 90]),
+        max_size=8,
     ),
     st.integers(1, 7),
 )
@@ -99,13 +103,19 @@ def test_isaac_the_shipped_server_sends_the_header_uuid_as_numbers() -> None:
 @pytest.mark.parametrize("kind", TYPE_IDS)
 def test_isaac_type_ids_are_taken_signed_and_unsigned_as_strings_and_numbers(kind: type) -> None:
     """All four ways to write a type id mean the same type."""
-    payload = {TextProto: {"text": "x"}, MissionProto: {"config": "{}"}, MissionStatusProto: {"missionStatus": "success"}}
+    payload = {
+        TextProto: {"text": "x"},
+        MissionProto: {"config": "{}"},
+        MissionStatusProto: {"missionStatus": "success"},
+    }
     type_id = TYPE_IDS[kind]
     assert unsigned(signed(type_id)) == type_id
     forms = (type_id, signed(type_id), str(type_id), str(signed(type_id)))
     found = {decode_line(line(payload[kind], proto))[0] for proto in (*forms, None)}
     assert len(found) == 1
-    assert isinstance(found.pop().payload, kind)
+    (message,) = found
+    assert isinstance(message, Message)
+    assert isinstance(message.payload, kind)
 
 
 @pytest.mark.parametrize("text", ["running", "RUNNING", "Running", 0])
@@ -255,7 +265,9 @@ def test_isaac_other_payloads_are_not_sent() -> None:
     class ImageProto:
         pass
 
-    with pytest.raises(TypeError, match="^ImageProto does not travel here; MissionProto, MissionStatusProto, TextProto do$"):
+    with pytest.raises(
+        TypeError, match=r"^ImageProto does not travel here; MissionProto, MissionStatusProto, TextProto do$"
+    ):
         encode(Message(Header("c"), ImageProto()))  # type: ignore[arg-type]
 
 

@@ -1,0 +1,266 @@
+"""The adapter protocol over stdin and stdout: the reference as a server, and a child process as a subject.
+
+The protocol is JSON-RPC 2.0, one object a line. Everything that a child may do wrong ends in a `SubjectError` that
+says what it was: it cannot be started, it exits, it hangs, it writes rubbish, it floods.
+"""
+
+from __future__ import annotations
+
+import os
+import selectors
+import subprocess
+import tempfile
+import time
+from collections import deque
+from collections.abc import Sequence
+from typing import IO, Any
+
+import orjson
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.rules import STATUS_NUMBERS
+from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
+from missionfsm.kernel.transcript import brief
+
+LONGEST_LINE = 64 * 1024 * 1024
+"""Bytes in one line before a child counts as flooding."""
+
+MOST_NOTIFICATIONS = 100_000
+"""Notifications between two answers before a child counts as flooding."""
+
+PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600, -32601, -32602
+
+
+# The reference as a server.
+
+
+def serve(subject: Subject, requests: IO[bytes], responses: IO[bytes]) -> None:
+    """Answer requests until their end, in order."""
+    for line in requests:
+        if line.strip():
+            responses.writelines(orjson.dumps(one) + b"\n" for one in _respond(subject, line))
+            responses.flush()
+
+
+def _respond(subject: Subject, line: bytes) -> list[JSON]:
+    try:
+        request = orjson.loads(line)
+    except orjson.JSONDecodeError as error:
+        return [_failure(None, PARSE_ERROR, f"not JSON: {error}")]
+    if not isinstance(request, dict) or not isinstance(request.get("method"), str):
+        return [_failure(None, INVALID_REQUEST, "a request has a method")]
+    number = request.get("id")
+    try:
+        exchange = subject.exchange(request["method"], request.get("params", {}))
+    except SubjectError as error:
+        return [_failure(number, INVALID_PARAMS, str(error))]
+    answer: JSON = {"jsonrpc": "2.0", "id": number}
+    if exchange.error is None:
+        answer["result"] = exchange.result
+    else:
+        status = exchange.error["status"]
+        answer["error"] = {
+            "code": STATUS_NUMBERS[status],
+            "message": exchange.error.get("message", ""),
+            "data": {"status": status},
+        }
+    return [*map(_notice, exchange.before), answer, *map(_notice, exchange.after)]
+
+
+def _notice(notification: Notification) -> JSON:
+    return {"jsonrpc": "2.0", "method": notification.method, "params": notification.params}
+
+
+def _failure(number: JSON, code: int, says: str) -> JSON:
+    return {"jsonrpc": "2.0", "id": number, "error": {"code": code, "message": says}}
+
+
+# A child process as a subject.
+
+
+class Child:
+    """A child process that speaks the protocol; it is started at once.
+
+    Args:
+        command: the program and its arguments.
+        timeout: seconds that an answer may take.
+
+    Raises:
+        SubjectError: the program cannot be started.
+    """
+
+    def __init__(self, command: Sequence[str], timeout: float = 10.0) -> None:
+        self.command = tuple(command)
+        self.timeout = timeout
+        self._stderr = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - lives as long as the child
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
+                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._stderr, bufsize=0
+            )
+        except OSError as error:
+            self._stderr.close()
+            message = f"cannot start {self.command[0]}: {error.strerror}"
+            raise SubjectError(message) from None
+        assert self._process.stdin is not None  # noqa: S101 - it was asked for
+        assert self._process.stdout is not None  # noqa: S101
+        self._in, self._out = self._process.stdin.fileno(), self._process.stdout.fileno()
+        os.set_blocking(self._in, False)
+        os.set_blocking(self._out, False)
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(self._out, selectors.EVENT_READ)
+        self._partial = bytearray()
+        self._lines: deque[bytes] = deque()
+        self._serial = 0
+
+    def close(self) -> None:
+        """End its input, give it a moment, then end it."""
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                try:
+                    pipe.close()
+                except OSError:
+                    pass
+        try:
+            self._process.wait(0.5)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._selector.close()
+        self._stderr.close()
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        """Send a request and wait for its answer."""
+        self._serial += 1
+        request = {"jsonrpc": "2.0", "id": self._serial, "method": method, "params": params}
+        deadline = time.monotonic() + self.timeout
+        self._write(orjson.dumps(request) + b"\n", deadline, method)
+        before: list[Notification] = []
+        while True:
+            message = self._parse(self._line(deadline, method))
+            if "id" not in message:
+                before.append(self._notification(message))
+                if len(before) > MOST_NOTIFICATIONS:
+                    raise self._failed(f"flooded: more than {MOST_NOTIFICATIONS} notifications before answering {method}")
+                continue
+            return self._answer(message, tuple(before), method)
+
+    def _answer(self, message: dict[str, Any], before: tuple[Notification, ...], method: str) -> Exchange:
+        if message["id"] != self._serial:
+            raise self._failed(f"answered request {brief(message['id'])} instead of {self._serial} ({method})")
+        after = self._at_hand()
+        if "error" not in message:
+            if "result" not in message:
+                raise self._failed(f"answered {method} without a result or an error: {brief(message)}")
+            return Exchange(message["result"], None, before, after)
+        error = message["error"]
+        code = error.get("code") if isinstance(error, dict) else None
+        if isinstance(code, bool) or not isinstance(code, int):
+            raise self._failed(f"answered {method} with an error without a code: {brief(error)}")
+        if code < 0:
+            raise self._failed(f"answered {method} with JSON-RPC error {code}: {brief(error.get('message', ''))}")
+        data = error.get("data")
+        status = data.get("status") if isinstance(data, dict) else None
+        if status is None:
+            status = next((name for name, number in STATUS_NUMBERS.items() if number == code), None)
+        if status not in STATUS_NUMBERS or status == "OK" or STATUS_NUMBERS[status] != code:
+            raise self._failed(f"answered {method} with error {code}, status {brief(status)}: not a gRPC error")
+        said = error.get("message", "")
+        return Exchange(None, {"status": status, "message": said if isinstance(said, str) else ""}, before, after)
+
+    def _notification(self, message: dict[str, Any]) -> Notification:
+        method, params = message.get("method"), message.get("params")
+        wanted = {"message": ("stream", "message"), "closed": ("stream",), "line": ("line",)}.get(str(method))
+        if wanted is None or not isinstance(params, dict) or any(key not in params for key in wanted):
+            raise self._failed(f"sent something that is no notification of the protocol: {brief(message)}")
+        for key in ("stream", "connection"):
+            if key in params and (isinstance(params[key], bool) or not isinstance(params[key], int)):
+                raise self._failed(f"sent a notification whose {key} is {brief(params[key])}")
+        return Notification(str(method), params)
+
+    def _at_hand(self) -> tuple[Notification, ...]:
+        """The notifications that have arrived in full and stand before anything else."""
+        self._read_available()
+        found: list[Notification] = []
+        while self._lines:
+            message = self._parse(self._lines[0])
+            if "id" in message:
+                break
+            self._lines.popleft()
+            found.append(self._notification(message))
+        return tuple(found)
+
+    def _parse(self, line: bytes) -> dict[str, Any]:
+        try:
+            message = orjson.loads(line)
+        except orjson.JSONDecodeError:
+            raise self._failed(f"wrote a line that is not JSON: {brief(line[:80].decode(errors='replace'))}") from None
+        if not isinstance(message, dict):
+            raise self._failed(f"wrote a line that is not a JSON object: {brief(message)}")
+        return message
+
+    def _write(self, data: bytes, deadline: float, method: str) -> None:
+        view = memoryview(data)
+        while view:
+            try:
+                view = view[os.write(self._in, view) :]
+            except BlockingIOError:
+                # A child that does not read may be busy writing: take what it has, or both would wait for ever.
+                self._read_available()
+                if time.monotonic() > deadline:
+                    raise self._failed(f"did not read {method} within {self.timeout:g} s") from None
+                time.sleep(0.001)
+            except OSError:
+                raise self._exited(method) from None
+
+    def _line(self, deadline: float, method: str) -> bytes:
+        while not self._lines:
+            left = deadline - time.monotonic()
+            if left <= 0 or not self._selector.select(left):
+                raise self._failed(f"did not answer {method} within {self.timeout:g} s")
+            if not self._read_available() and not self._lines:
+                raise self._exited(method)
+        return self._lines.popleft()
+
+    def _read_available(self) -> bool:
+        """Take what has arrived; False at the end of its output."""
+        while True:
+            try:
+                data = os.read(self._out, 1 << 20)
+            except BlockingIOError:
+                return True
+            except (OSError, ValueError):
+                return False
+            if not data:
+                return False
+            *whole, rest = data.split(b"\n")
+            for part in whole:
+                self._lines.append(bytes(self._partial) + part if self._partial else part)
+                self._partial.clear()
+            self._partial += rest
+            if len(self._partial) > LONGEST_LINE:
+                raise self._failed(f"flooded: a line of more than {LONGEST_LINE} bytes")
+            if len(self._lines) > MOST_NOTIFICATIONS:
+                raise self._failed(f"flooded: more than {MOST_NOTIFICATIONS} lines at a time")
+            if len(data) < 1 << 20:
+                return True
+
+    def _exited(self, method: str) -> SubjectError:
+        try:
+            status = self._process.wait(0.5)
+        except subprocess.TimeoutExpired:
+            return self._failed(f"closed its output before answering {method}")
+        ended = f"was ended by signal {-status}" if status < 0 else f"exited with status {status}"
+        return self._failed(f"{ended} before answering {method}")
+
+    def _failed(self, says: str) -> SubjectError:
+        return SubjectError(f"the adapter {says}{self._complaint()}")
+
+    def _complaint(self) -> str:
+        """The last line that it wrote to stderr, since that usually says what is wrong."""
+        self._stderr.seek(0, os.SEEK_END)
+        size = self._stderr.tell()
+        self._stderr.seek(max(0, size - 2000))
+        lines = self._stderr.read().decode(errors="replace").strip().splitlines()
+        self._stderr.seek(0, os.SEEK_END)
+        telling = next((line for line in reversed(lines) if line.strip()), "")
+        return f" (stderr: {telling.strip()[:200]})" if telling else ""

@@ -1,0 +1,41 @@
+"""An implementation under test, as the tools see it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from attrs import frozen
+
+from missionfsm.kernel.codec import JSON
+
+
+class SubjectError(Exception):
+    """The adapter failed: it said something that the protocol does not allow, or nothing. Never a violation."""
+
+
+@frozen
+class Notification:
+    """Something that the implementation sent unasked: a ``message``, ``closed`` or a ``line``."""
+
+    method: str
+    params: JSON
+
+
+@frozen
+class Exchange:
+    """A request's answer, what had arrived before it, and what arrived with it."""
+
+    result: JSON = None
+    error: JSON = None
+    before: tuple[Notification, ...] = ()
+    after: tuple[Notification, ...] = ()
+
+
+class Subject(Protocol):
+    """Something that speaks the adapter protocol: a child process, or an object in this one."""
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        """Send a request and wait for its answer. Raises SubjectError."""
+
+    def close(self) -> None:
+        """Let go of it."""

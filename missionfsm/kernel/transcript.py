@@ -1,0 +1,213 @@
+"""The history format, version 1: lines of JSON to events, strictly.
+
+A transcript reads one conversation line by line. Whatever its author got wrong is refused with `UnreadableError`,
+which says what is wrong; whatever the implementation got wrong becomes an event that nothing explains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.codec import JSON, Codec, UnreadableError
+from missionfsm.kernel.history import (
+    Answer,
+    Called,
+    Cancelled,
+    Driven,
+    Ended,
+    Event,
+    Received,
+    Returned,
+    Settled,
+)
+from missionfsm.kernel.rules import OK, STATUS_NUMBERS
+
+VERSION = 1
+_SETTLED: tuple[Event, ...] = (Settled(),)
+REMEMBERED = 20_000
+"""How many different requests and messages a transcript knows again without reading them anew."""
+
+
+@frozen
+class Head:
+    """The first line of a history.
+
+    `drives` is an addition to the format: the drives that the tester commanded. Without it the environment may have
+    done everything by itself.
+    """
+
+    system: str
+    world: JSON
+    drives: tuple[str, ...] = ()
+
+
+def brief(value: object) -> str:
+    """A value as an error message shows it: never long."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _wrong(says: str) -> UnreadableError:
+    return UnreadableError(says)
+
+
+def head(line: JSON) -> Head:
+    """What the first line says. Raises UnreadableError."""
+    if not isinstance(line, dict) or "missionfsm" not in line:
+        raise _wrong('the first line has to be {"missionfsm": 1, "system": …, "world": …}')
+    if line["missionfsm"] != VERSION or isinstance(line["missionfsm"], bool):
+        raise _wrong(f"history format {brief(line['missionfsm'])} is not known; this is version {VERSION}")
+    name, drives = line.get("system"), line.get("drives", [])
+    if not isinstance(name, str):
+        raise _wrong(f"system: {brief(name)} is not the name of a system")
+    if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
+        raise _wrong(f"drives: {brief(drives)} is not a list of names")
+    return Head(name, line.get("world", {}), tuple(drives))
+
+
+class Transcript:
+    """Reads the lines of one conversation, after the first.
+
+    Args:
+        codec: how the system's JSON is read.
+        fingerprint: JSON to something hashable that tells it from other JSON; a fast one makes reading fast.
+        lost: ids of calls that are known to have no answer.
+    """
+
+    def __init__(
+        self,
+        codec: Codec,
+        fingerprint: Callable[[JSON], Hashable] = repr,
+        lost: frozenset[int] = frozenset(),
+    ) -> None:
+        self.codec = codec
+        self._fingerprint = fingerprint
+        self._lost = lost
+        self._open: dict[int, str] = {}
+        self._cancels: dict[int, int] = {}
+        self._seen_calls: set[int] = set()
+        self._requests: dict[Hashable, Any] = {}
+        self._interned: dict[Any, Any] = {}
+        self._contents: dict[Hashable, Hashable] = {}
+        self._kinds: Mapping[str, Callable[[dict[str, Any]], tuple[Event, ...]]] = {
+            "call": self._call,
+            "return": self._return,
+            "stream": self._stream,
+            "connection": self._connection,
+            "drive": self._drive,
+            "settled": self._settled,
+        }
+
+    def read(self, line: JSON) -> tuple[Event, ...]:
+        """The events that a line stands for; usually one. Raises UnreadableError."""
+        if not isinstance(line, dict):
+            raise _wrong(f"{brief(line)} is not an object")
+        for key, reader in self._kinds.items():
+            if key in line:
+                return reader(line)
+        raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
+
+    @property
+    def pending(self) -> tuple[int, ...]:
+        """Ids of the calls that have no answer yet."""
+        return tuple(self._open)
+
+    def _number(self, line: dict[str, Any], key: str) -> int:
+        number = line[key]
+        if isinstance(number, bool) or not isinstance(number, int):
+            raise _wrong(f"{key}: {brief(number)} is not a number")
+        return number
+
+    def _call(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
+        if number in self._seen_calls:
+            raise _wrong(f"call {number} was sent before; ids are unique within a file")
+        if not isinstance(method, str):
+            raise _wrong(f"method: {brief(method)} is not the name of a call")
+        if method == "cancel":
+            stream = params.get("stream") if isinstance(params, dict) else None
+            if isinstance(stream, bool) or not isinstance(stream, int):
+                raise _wrong(f"cancel: {brief(params)} names no stream")
+            self._seen_calls.add(number)
+            self._open[number] = method
+            return (Cancelled(("stream", stream)),)
+        request, names = self._request(method, params)
+        self._seen_calls.add(number)
+        if number in self._lost:
+            return (Called(("call", number), request, names, lost=True),)
+        self._open[number] = method
+        return (Called(("call", number), request, names),)
+
+    def _request(self, method: str, params: JSON) -> tuple[Any, tuple[Any, ...]]:
+        names, rest = self.codec.split(method, params)
+        key = (method, self._fingerprint(rest))
+        request = self._requests.get(key)
+        if request is None:
+            if len(self._requests) >= REMEMBERED:
+                self._requests.clear()
+                self._interned.clear()
+            request = self.codec.request(method, rest)
+            # One object for one request, however it is written: the oracle then knows it by identity.
+            request = self._requests[key] = self._interned.setdefault(request, request)
+        return request, names
+
+    def _return(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        number = self._number(line, "return")
+        method = self._open.pop(number, None)
+        if method is None:
+            raise _wrong(f"return {number}: no call with this id is waiting for an answer")
+        if ("result" in line) == ("error" in line):
+            raise _wrong(f"return {number}: expected either a result or an error")
+        if method == "cancel":
+            return ()
+        if "error" in line:
+            return (Returned(("call", number), Answer(self._status(line["error"])), ()),)
+        answer, names = self.codec.answer(method, line["result"])
+        return (Returned(("call", number), answer, names),)
+
+    def _status(self, error: JSON) -> str:
+        status = error.get("status") if isinstance(error, dict) else None
+        if not isinstance(status, str) or status not in STATUS_NUMBERS or status == OK:
+            raise _wrong(f"error.status: {brief(status)} is not the name of a gRPC error")
+        return status
+
+    def _stream(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        stream = ("stream", self._number(line, "stream"))
+        if line.get("closed") is True:
+            return (Ended(stream, self._status(line["error"]) if line.get("error") else OK),)
+        if "message" not in line:
+            raise _wrong(f"stream {stream[1]}: expected a message or closed")
+        return tuple(
+            Received(stream, self._content(rest), names, marks)
+            for names, marks, rest in self.codec.strip(line["message"])
+        )
+
+    def _content(self, rest: JSON) -> Hashable:
+        key = self._fingerprint(rest)
+        content = self._contents.get(key)
+        if content is None:
+            if len(self._contents) >= REMEMBERED:
+                self._contents.clear()
+            content = self._contents[key] = self.codec.content(rest)
+        return content
+
+    def _connection(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        connection = ("connection", self._number(line, "connection"))
+        if "line" not in line:
+            raise _wrong(f"connection {connection[1]}: expected a line")
+        return tuple(
+            Received(connection, self._content(rest), names, marks)
+            for names, marks, rest in self.codec.strip(line["line"])
+        )
+
+    def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        event, names = self.codec.drive(line["drive"])
+        return (Driven(event, names),)
+
+    def _settled(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        if line["settled"] is not True:
+            raise _wrong(f"settled: {brief(line['settled'])} is not true")
+        return _SETTLED

@@ -1,0 +1,155 @@
+"""A recorded history to a verdict: which event cannot be explained, what was allowed instead, by which rule."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Hashable, Iterable, Mapping
+from typing import Any
+
+from missionfsm.kernel.belief import Automaton, Belief
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.history import Called, Event, Returned
+from missionfsm.kernel.oracle import ExhaustedError
+from missionfsm.kernel.readings import constrain
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.system import System
+from missionfsm.kernel.transcript import Head, Transcript
+from missionfsm.tools.explain import violation
+from missionfsm.tools.verdict import Outcome, Verdict, Violation
+
+KEPT = 200
+"""How many lines before a violation a verdict shows of a long history."""
+
+
+class Judge:
+    """Judges one conversation as its lines come.
+
+    Args:
+        system: the system.
+        head: the first line of the history.
+        automaton: a belief automaton to walk; its own is made where none is given. Sharing one makes many judges fast.
+        fingerprint, lost: see `missionfsm.kernel.transcript.Transcript`.
+        keep: how many lines are kept to be shown.
+    """
+
+    def __init__(  # noqa: PLR0913 - all but the first two have a default
+        self,
+        system: System,
+        head: Head,
+        automaton: Automaton | None = None,
+        *,
+        readings: Mapping[str, str] | None = None,
+        fingerprint: Callable[[JSON], Hashable] = repr,
+        lost: frozenset[int] = frozenset(),
+        keep: int = KEPT,
+    ) -> None:
+        self.system = system
+        self.head = head
+        unknown = [drive for drive in head.drives if drive not in system.spec.drives]
+        if unknown:
+            message = f"drives: {system.name} has no {unknown[0]!r}; it has {', '.join(system.spec.drives)}"
+            raise UnreadableError(message)
+        self.automaton = automaton or Automaton(
+            system.spec, head.drives, constrain(system.spec.ambiguities, readings or {})
+        )
+        self.belief = Belief(self.automaton, system.codec.world(head.world))
+        self.transcript = Transcript(system.codec, fingerprint, lost)
+        self.lines: deque[JSON] = deque(maxlen=keep)
+        self.read = 0
+        self.events = 0
+        self.succeeded = 0
+        self.violation: Violation | None = None
+        self.exhausted = False
+        self._calls: dict[Any, Any] = {}
+
+    def feed(self, line: JSON) -> bool:
+        """Take a line into account; False once the verdict cannot get better.
+
+        Raises:
+            UnreadableError: the line is not of the format.
+        """
+        events = self.transcript.read(line)
+        self.lines.append(line)
+        self.read += 1
+        return all(self._take(event) for event in events)
+
+    def _take(self, event: Event) -> bool:
+        if self.violation or self.exhausted:
+            return False
+        self.events += 1
+        kind = type(event)
+        if kind is Called:
+            self._calls[event.call] = event.request  # type: ignore[union-attr]
+        try:
+            explained = self.belief.observe(event)
+        except ExhaustedError:
+            self.exhausted = True
+            return False
+        if not explained:
+            found = violation(self.belief, event, self._calls)
+            self.violation = Violation(
+                found.rules, found.observed, found.expected, found.notes, self.history, self.read + 1
+            )
+            return False
+        if kind is Returned:
+            self._calls.pop(event.call, None)  # type: ignore[union-attr]
+            self.succeeded += event.answer.code == OK  # type: ignore[union-attr]
+        return True
+
+    @property
+    def history(self) -> tuple[JSON, ...]:
+        """The lines that were read, the first line before them; of a long history only the last ones."""
+        first = {"missionfsm": 1, "system": self.head.system, "world": self.head.world}
+        if self.head.drives:
+            first["drives"] = list(self.head.drives)
+        return (first, *self.lines)
+
+    def verdict(self) -> Verdict:
+        """The judgement of what was fed so far."""
+        outcome, because = Outcome.CONFORMS, ""
+        if self.violation:
+            outcome = Outcome.VIOLATES
+        elif self.exhausted:
+            outcome, because = Outcome.INCONCLUSIVE, f"event {self.events} has too many explanations to decide"
+        elif not self.exercised:
+            outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
+        return Verdict(
+            outcome,
+            self.system.name,
+            events=self.events,
+            readings=self.belief.readings,
+            exercised=self.exercised,
+            uncovered=uncovered(self.system.spec, self.exercised),
+            violation=self.violation,
+            because=because,
+            flagged=flagged(self.system.spec, self.belief.readings),
+        )
+
+    @property
+    def exercised(self) -> dict[str, int]:
+        """How often each rule was exercised in the automaton that is walked."""
+        return self.automaton.exercised
+
+
+def uncovered(spec: Spec, exercised: Mapping[str, int]) -> tuple[str, ...]:
+    """The ids of the rules that were not exercised."""
+    return tuple(rule.id for rule in spec.all_rules if rule.id not in exercised)
+
+
+def flagged(spec: Spec, readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
+    """The readings followed for certain that depart from the letter of the text."""
+    return tuple(
+        f"{ambiguity.id}={letters[0]}: {ambiguity.question} {ambiguity.readings[letters[0]]}"
+        for ambiguity in spec.ambiguities
+        if (letters := readings.get(ambiguity.id, ())) and set(letters) <= ambiguity.flagged
+    )
+
+
+def check(system: System, head: Head, lines: Iterable[JSON], **options: Any) -> Verdict:  # noqa: ANN401 - see Judge
+    """Judge a whole history. Raises UnreadableError for a line that is not of the format."""
+    judge = Judge(system, head, **options)
+    for line in lines:
+        if not judge.feed(line):
+            break
+    return judge.verdict()

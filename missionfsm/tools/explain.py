@@ -1,0 +1,204 @@
+"""Why nothing explains an event, in words: what was allowed in its place, by which rule, in which document."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.belief import Belief
+from missionfsm.kernel.explanation import Explanation
+from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE, ExhaustedError, Oracle
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.tools.verdict import Allowed, Broken, Violation
+
+MOST = 12
+"""How many alternatives a person is shown."""
+
+
+def told(spec: Spec, rule_ids: Iterable[str]) -> tuple[Broken, ...]:
+    """Rules as a person is told them, each once."""
+    known = spec.rules_by_id
+    found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
+    return tuple(Broken(rule.id, rule.says, str(rule.cite)) for rule in found)
+
+
+def event_words(spec: Spec, event: Event) -> str:
+    """An event in a few words."""
+    if isinstance(event, Called):
+        return spec.describe(event.request)
+    if isinstance(event, Returned):
+        return "answered " + answer_words(event.answer, tuple(map(str, event.names)))
+    if isinstance(event, Received):
+        return f"{_channel(event.channel)} showed {spec.describe(event.content)}"
+    if isinstance(event, Ended):
+        return f"{_channel(event.channel)} ended" + (f" with {event.code}" if event.code != OK else " cleanly")
+    if isinstance(event, Driven):
+        return spec.describe(event.event)
+    return "everything settled" if isinstance(event, Settled) else "a stream was cancelled"
+
+
+def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
+    """An answer with its names."""
+    return f"{answer}{' ' + ', '.join(names) if names else ''}"
+
+
+def _channel(name: Any) -> str:  # noqa: ANN401 - a name
+    return " ".join(map(str, name)) if isinstance(name, tuple) else str(name)
+
+
+@frozen
+class _Option:
+    what: str
+    rules: tuple[str, ...]
+    assumes: tuple[str, ...]
+
+
+def violation(belief: Belief, event: Event, calls: dict[Any, Any]) -> Violation:
+    """What is wrong with the event that left a belief without explanations.
+
+    Args:
+        calls: the requests of the calls that are in flight, by the name of the call.
+    """
+    spec, oracle = belief.automaton.spec, belief.automaton.oracle
+    oracle.reset()
+    observed = event_words(spec, event)
+    if isinstance(event, Returned):
+        if event.call in calls:
+            observed = f"{spec.describe(calls[event.call])} was {observed}"
+        options = list(_answers(belief, oracle, event))
+        rules, notes = _against_answer(spec, event, options, calls.get(event.call))
+    elif isinstance(event, Received):
+        options, rules, notes = _against_message(belief, oracle, event)
+    elif isinstance(event, Settled):
+        options, rules, notes = _still_due(belief, oracle)
+    else:
+        options, rules, notes = [], [], ()
+    merged: dict[str, _Option] = {}
+    for option in options:
+        before = merged.get(option.what)
+        if before is None or len(option.assumes) < len(before.assumes):
+            merged[option.what] = option
+    expected = tuple(
+        Allowed(option.what, told(spec, option.rules), option.assumes) for option in list(merged.values())[:MOST]
+    )
+    return Violation(told(spec, rules), observed, expected, tuple(dict.fromkeys(notes))[:MOST])
+
+
+def _reachable(oracle: Oracle, explanation: Explanation, besides: int | None = None) -> Iterator[Explanation]:
+    try:
+        for sighting in oracle.closure(explanation, besides):
+            yield sighting.explanation
+    except ExhaustedError:
+        return
+
+
+def _answers(belief: Belief, oracle: Oracle, event: Returned) -> Iterator[_Option]:
+    number = belief.symbol(event)[0][3]
+    for explanation in belief.node.explanations:
+        for here in _reachable(oracle, explanation, besides=number):
+            call = next((one for one in here.calls if one.name == number), None)
+            if call is None:
+                continue
+            if call.done:
+                yield _Option(_known(belief, call.done.answer, call.done.names), call.done.rules, ())
+                continue
+            refs = tuple(here.ref(arg) for arg in call.args)
+            for step in oracle.outcomes(here.state, call.request, refs):
+                if step.answer is None or step.label == SPONTANEOUS_FAILURE:
+                    continue
+                if not _compatible(here, step.assumes):
+                    continue
+                names = tuple(here.names[ref] if ref < len(here.names) else -2 for ref in step.refs)
+                yield _Option(_known(belief, step.answer, names), step.rules, tuple(map(str, step.assumes)))
+
+
+def _compatible(here: Explanation, assumes: tuple[Assumption, ...]) -> bool:
+    return all(here.assumed & one.group & one.keeps for one in assumes)
+
+
+def _known(belief: Belief, answer: Answer, names: tuple[int, ...]) -> str:
+    said = tuple(str(belief.name(name) or "a new name") for name in names)
+    return answer_words(answer, said)
+
+
+def _against_answer(
+    spec: Spec, event: Returned, options: list[_Option], request: Any  # noqa: ANN401 - of any system
+) -> tuple[list[str], tuple[str, ...]]:
+    codes = {option.what.split(" ")[0] for option in options}
+    code = event.answer.code
+    if code in codes:
+        note = "the code is right, the names in the answer are not"
+        if event.answer.shape is not None:
+            note = f"the result is malformed: {event.answer.shape}"
+        return [rule for option in options if option.what.startswith(code) for rule in option.rules], (note,)
+    rules = [rule for option in options for rule in option.rules]
+    if code != OK and request is not None:
+        operation = spec.operations[spec.request_operation(request)]
+        mine = [rule for rule in operation.refusals if rule.code == code]
+        if not mine:
+            return rules, (f"{code} is not documented for {operation.name}",)
+        conditions = "; ".join(dict.fromkeys(rule.says for rule in mine[:4]))
+        return rules + [rule.id for rule in mine], (f"{code} needs a reason, and none holds: {conditions}",)
+    return rules, ()
+
+
+def _against_message(
+    belief: Belief, oracle: Oracle, event: Received
+) -> tuple[list[_Option], list[str], tuple[str, ...]]:
+    spec = belief.automaton.spec
+    symbol, _ = belief.symbol(event)
+    _, content, _, relations, channel_name = symbol
+    options: list[_Option] = []
+    rules: list[str] = []
+    notes: list[str] = []
+    for relation in relations:
+        wrong = spec.sequence(relation)
+        if isinstance(wrong, Mismatch):
+            return [], [wrong.rule], (wrong.says,)
+    for explanation in belief.node.explanations:
+        found = False
+        for here in _reachable(oracle, explanation):
+            for channel in here.channels:
+                if channel.name != channel_name and channel.name >= 0:
+                    continue
+                found = True
+                for owed in channel.owed:
+                    options.append(_Option(spec.describe(owed.view), (), ()))
+                    matched = oracle.matches(owed, content)
+                    if isinstance(matched, Mismatch):
+                        rules.append(matched.rule)
+                        notes.append(matched.says)
+                    else:
+                        notes.append("the content is right, the names in it or the readings that it follows are not")
+                if not channel.owed:
+                    notes.append("the stream has nothing to show: nothing changed since its last message")
+            if len(options) > MOST:
+                break
+        if not found:
+            notes.append(f"{_channel(event.channel)} is not open")
+    return options, rules, tuple(notes)
+
+
+def _still_due(belief: Belief, oracle: Oracle) -> tuple[list[_Option], list[str], tuple[str, ...]]:
+    spec = belief.automaton.spec
+    options: list[_Option] = []
+    notes: list[str] = []
+    rules: list[str] = []
+    for explanation in belief.node.explanations:
+        for here in _reachable(oracle, explanation):
+            for channel in here.channels:
+                due = [owed for owed in channel.owed if not owed.passing]
+                if due:
+                    name = belief.name(channel.name)
+                    where = _channel(name) if name else "a stream"
+                    options.append(_Option(f"{where} shows {spec.describe(due[-1].view)}", (), ()))
+                    notes.append(f"{where} did not show {spec.describe(due[-1].view)}")
+            if len(options) > MOST:
+                break
+    rules += [rule.id for rule in spec.rules if rule.id.endswith("updates-follow-the-state")]
+    return options, rules, tuple(notes[:3])

@@ -1,0 +1,219 @@
+"""The deterministic reference of a spec: what one implementation does that follows one choice of readings.
+
+A `Snapshot` is an immutable value: a state, the names it has given out, its open channels. A `Model` computes from a
+snapshot and what is asked of it the next snapshot and everything that an observer sees. It keeps nothing but a memo.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.history import Answer, Name
+from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
+from missionfsm.kernel.readings import choose, meet
+from missionfsm.kernel.spec import Emission, Mismatch, Step
+from missionfsm.kernel.system import System
+
+
+@frozen
+class Open:
+    """An open channel."""
+
+    name: Name
+    topic: Hashable
+
+
+@frozen
+class Sent:
+    """A message that a channel of a topic shows: its number, the view and the names in it."""
+
+    channel: Name
+    topic: Hashable
+    number: int
+    view: Any
+    names: tuple[Name, ...]
+
+
+@frozen
+class Snapshot:
+    """Where the reference stands.
+
+    Attributes:
+        names: those of the state, in its order.
+        minted: how many names have been given out.
+        numbered: how many messages have been numbered.
+    """
+
+    state: Any
+    names: tuple[Name, ...] = ()
+    channels: tuple[Open, ...] = ()
+    minted: int = 0
+    numbered: int = 0
+
+
+@frozen
+class Reply:
+    """What comes of something: the answer (None for a drive), its names, the messages in order, and why.
+
+    `happened` is False for a drive that does not apply.
+    """
+
+    answer: Answer | None
+    names: tuple[Name, ...] = ()
+    sent: tuple[Sent, ...] = ()
+    rules: tuple[str, ...] = ()
+    happened: bool = True
+
+
+def mission_name(serial: int) -> Name:
+    """The names that the reference gives out, unless it is told otherwise."""
+    return f"mission-{serial}"
+
+
+class Model:
+    """The reference of a system under one choice of readings.
+
+    Args:
+        system: the system.
+        choice: ambiguity id to letter; the others follow their defaults.
+        mint: serial number to a name that was never given out.
+
+    Raises:
+        ValueError: `choice` names an ambiguity or a letter that does not exist.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        choice: Mapping[str, str] | None = None,
+        mint: Callable[[int], Name] = mission_name,
+    ) -> None:
+        self.system = system
+        self.choice = choose(system.spec.ambiguities, choice)
+        self._mint = mint
+        self._chosen: dict[Any, Step | None] = {}
+
+    def start(self, world: object) -> Snapshot:
+        """A fresh instance in a world."""
+        state = self.system.spec.initial(world)
+        named, minted = self._names(self.system.spec.names(state), 0)
+        return self._settle(Snapshot(state, named, minted=minted), [])[0]
+
+    def _names(self, count: int, minted: int) -> tuple[tuple[Name, ...], int]:
+        return tuple(self._mint(minted + 1 + index) for index in range(count)), minted + count
+
+    def call(self, here: Snapshot, request: object, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
+        """Ask something: the snapshot after it and what comes of it."""
+        refs = tuple(here.names.index(name) if name in here.names else None for name in names)
+        step = self.outcome(here.state, request, refs)
+        after, sent, mentioned = self._take(here, step, ())
+        after, sent = self._settle(after, sent)
+        return after, Reply(step.answer, mentioned, tuple(sent), step.rules)
+
+    def outcome(self, state: Any, request: object, refs: tuple[int | None, ...] = ()) -> Step:  # noqa: ANN401
+        """What the reference answers in a state: the first outcome that its readings allow."""
+        key = (state, request, refs)
+        step = self._chosen.get(key)
+        if step is None:
+            step = self._choose(self.system.spec.outcomes(state, request, refs))
+            if step is None:
+                message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
+                raise AssertionError(message)
+            self._chosen[key] = step
+        return step
+
+    def drive(self, here: Snapshot, event: Any, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:  # noqa: ANN401
+        """Make something happen; the reply says whether it applied."""
+        refs = tuple(here.names.index(name) if name in here.names else None for name in names)
+        step = self._choose(self.system.spec.drives[event.name].steps(here.state, event, refs))
+        if step is None:
+            return here, Reply(None, happened=False)
+        after, sent, _ = self._take(here, step, names)
+        after, sent = self._settle(after, sent)
+        return after, Reply(None, (), tuple(sent), step.rules)
+
+    def cancel(self, here: Snapshot, channel: Name) -> Snapshot:
+        """Give a stream up; one that does not exist is no error."""
+        return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
+
+    def _choose(self, steps: tuple[Step, ...]) -> Step | None:
+        return next(
+            (step for step in steps if step.label != SPONTANEOUS_FAILURE and meet(self.choice, step.assumes)), None
+        )
+
+    def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
+        """Take everything urgent at once."""
+        while True:
+            step = self._choose(self.system.spec.urgent(here.state))
+            if step is None:
+                return here, self._delivered(sent)
+            here, more, _ = self._take(here, step, ())
+            sent = sent + more
+
+    def _take(
+        self, here: Snapshot, step: Step, given: tuple[Name, ...]
+    ) -> tuple[Snapshot, list[Sent], tuple[Name, ...]]:
+        streams = [one.ref for one in step.opens]
+        highest = max((*(step.names or ()), *step.refs, *streams, len(here.names) - 1))
+        pool = list(here.names)
+        minted = here.minted
+        for ref in range(len(pool), highest + 1):
+            minted += 1
+            pool.append(("stream", minted) if ref in streams else self._mint(minted))
+        pool += reversed(given)
+        names = here.names if step.names is None else tuple(pool[ref] for ref in step.names)
+        after = evolve(here, state=step.after, names=names, minted=minted)
+        if step.closes:
+            after = evolve(after, channels=tuple(one for one in after.channels if one.topic not in step.closes))
+        sent: list[Sent] = []
+        passing = bool(self._choose(self.system.spec.urgent(step.after))) if step.emits else False
+        for emission in step.emits:
+            for channel in after.channels:
+                if self.system.spec.concerns(channel.topic, emission.topic):
+                    after = self._send(after, channel, emission, pool, sent, passing=passing)
+        for opening in step.opens:
+            channel = Open(pool[opening.ref], opening.topic)
+            after = evolve(after, channels=(*after.channels, channel))
+            for emission in opening.owed:
+                after = self._send(after, channel, emission, pool, sent, passing=False)
+        return after, sent, tuple(pool[ref] for ref in step.refs)
+
+    def _send(  # noqa: PLR0913 - what a message is made of
+        self,
+        here: Snapshot,
+        channel: Open,
+        emission: Emission,
+        pool: list[Name],
+        sent: list[Sent],
+        *,
+        passing: bool,
+    ) -> Snapshot:
+        names = here.names if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
+        if emission.only and not meet(self.choice, (emission.only,)):
+            return here
+        if passing and not self._would_show(emission.view, names):
+            return here
+        repeats = self.system.spec.delivery(channel.topic).repeats
+        for _ in range(2 if repeats and meet(self.choice, (repeats,)) else 1):
+            here = evolve(here, numbered=here.numbered + 1)
+            sent.append(Sent(channel.name, channel.topic, here.numbered, emission.view, names))
+        return here
+
+    def _would_show(self, view: object, names: tuple[Name, ...]) -> bool:
+        """Whether the readings allow that a state which does not last is shown."""
+        codec = self.system.codec
+        message = codec.write_message(view, names, self.choice, 1, 0.0)
+        matches = self.system.spec.matches(view, codec.content(codec.strip(message)[0][2]))
+        return not isinstance(matches, Mismatch) and any(meet(self.choice, match.assumes) for match in matches)
+
+    def _delivered(self, sent: list[Sent]) -> list[Sent]:
+        """What is really sent of what was caused at once: under some readings only the latest."""
+        last = {one.channel: one for one in sent}
+        return [one for one in sent if last[one.channel] is one or not self._skips(one.topic)]
+
+    def _skips(self, topic: Hashable) -> bool:
+        skips = self.system.spec.delivery(topic).skips
+        return bool(skips and meet(self.choice, (skips,)))

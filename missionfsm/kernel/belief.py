@@ -8,11 +8,10 @@ the order in which the explanations mention them, so that the same situation wit
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Hashable, Iterable
 from typing import Any
 
-from attrs import define, field
+from attrs import define, evolve, field
 
 from missionfsm.kernel.explanation import GONE, Explanation, rename
 from missionfsm.kernel.history import (
@@ -102,10 +101,13 @@ class Automaton:
         sightings = self.oracle.step(node.explanations, kind, *what)
         explanations = tuple(sighting.explanation for sighting in sightings)
         new = surviving_names(explanations)
+        retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
+        if retired:
+            left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
+            explanations = tuple(evolve(one, gone=left[id(one)]) for one in explanations)
         numbered = tuple(rename(one, new) for one in explanations)
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)
-        gone = [number for one in node.explanations for number in one.names if number > GONE and number not in new]
         touched = 0
         for ambiguity in self.spec.ambiguities:
             before = {one.assumed & ambiguity.group for one in node.explanations}
@@ -114,8 +116,8 @@ class Automaton:
                 touched |= ambiguity.group
         edge = Edge(
             next_node,
-            None if keep == tuple(range(node.width)) else keep,
-            tuple(dict.fromkeys(gone)),
+            None if keep == tuple(range(node.width)) and not retired else keep,
+            retired,
             tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules)),
             touched,
         )
@@ -146,7 +148,7 @@ class Belief:
     had explanations.
     """
 
-    __slots__ = ("_marks", "_names", "_numbers", "_retired", "_retired_order", "automaton", "broken", "node", "touched")
+    __slots__ = ("_given_up", "_marks", "_names", "_numbers", "_retired", "automaton", "broken", "node", "touched")
 
     def __init__(self, automaton: Automaton, world: object) -> None:
         self.automaton = automaton
@@ -155,8 +157,8 @@ class Belief:
         self.touched = 0
         self._names: list[Name] = []
         self._numbers: dict[Name, int] = {}
-        self._retired: set[Name] = set()
-        self._retired_order: deque[Name] = deque()
+        self._retired: dict[Name, None] = {}
+        self._given_up: dict[Name, None] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
 
     def observe(self, event: Event) -> bool:
@@ -168,8 +170,8 @@ class Belief:
         if self.broken:
             return False
         kind = type(event)
-        if kind is Received and event.channel not in self._numbers and event.channel in self._retired:  # type: ignore[union-attr]
-            return True  # what still comes on a stream that was given up
+        if (kind is Received or kind is Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
+            return True  # what still comes on a stream that was given up means nothing
         symbol, new = self.symbol(event)
         edge = self.node.next.get(symbol)
         if edge is None:
@@ -180,7 +182,10 @@ class Belief:
             return False
         self._walk(edge, new)
         if kind is Cancelled:
-            self._retire(event.channel)  # type: ignore[union-attr]
+            self._given_up[event.channel] = None  # type: ignore[union-attr]
+            self._marks.pop(event.channel, None)  # type: ignore[union-attr]
+            if len(self._given_up) > REMEMBERED:
+                del self._given_up[next(iter(self._given_up))]
         return True
 
     def symbol(self, event: Event) -> tuple[tuple[Any, ...], list[Name]]:
@@ -203,7 +208,8 @@ class Belief:
             relations = self._relations(event.channel, event.marks) if event.marks else ()
             return (Received, event.content, self._number(event.names, new), relations, channel), new
         if type(event) is Ended:
-            return (Ended, event.code, numbers.get(event.channel, GONE)), new
+            (channel,) = self._number((event.channel,), new)
+            return (Ended, event.code, channel), new
         if type(event) is Cancelled:
             return (Cancelled, numbers.get(event.channel, GONE)), new
         message = f"not an event: {event!r}"
@@ -244,11 +250,10 @@ class Belief:
         self._numbers = {name: number for number, name in enumerate(self._names)}
 
     def _retire(self, name: Name) -> None:
-        self._retired.add(name)
-        self._retired_order.append(name)
+        self._retired[name] = None
         self._marks.pop(name, None)
-        if len(self._retired_order) > REMEMBERED:
-            self._retired.discard(self._retired_order.popleft())
+        if len(self._retired) > REMEMBERED:
+            del self._retired[next(iter(self._retired))]
 
     def name(self, number: int) -> Name | None:
         """The observed name with a number, or None for one that nobody has seen."""

@@ -82,6 +82,8 @@ class Explanation:
     calls: tuple[InFlight, ...] = ()
     lost: Lost = ()
     channels: tuple[Channel, ...] = ()
+    gone: Names = ()
+    """Observed names, sorted, whose things are no more: nothing else can have them."""
 
     def ref(self, name: int) -> int | None:
         """The position of a name among those of the state."""
@@ -152,6 +154,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
             )
             for channel in explanation.channels
         ),
+        tuple(sorted(each(explanation.gone))),
     )
 
 
@@ -179,10 +182,21 @@ def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explana
         if held is None:
             held = set(explanation.names)
             held.update(channel.name for channel in explanation.channels)
-        if observed in held or observed in new.values() or observed == GONE:
+        if observed in held or observed in new.values() or observed in explanation.gone or observed == GONE:
             return None
         new[own] = observed
-    return rename(explanation, new) if new else explanation
+    if not new:
+        return explanation
+    left = set(explanation.names)
+    left.update(channel.name for channel in explanation.channels)
+    lapsed = [observed for own, observed in new.items() if own not in left]
+    bound = rename(explanation, new)
+    return evolve(bound, gone=outlived(bound, lapsed)) if lapsed else bound
+
+
+def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
+    """The names that are gone once the things with these are no more."""
+    return tuple(sorted({*explanation.gone, *(name for name in names if name > GONE)}))
 
 
 def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
@@ -218,8 +232,12 @@ def take(
         # References below zero count from the front of what was given: -1 is the first.
         pool = (*pool, *reversed(given))
     names = explanation.names if step.names is None else tuple(pool[ref] for ref in step.names)
+    gone = explanation.gone
+    if step.names is not None and any(name > GONE and name not in names for name in explanation.names):
+        gone = outlived(explanation, (name for name in explanation.names if name not in names))
     channels = explanation.channels
     if step.closes:
+        gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.closes and one.name > GONE)}))
         channels = tuple(channel for channel in channels if channel.topic not in step.closes)
     if step.emits:
         channels = tuple(
@@ -249,7 +267,7 @@ def take(
                 for one in step.opens
             ),
         )
-    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels)
+    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
     return after, tuple(pool[ref] for ref in step.refs)
 
 

@@ -22,6 +22,7 @@ from missionfsm.kernel.explanation import (
     Ready,
     changes,
     mentioned,
+    outlived,
     take,
     tidy,
     unify,
@@ -150,6 +151,14 @@ class Oracle:
             if step.answer is not None and step.applied and not changes(explanation, step):
                 yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
 
+    def _late_answers(
+        self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]
+    ) -> Iterator[Ready]:
+        """What a call may be answered that is given up although it takes effect, now or later."""
+        for step in self.outcomes(explanation.state, call.request, refs):
+            if step.answer is not None and not step.applied:
+                yield Ready(step.answer, (), step.assumes, step.rules)
+
     def _addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
         """The explanation with the positions of a request's names.
 
@@ -201,7 +210,8 @@ class Oracle:
                     after, names = taken
                     done = Ready(step.answer, names, (), step.rules)
                     calls = list(after.calls)
-                    calls[position] = InFlight(calls[position].name, calls[position].request, (), (), done)
+                    late = () if step.opens else tuple(self._late_answers(where, where.calls[position], refs))
+                    calls[position] = InFlight(calls[position].name, calls[position].request, (), late, done)
                     yield Sighting(tidy(evolve(after, calls=tuple(calls))), step.rules)
 
     def closure(self, start: Explanation, besides: int | None = None) -> Iterator[Sighting]:
@@ -284,12 +294,13 @@ class Oracle:
                 bound = unify(rest, _pairs(call.done.answer, call.done.names, names))
                 if bound:
                     yield bound, ()
-            return
         for ready in call.ready:
             assumed = meet(rest.assumed, ready.assumes) if ready.answer == answer else 0
             bound = unify(rest, _pairs(ready.answer, ready.names, names)) if assumed else None
             if bound:
                 yield evolve(bound, assumed=assumed), ready.rules
+        if call.done:
+            return
         for where, refs in self._addressed(rest, call.args):
             for step in self.outcomes(where.state, call.request, refs):
                 if step.answer != answer or len(step.refs) != len(names):
@@ -390,17 +401,25 @@ class Oracle:
         return evolve(explanation, assumed=assumed, channels=tuple(channels)) if assumed else None
 
     def _ended(self, explanation: Explanation, code: str, name: int) -> Iterator[Sighting]:
-        for position, channel in enumerate(explanation.channels):
-            if channel.name == name or channel.name < GONE:
-                assumes = self.spec.delivery(channel.topic).ends.get(code)
-                assumed = meet(explanation.assumed, assumes) if assumes is not None else 0
-                if assumed:
-                    rest = (*explanation.channels[:position], *explanation.channels[position + 1 :])
-                    yield Sighting(tidy(evolve(explanation, assumed=assumed, channels=rest)))
+        # A stream that nothing is known of yet is that of a call whose answer has not come.
+        known = name in _channel_names(explanation)
+        for sighting in (Sighting(explanation),) if known else self.closure(explanation):
+            here = sighting.explanation
+            for position, channel in enumerate(here.channels):
+                if channel.name == name or (not known and channel.name < GONE):
+                    assumes = self.spec.delivery(channel.topic).ends.get(code)
+                    assumed = meet(here.assumed, assumes) if assumes is not None else 0
+                    bound = unify(here, [(channel.name, name)]) if assumed else None
+                    if bound:
+                        rest = (*bound.channels[:position], *bound.channels[position + 1 :])
+                        ended = evolve(bound, assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
+                        yield Sighting(tidy(ended), sighting.rules)
 
     def _cancelled(self, explanation: Explanation, name: int) -> Iterator[Sighting]:
         rest = tuple(channel for channel in explanation.channels if channel.name != name)
-        yield Sighting(tidy(evolve(explanation, channels=rest)))
+        if len(rest) < len(explanation.channels):
+            explanation = evolve(explanation, channels=rest, gone=outlived(explanation, (name,)))
+        yield Sighting(tidy(explanation))
 
     def _driven(self, explanation: Explanation, event: Hashable, names: Names) -> Iterator[Sighting]:
         drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
@@ -412,21 +431,21 @@ class Oracle:
                     yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
 
     def _settled(self, explanation: Explanation) -> Iterator[Sighting]:
-        todo, seen = [Sighting(explanation)], {explanation}
+        # What is urgent need not be what happened: a call or the surroundings may have come before it.
+        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
+        todo = [Sighting(explanation)]
         while todo:
-            sighting = todo.pop()
-            steps = self.urgent(sighting.explanation.state)
-            if not steps:
-                rest = self._nothing_owed(sighting.explanation)
+            later: list[Sighting] = []
+            for sighting in todo:
+                here = sighting.explanation
+                if self._outdone(seen, here):
+                    continue
+                rest = None if self.urgent(here.state) else self._nothing_owed(here)
                 if rest:
                     yield Sighting(rest, sighting.rules)
-                continue
-            for step in steps:
-                for one in self._sight(sighting.explanation, step):
-                    if one.explanation not in seen:
-                        self._spend()
-                        seen.add(one.explanation)
-                        todo.append(Sighting(one.explanation, sighting.rules + one.rules))
+                if rest is None or rest.assumed != here.assumed:
+                    later += (Sighting(one.explanation, sighting.rules + one.rules) for one in self.silent(here))
+            todo = later
 
     def _nothing_owed(self, explanation: Explanation) -> Explanation | None:
         """The explanation in which every channel has shown where things stand, or None if one has not."""
@@ -522,8 +541,14 @@ def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
 
 
 def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:
-    """New numbers for the observed names that are still carried, in the order of first mention."""
+    """New numbers for the observed names that are still carried, in the order of first mention.
+
+    A name that is gone in some explanations and was never anything's in others is carried on as well.
+    """
+    explanations = tuple(explanations)
     seen = dict.fromkeys(name for one in explanations for name in mentioned(one) if name > GONE)
+    outlasted = (name for one in explanations for name in one.gone)
+    seen.update(dict.fromkeys(name for name in outlasted if not all(name in one.gone for one in explanations)))
     return {name: number for number, name in enumerate(seen)}
 
 

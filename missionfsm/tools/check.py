@@ -6,6 +6,8 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
+from attrs import evolve
+
 from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event, Returned
@@ -59,8 +61,9 @@ class Judge:
         self.read = 0
         self.events = 0
         self.succeeded = 0
-        self.violation: Violation | None = None
         self.exhausted = False
+        self._unexplained: Event | None = None
+        self._violation: Violation | None = None
         self._calls: dict[Any, Any] = {}
 
     def feed(self, line: JSON) -> bool:
@@ -75,7 +78,7 @@ class Judge:
         return all(self._take(event) for event in events)
 
     def _take(self, event: Event) -> bool:
-        if self.violation or self.exhausted:
+        if not self.right:
             return False
         self.events += 1
         kind = type(event)
@@ -87,15 +90,25 @@ class Judge:
             self.exhausted = True
             return False
         if not explained:
-            found = violation(self.belief, event, self._calls)
-            self.violation = Violation(
-                found.rules, found.observed, found.expected, found.notes, self.history, self.read + 1
-            )
+            self._unexplained = event
             return False
         if kind is Returned:
             self._calls.pop(event.call, None)  # type: ignore[union-attr]
             self.succeeded += event.answer.code == OK  # type: ignore[union-attr]
         return True
+
+    @property
+    def right(self) -> bool:
+        """Whether everything so far is explained, within the budget."""
+        return self._unexplained is None and not self.exhausted
+
+    @property
+    def violation(self) -> Violation | None:
+        """What is wrong with the event that nothing explains; put into words when it is asked for."""
+        if self._unexplained is not None and self._violation is None:
+            found = violation(self.belief, self._unexplained, self._calls)
+            self._violation = evolve(found, history=self.history, at=self.read + 1)
+        return self._violation
 
     @property
     def history(self) -> tuple[JSON, ...]:
@@ -108,7 +121,7 @@ class Judge:
     def verdict(self) -> Verdict:
         """The judgement of what was fed so far."""
         outcome, because = Outcome.CONFORMS, ""
-        if self.violation:
+        if self._unexplained is not None:
             outcome = Outcome.VIOLATES
         elif self.exhausted:
             outcome, because = Outcome.INCONCLUSIVE, f"event {self.events} has too many explanations to decide"

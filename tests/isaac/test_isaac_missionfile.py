@@ -128,6 +128,14 @@ def test_isaac_file_a_mission_for_nobody_is_a_reading() -> None:
     assert parse(of({}), DOCUMENTED.choosing("AI-19", "a")) == MissionFile((MissionEntry(None),))
 
 
+def test_isaac_file_a_blank_name_is_one_unless_names_are_trimmed() -> None:
+    """Taken exactly, a blank is a name; trimmed, it is none."""
+    assert parse(of({"robot": " "})) == MissionFile((MissionEntry(" "),))
+    assert problems(of({"robot": " "}), DOCUMENTED.choosing("AI-37", "b")) == [
+        'missions[0].robot: " " is no name that a robot can have'
+    ]
+
+
 def test_isaac_file_a_byte_order_mark_is_no_matter() -> None:
     """Editors that put one there are forgiven."""
     assert parse(b"\xef\xbb\xbf" + of().encode()) == MissionFile(())

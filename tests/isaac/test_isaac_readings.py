@@ -357,8 +357,13 @@ def test_isaac_reading_18_b_statuses_before_the_name_are_kept() -> None:
     server.add()
     server.drop(1)
     server.connect(2)
-    server.report(2, 0, RUNNING, *[RUNNING] * 62, SUCCESS, FAILURE)
+    server.report(2, 0, *[RUNNING] * 64, SUCCESS)
     server.hear(2, says_name("r"))
+    assert server.statuses() == ["RUNNING"]
+    server.drop(2)
+    server.connect(3)
+    server.report(3, 0, *[RUNNING] * 63, SUCCESS)
+    server.hear(3, says_name("r"))
     assert server.statuses() == ["SUCCESS"]
 
 

@@ -223,7 +223,7 @@ def test_isaac_an_error_does_not_stop_the_lines_after_it() -> None:
 def test_isaac_a_line_at_the_limit_is_read_and_one_beyond_is_not() -> None:
     """The limit counts the bytes before the LF."""
     text = encode(Message(Header("name"), TextProto("r")))
-    assert len(Decoder(limit=len(text) - 1).feed(text)) == 1
+    assert Decoder(limit=len(text) - 1).feed(text) == [Message(Header("name"), TextProto("r"))]
     assert Decoder(limit=len(text) - 2).feed(text) == [
         WireError(1, len(text) - 2, "", f"the line is longer than {len(text) - 2} bytes", "framing")
     ]

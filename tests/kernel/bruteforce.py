@@ -204,6 +204,8 @@ class World:
                         yield from self._bound(rest, ([*zip(call.things, order, strict=True)] for order in orders))
             case Received():
                 yield from self.received(here, event, relations)
+            case Ended(channel, _) if channel in here.given_up:
+                yield here
             case Ended(channel, code):
                 for stream in here.streams:
                     assumes = self.spec.delivery(stream.topic).ends.get(code)
@@ -319,6 +321,16 @@ class BruteForce:
             for world, closed in self.closed.items()
         }
         return {world: start for world, start in left.items() if start}
+
+    def explains(self, event: Event) -> bool:
+        """Whether the event would leave anything."""
+        relations = self._relations(event)
+        return any(
+            True
+            for world, closed in self.closed.items()
+            for here in closed
+            for _ in world.observe(here, event, relations)
+        )
 
     def observe(self, event: Event) -> bool:
         """Take an event into account; whether anything explains it."""

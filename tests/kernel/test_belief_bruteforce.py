@@ -75,9 +75,9 @@ _TICKET_REQUESTS = {
     ("watch",): (0, ((Answer(OK), -1),)),
 }
 _BOARDS = (((), 0), (("red",), 1), (("blue",), 1), (("red", "blue"), 2), (("blue", "red"), 2), (("red", "red"), 2))
-PLAIN = Alphabet("plain tickets", PLAIN_TICKETS, ((), ("red",), ("red", "blue")), _TICKET_REQUESTS, _BOARDS)
-SERVED = Alphabet("tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, calls=2)
-DRIVEN = Alphabet("driven tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, (Event("serve"),))
+PLAIN = Alphabet("plain tickets", PLAIN_TICKETS, ((),), _TICKET_REQUESTS, _BOARDS)
+SERVED = Alphabet("tickets", TICKETS, ((),), _TICKET_REQUESTS, _BOARDS, calls=3)
+DRIVEN = Alphabet("driven tickets", TICKETS, ((),), _TICKET_REQUESTS, _BOARDS, (Event("serve"),))
 
 _LAMP_REQUESTS = {
     ("press",): (0, (*_answers((FAILED_PRECONDITION, UNAVAILABLE), None), DEADLINE)),
@@ -103,6 +103,11 @@ class Conversation:
         self.pending: dict[Name, tuple[object, ...]] = {}
         self.seen: dict[Name, None] = {}
 
+    @property
+    def known(self) -> list[Name]:
+        """The names of tickets that were seen: whoever asks for one has seen it."""
+        return [name for name in self.seen if name in NAMES]
+
     def sorts(self) -> list[list[history.Event]]:
         """Every event that may be tried next, by sort."""
         a = self.alphabet
@@ -114,7 +119,7 @@ class Conversation:
                     [
                         Called(name, request, names, lost)
                         for request, (size, _) in a.requests.items()
-                        for names in itertools.permutations(NAMES, size)
+                        for names in itertools.permutations(self.known, size)
                     ]
                 )
         sorts += ([Returned(name, *answer) for answer in self.answers(request)] for name, request in self.pending.items())
@@ -145,7 +150,7 @@ class Conversation:
             del self.pending[event.call]
             self.seen |= dict.fromkeys(event.names)
         elif isinstance(event, Received):
-            self.seen[event.channel] = None
+            self.seen |= dict.fromkeys((event.channel, *event.names))
 
 
 def replayed(alphabet: Alphabet, automaton: Automaton, world: object, events: list[history.Event]) -> Belief:
@@ -154,6 +159,15 @@ def replayed(alphabet: Alphabet, automaton: Automaton, world: object, events: li
     for event in events:
         belief.observe(event)
     return belief
+
+
+def choices(alphabet: Alphabet, belief: Belief) -> set[tuple[str, ...]]:
+    """The full choices of readings that some explanation still allows."""
+    return {
+        choice
+        for one in belief.node.explanations
+        for choice in itertools.product(*(each.possible(one.assumed) for each in alphabet.spec.ambiguities))
+    }
 
 
 def check(alphabet: Alphabet, automaton: Automaton, data: st.DataObject, steps: int = 9) -> None:
@@ -166,7 +180,7 @@ def check(alphabet: Alphabet, automaton: Automaton, data: st.DataObject, steps: 
         sorts = conversation.sorts()
         explained: list[list[history.Event]] = []
         for sort in sorts:
-            right = [event for event in sort if slow.after(event)]
+            right = [event for event in sort if slow.explains(event)]
             fast = [event for event in sort if replayed(alphabet, automaton, world, events).observe(event)]
             assert (events, fast) == (events, right)
             if right:
@@ -177,6 +191,8 @@ def check(alphabet: Alphabet, automaton: Automaton, data: st.DataObject, steps: 
         events.append(event)
         conversation.note(event)
         slow.observe(event)
+        belief = replayed(alphabet, automaton, world, events)
+        assert (events, choices(alphabet, belief)) == (events, slow.choices)
 
 
 ALPHABETS = (REGISTERS, PLAIN, SERVED, DRIVEN, LAMPS, FLAKY)

@@ -185,7 +185,12 @@ TICKETS = spec(
 """``("take", kind)``, ``("drop",)`` and ``("peek",)`` of a ticket, ``("clear",)``, ``("watch",)``; *serve* happens."""
 
 PLAIN_TICKETS = spec(
-    "plain tickets", lambda world: _queue(tuple(world)), _tickets, matches=_in_order, names=len
+    "plain tickets",
+    lambda world: _queue(tuple(world)),
+    _tickets,
+    matches=_in_order,
+    names=len,
+    ambiguities=(LAST_TICKET,),
 )
 """The same, but nobody serves and the board lists the oldest first."""
 

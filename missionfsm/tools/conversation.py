@@ -1,0 +1,188 @@
+"""One conversation with a live implementation, judged as it goes, in a form that can be had again.
+
+What is done is a list of `Action`s. Names are not in it: an action refers to a name by the action that gave it, so that
+the same list makes sense with a fresh instance, and with some of its actions left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import ANY_NAME
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
+from missionfsm.kernel.system import System
+from missionfsm.kernel.transcript import Head, brief
+from missionfsm.tools.check import Judge
+
+PROTOCOL = 1
+WRONG_NAME = "no-such-name"
+
+
+@frozen
+class Introduced:
+    """What an adapter said of itself."""
+
+    name: str
+    drives: tuple[str, ...]
+
+
+def introduce(system: System, subject: Subject) -> Introduced:
+    """Initialize an adapter. Raises SubjectError if what it says is not of the protocol."""
+    exchange = subject.exchange("initialize", {"protocolVersion": PROTOCOL, "system": system.name})
+    result = exchange.result if isinstance(exchange.result, dict) else {}
+    about = result.get("implementation")
+    drives = result.get("drives", [])
+    if not isinstance(about, dict) or not isinstance(about.get("name"), str):
+        message = f"the adapter answered initialize without an implementation name: {brief(exchange.result)}"
+        raise SubjectError(message)
+    if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
+        message = f"the adapter answered initialize with drives {brief(drives)}"
+        raise SubjectError(message)
+    known = tuple(one for one in drives if one in system.spec.drives)
+    version = about.get("version")
+    return Introduced(about["name"] + (f" {version}" if isinstance(version, str) else ""), known)
+
+
+@frozen
+class Given:
+    """A name, as the position-th that the action with a serial number was answered with."""
+
+    by: int
+    position: int
+
+
+@frozen
+class Action:
+    """Something that a tester does.
+
+    Attributes:
+        serial: tells it from the others of its conversation.
+        method: a documented call, or ``drive``, ``settle``, ``cancel``.
+        params: its JSON, with `ANY_NAME` where `name` goes.
+        name: the name that is meant: one that was given, or a text that nothing is called.
+    """
+
+    serial: int
+    method: str
+    params: JSON = None
+    name: Given | str | None = None
+
+
+def filled(params: JSON, name: object) -> JSON:
+    """Params with a name in place of every `ANY_NAME`."""
+    if params == ANY_NAME:
+        return name
+    if isinstance(params, dict):
+        return {key: filled(value, name) for key, value in params.items()}
+    return [filled(value, name) for value in params] if isinstance(params, list) else params
+
+
+class Conversation:
+    """One conversation with a subject, from a reset on.
+
+    Raises:
+        SubjectError: the adapter failed; so does everything that it is asked.
+    """
+
+    def __init__(self, system: System, subject: Subject, about: Introduced, world: JSON, automaton: Automaton) -> None:
+        self.system = system
+        self.subject = subject
+        self.world = world
+        self.judge = Judge(system, Head(system.name, world, about.drives), automaton, keep=1_000_000)
+        self.actions: list[Action] = []
+        self.given: dict[Given, object] = {}
+        self.succeeded = 0
+        # What was still under way before a reset belongs to nobody.
+        self._result("reset", {"world": world})
+
+    @property
+    def right(self) -> bool:
+        """Whether everything so far is explained."""
+        return self.judge.right
+
+    def perform(self, action: Action) -> bool:
+        """Do something; False once the conversation cannot be explained any more."""
+        self.actions.append(action)
+        name = self.given.get(action.name, WRONG_NAME) if isinstance(action.name, Given) else action.name
+        params = action.params if action.name is None else filled(action.params, name)
+        if action.method == "settle":
+            self._settle()
+        elif action.method == "drive":
+            self._drive(params)
+        else:
+            self._call(action.serial, action.method, params)
+        return self.right
+
+    def _call(self, number: int, method: str, params: JSON) -> None:
+        self._note({"call": number, "method": method, "params": params})
+        exchange = self.subject.exchange(method, params)
+        self._notifications(exchange.before)
+        if exchange.error is None:
+            self._note({"return": number, "result": exchange.result})
+            if method != "cancel":
+                self._learn(number, method, exchange.result)
+        else:
+            self._note({"return": number, "error": exchange.error})
+        self._notifications(exchange.after)
+
+    def _learn(self, number: int, method: str, result: JSON) -> None:
+        answer, names = self.system.codec.answer(method, result)
+        for position, name in enumerate(names):
+            if name not in self.given.values():
+                self.given[Given(number, position)] = name
+        if answer.code == OK and method not in self.system.codec.streams:
+            self.succeeded += 1
+
+    def _drive(self, event: JSON) -> None:
+        exchange = self._result("drive", event)
+        result = exchange.result if isinstance(exchange.result, dict) else {}
+        happened = result.get("happened")
+        if not isinstance(happened, bool):
+            message = f"the adapter answered drive with {brief(exchange.result)}, not with happened true or false"
+            raise SubjectError(message)
+        self._notifications(exchange.before)
+        if happened:
+            # What the environment gave a name to (a connection), the history says with the drive.
+            self._note({"drive": {**event, **{key: value for key, value in result.items() if key != "happened"}}})
+        self._notifications(exchange.after)
+
+    def _settle(self) -> None:
+        exchange = self._result("settle", {})
+        self._notifications(exchange.before)
+        self._note({"settled": True})
+        self._notifications(exchange.after)
+
+    def _result(self, method: str, params: JSON) -> Exchange:
+        exchange = self.subject.exchange(method, params)
+        if exchange.error is not None:
+            message = f"the adapter answered {method} with {exchange.error.get('status')}"
+            raise SubjectError(message)
+        return exchange
+
+    def _notifications(self, notifications: tuple[Notification, ...]) -> None:
+        for one in notifications:
+            if one.method == "message":
+                self._note({"stream": one.params["stream"], "message": one.params["message"]})
+            elif one.method == "closed":
+                error = one.params.get("error")
+                closed = {"stream": one.params["stream"], "closed": True}
+                self._note({**closed, "error": error} if error else closed)
+            else:
+                self._note({"connection": one.params.get("connection", 1), "line": one.params["line"]})
+
+    def _note(self, line: JSON) -> None:
+        if self.right:
+            self.judge.feed(line)
+
+
+def simplest_first(params: Iterable[JSON]) -> list[JSON]:
+    """JSON values, the ones with the shortest text first."""
+    return sorted(params, key=lambda one: len(repr(one)))
+
+
+Worlds = Mapping[str, JSON]

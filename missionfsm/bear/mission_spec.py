@@ -26,6 +26,7 @@ from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outc
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_rules import OPERATIONS
+from missionfsm.bear.mission_shortcut import shortcut
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
 from missionfsm.kernel.history import Answer
@@ -239,6 +240,8 @@ SPEC = Spec(
     charts=(LIFECYCLE,),
     invariants=INVARIANTS,
     possibilities=POSSIBILITIES,
+    situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+    shortcut=shortcut,
 )
 
 __all__ = ["SPEC", "Goal", "Listing", "World"]

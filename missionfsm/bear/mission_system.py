@@ -213,6 +213,7 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
         prompts=tuple(_prompts(family, bounds)),
         plain=tuple(_plain(family, bounds)),
         drives=_DRIVES,
+        plain_drives=_DRIVES[:3],
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
     )

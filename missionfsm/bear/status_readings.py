@@ -104,10 +104,23 @@ AS_09_OFFLINE = Ambiguity(
 )
 AS_09_UNKNOWN = Ambiguity(
     "AS-09.unknown",
-    "What does a new stream show first of a robot of which nothing is known?",
+    "What does a new stream with a single topic show first of a robot of which nothing is known?",
     {"b": "nothing, until something is known", "c": "UNKNOWN values", "d": "INTERNAL is answered"},
     default="b",
     flagged=frozenset("d"),
+)
+AS_09_STATE = Ambiguity(
+    "AS-09.state",
+    "What does a new stream of SubscribeRobotStatus show first of a robot of which nothing is known?",
+    {"b": "nothing, until something is known", "c": "a state without parts", "d": "INTERNAL is answered"},
+    default="b",
+    flagged=frozenset("d"),
+)
+AS_09_PART = Ambiguity(
+    "AS-09.part",
+    "How does the state of a robot show a part that is not reported?",
+    {"a": "it is left out", "c": "with UNKNOWN values"},
+    default="a",
 )
 AS_09_UNSET = Ambiguity(
     "AS-09.unset",
@@ -247,6 +260,8 @@ AMBIGUITIES: tuple[Ambiguity, ...] = (
     AS_08,
     AS_09_OFFLINE,
     AS_09_UNKNOWN,
+    AS_09_STATE,
+    AS_09_PART,
     AS_09_UNSET,
     AS_12_HYBRID,
     AS_12_EVENT,

@@ -36,7 +36,7 @@ from missionfsm.bear.status_messages import (
     Twist,
 )
 from missionfsm.bear.status_readings import (
-    AS_09_UNKNOWN,
+    AS_09_PART,
     AS_15_FULL,
     AS_17_OFFLINE,
     AS_17_ZERO,
@@ -340,7 +340,7 @@ def _part(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed] | str
         return [()]
     empty = _EMPTY_PARTS.get(part)
     if empty is not None and wanted in (None, empty) and shown in (None, empty):
-        return [(AS_09_UNKNOWN["c"],)] if wanted is None else [()]
+        return [(AS_09_PART["c"],)] if wanted is None else [()]
     return difference(wanted, shown)
 
 

@@ -1,0 +1,43 @@
+"""The command line: ``missionfsm conform``, ``check``, ``explore``, ``rules``, ``readings``, ``adapter`` and more.
+
+Exit status: 0 conforms (or done), 1 violates or inconclusive, 2 bad usage or bad input, 3 the adapter failed.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from missionfsm.cli import isaac, judging, listing
+
+app = typer.Typer(
+    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None, help=__doc__
+)
+for _command in (
+    judging.conform,
+    judging.check,
+    judging.explore,
+    listing.rules,
+    listing.readings,
+    judging.adapter,
+    isaac.dispatch,
+    isaac.robot,
+):
+    app.command()(_command)
+
+
+def main() -> None:
+    """Run the command line."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except BrokenPipeError:
+        # Whoever read our output has seen enough.
+        sys.stderr.close()
+        sys.exit(0)
+
+
+if __name__ == "__main__":
+    main()

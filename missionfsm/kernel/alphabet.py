@@ -41,6 +41,7 @@ class Alphabet:
         prompts: calls, malformed ones included.
         plain: those that bring the system on: few, well-formed, each with a meaning of its own; for exploration.
         drives: what to make happen, as JSON.
+        plain_drives: those among them that bring the system on.
         worlds: the worlds to try it in, as JSON, the usual one first.
         wrong_names: names that nothing has.
     """
@@ -48,5 +49,6 @@ class Alphabet:
     prompts: tuple[Prompt, ...]
     plain: tuple[Prompt, ...]
     drives: tuple[JSON, ...]
+    plain_drives: tuple[JSON, ...]
     worlds: tuple[JSON, ...]
     wrong_names: tuple[str, ...] = ()

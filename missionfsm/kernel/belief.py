@@ -29,6 +29,7 @@ from missionfsm.kernel.oracle import Oracle, surviving_names
 from missionfsm.kernel.readings import ANYTHING
 from missionfsm.kernel.spec import Spec
 
+_NO_MARKS: dict[Hashable, int] = {}
 REMEMBERED = 100_000
 """How many names that are gone are remembered, so that one that comes again is noticed."""
 
@@ -148,7 +149,7 @@ class Belief:
     had explanations.
     """
 
-    __slots__ = ("_given_up", "_marks", "_names", "_numbers", "_retired", "automaton", "broken", "node", "touched")
+    __slots__ = ("_given_up", "_marks", "_names", "_numbers", "_renumbered", "_retired", "automaton", "broken", "node", "touched")
 
     def __init__(self, automaton: Automaton, world: object) -> None:
         self.automaton = automaton
@@ -160,6 +161,7 @@ class Belief:
         self._retired: dict[Name, None] = {}
         self._given_up: dict[Name, None] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
+        self._renumbered: set[tuple[Name, Hashable]] = set()
 
     def observe(self, event: Event) -> bool:
         """Take one event into account; False when nothing explains it.
@@ -180,7 +182,11 @@ class Belief:
         if not edge.node.explanations:
             self.broken = True
             return False
+        if kind is Received and event.marks:  # type: ignore[union-attr]
+            self._mark(event.channel, event.marks)  # type: ignore[union-attr]
         self._walk(edge, new)
+        if kind is Driven:
+            self._start_over(event.event)  # type: ignore[union-attr]
         if kind is Cancelled:
             self._given_up[event.channel] = None  # type: ignore[union-attr]
             self._marks.pop(event.channel, None)  # type: ignore[union-attr]
@@ -231,12 +237,28 @@ class Belief:
         return tuple(found)
 
     def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
-        tracks = self._marks.setdefault(channel, {})
+        """How the numbers of a message compare with those before; asking changes nothing."""
+        tracks = self._marks.get(channel, _NO_MARKS)
         relations = []
         for track, number in marks:
-            relations.append(relation(tracks.get(track), number))
-            tracks[track] = number
+            found = relation(tracks.get(track), number)
+            if found in ("smaller", "equal") and (channel, track) in self._renumbered:
+                found = "renumbered"
+            relations.append(found)
         return tuple(relations)
+
+    def _mark(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> None:
+        tracks = self._marks.setdefault(channel, {})
+        for track, number in marks:
+            # A number that is smaller is the first since the numbers started over; an equal one may be the last before.
+            if number < tracks.get(track, number):
+                self._renumbered.discard((channel, track))
+            tracks[track] = number
+
+    def _start_over(self, event: Any) -> None:  # noqa: ANN401 - a drive's event
+        renumbers = self.automaton.spec.drives[event.name].renumbers
+        for track in renumbers(event) if renumbers else ():
+            self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)
 
     def _walk(self, edge: Edge, new: list[Name]) -> None:
         self.node = edge.node

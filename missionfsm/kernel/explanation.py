@@ -50,12 +50,17 @@ class InFlight:
 
 @frozen
 class Owed:
-    """A message that a channel has still to show. A `passing` one may be left out, since its state does not last."""
+    """A message that a channel has still to show.
+
+    A `passing` one may be left out, since its state does not last or since nobody has to say it; one that `stays` may
+    be shown any number of times, until something later is.
+    """
 
     view: View
     names: Names
     passing: bool = False
     only: Assumption | None = None
+    stays: bool = False
 
 
 @frozen
@@ -128,7 +133,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         return Ready(one.answer, each(one.names), one.assumes, one.rules) if one.names else one
 
     def owed(one: Owed) -> Owed:
-        return Owed(one.view, each(one.names), one.passing, one.only) if one.names else one
+        return Owed(one.view, each(one.names), one.passing, one.only, one.stays) if one.names else one
 
     return Explanation(
         explanation.state,
@@ -202,7 +207,8 @@ def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
 def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
     """The message that an emission owes, with its names looked up."""
     names = after if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
-    return Owed(emission.view, names, passing or emission.only is not None, emission.only)
+    passing = passing or emission.optional or emission.only is not None
+    return Owed(emission.view, names, passing, emission.only, emission.stays)
 
 
 def take(

@@ -6,6 +6,7 @@ after it. `missionfsm.kernel.belief` walks that automaton and remembers it.
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
@@ -189,7 +190,7 @@ class Oracle:
             rest = (*explanation.lost[:position], *explanation.lost[position + 1 :])
             for where, refs in self._addressed(explanation, args):
                 for step in self.outcomes(where.state, request, refs):
-                    if step.after is not where.state and not step.opens:
+                    if changes(where, step) and not step.opens:
                         yield from self._sight(evolve(where, lost=rest), step, besides)
         for position, call in enumerate(explanation.calls):
             if call.done is None and call.name != besides:
@@ -290,38 +291,55 @@ class Oracle:
         call = here.calls[position]
         rest = evolve(here, calls=(*here.calls[:position], *here.calls[position + 1 :]))
         if call.done:
-            if call.done.answer == answer:
-                bound = unify(rest, _pairs(call.done.answer, call.done.names, names))
-                if bound:
-                    yield bound, ()
+            for match in self._agreements(call.done.answer, answer):
+                assumed = meet(rest.assumed, match.assumes)
+                for bound in _bindings(rest, answer, call.done.names, names) if assumed else ():
+                    yield evolve(bound, assumed=assumed), match.rules
         for ready in call.ready:
-            assumed = meet(rest.assumed, ready.assumes) if ready.answer == answer else 0
-            bound = unify(rest, _pairs(ready.answer, ready.names, names)) if assumed else None
-            if bound:
-                yield evolve(bound, assumed=assumed), ready.rules
+            for match in self._agreements(ready.answer, answer):
+                assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
+                for bound in _bindings(rest, answer, ready.names, names) if assumed else ():
+                    yield evolve(bound, assumed=assumed), ready.rules + match.rules
         if call.done:
             return
         for where, refs in self._addressed(rest, call.args):
             for step in self.outcomes(where.state, call.request, refs):
-                if step.answer != answer or len(step.refs) != len(names):
+                if step.answer is None or len(step.refs) != len(names):
                     continue
-                if not step.applied:
-                    late = (*where.lost, (call.request, call.args))
-                    taken = self.advance(evolve(where, lost=late), step)
-                else:
-                    taken = self.advance(where, step)
-                if taken:
-                    bound = unify(taken[0], _pairs(answer, taken[1], names))
-                    if bound:
-                        yield bound, step.rules
+                for match in self._agreements(step.answer, answer):
+                    yield from self._answered_by(where, step, match, call, answer, names)
+
+    def _answered_by(  # noqa: PLR0913 - what an answer is made of
+        self, where: Explanation, step: Step, match: Match, call: InFlight, answer: Answer, names: Names
+    ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
+        assumed = meet(where.assumed, match.assumes)
+        if not assumed:
+            return
+        lost = where.lost if step.applied else (*where.lost, (call.request, call.args))
+        taken = self.advance(evolve(where, lost=lost, assumed=assumed), step)
+        if taken:
+            for bound in _bindings(taken[0], answer, taken[1], names):
+                yield bound, step.rules + match.rules
+
+    def _agreements(self, allowed: Answer, given: Answer) -> tuple[Match, ...]:
+        """The ways in which an answer is the one that is allowed."""
+        if allowed == given:
+            return _EQUAL
+        if self.spec.answers is None or (allowed.code, allowed.unordered) != (given.code, given.unordered):
+            return ()
+        key = (allowed, given)
+        found = self._matches.get(key)
+        if found is None:
+            found = self._matches[key] = self.spec.answers(allowed.shape, given.shape)
+        return () if isinstance(found, Mismatch) else found
 
     def _received(
         self, explanation: Explanation, content: Hashable, names: Names, relations: tuple[str, ...], channel: int
     ) -> Iterator[Sighting]:
         sequence: list[Assumption] = []
-        echo = "equal" in relations
+        echoes = self._echoed(explanation, channel)
         for relation in relations:
-            if relation == "equal" and self._echoed(explanation, channel):
+            if relation == "equal" and echoes:
                 continue
             right = self.spec.sequence(relation)
             if isinstance(right, Mismatch):
@@ -330,49 +348,80 @@ class Oracle:
         assumed = meet(explanation.assumed, sequence)
         if not assumed:
             return
-        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
-        todo = [Sighting(evolve(explanation, assumed=assumed))]
+        start = Sighting(evolve(explanation, assumed=assumed))
+        if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
+            yield from self._showings(start, channel, None, content, names, echo=True)
+        if "equal" in relations and echoes:
+            return
+        # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
+        seen: dict[Hashable, dict[Any, list[tuple[int, Counter[Any]]]]] = {}
+        todo: list[tuple[Sighting, Hashable]] = [(start, None)]
         while todo:
-            later: list[Sighting] = []
-            for sighting in todo:
-                if self._outdone(seen, sighting.explanation):
+            later: list[tuple[Sighting, Hashable]] = []
+            for sighting, topic in todo:
+                if self._outdone(seen.setdefault(topic, {}), sighting.explanation):
                     continue
-                here = sighting.explanation
-                for position, one in enumerate(here.channels):
-                    if one.name == channel or (one.name < GONE and channel not in _channel_names(here)):
-                        yield from self._shown(sighting, position, channel, content, names, echo=echo)
-                skipped = self._skip_all(here, channel)
-                if skipped:
+                yield from self._showings(sighting, channel, topic, content, names, echo=False)
+                for skipped, whose in self._passed_over(sighting.explanation, channel, topic):
                     later += (
-                        Sighting(one.explanation, sighting.rules + one.rules) for one in self.silent(skipped)
+                        (Sighting(one.explanation, sighting.rules + one.rules), whose) for one in self.silent(skipped)
                     )
             todo = later
+
+    def _showings(  # noqa: PLR0913 - what a message is made of
+        self,
+        sighting: Sighting,
+        name: int,
+        topic: Hashable,
+        content: Hashable,
+        names: Names,
+        *,
+        echo: bool,
+    ) -> Iterator[Sighting]:
+        """The explanations in which a channel of that name, and of that topic if one is given, shows the message."""
+        known = _channel_names(sighting.explanation)
+        for position, one in enumerate(sighting.explanation.channels):
+            if topic is not None and one.topic != topic:
+                continue
+            if one.name == name or (one.name < GONE and name not in known):
+                yield from self._shown(sighting, position, name, content, names, echo=echo, again=topic is None)
 
     def _echoed(self, explanation: Explanation, name: int) -> bool:
         """Whether a channel of that name may send its last message again under its old number."""
         channels = (channel for channel in explanation.channels if channel.name == name)
         return any(self.spec.delivery(channel.topic).echoes for channel in channels)
 
-    def _candidates(self, channel: Channel, assumed: int, *, echo: bool) -> Iterator[tuple[Owed, tuple[Owed, ...], int]]:
+    def _candidates(
+        self, channel: Channel, assumed: int, *, echo: bool, again: bool
+    ) -> Iterator[tuple[Owed, tuple[Owed, ...], int]]:
         """What a channel may show next: the message, those owed after it, and what is assumed then."""
         delivery = self.spec.delivery(channel.topic)
-        again = delivery.echoes if echo else delivery.repeats
-        if channel.last and again:
-            yield channel.last, channel.owed, meet(assumed, (again,))
+        repeats = delivery.echoes if echo else delivery.repeats
+        if channel.last and repeats and again:
+            yield channel.last, channel.owed, meet(assumed, (repeats,))
         for index, owed in enumerate(() if echo else channel.owed):
-            yield owed, channel.owed[index + 1 :], meet(assumed, (owed.only,)) if owed.only else assumed
+            left = channel.owed[index if owed.stays else index + 1 :]
+            yield owed, left, meet(assumed, (owed.only,)) if owed.only else assumed
             if not owed.passing:
                 assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
             if not assumed:
                 return
 
     def _shown(  # noqa: PLR0913 - what a message is made of
-        self, sighting: Sighting, position: int, name: int, content: Hashable, names: Names, *, echo: bool
+        self,
+        sighting: Sighting,
+        position: int,
+        name: int,
+        content: Hashable,
+        names: Names,
+        *,
+        echo: bool,
+        again: bool,
     ) -> Iterator[Sighting]:
-        """The explanations in which the message shows one of those that the channel owes, or its last one again."""
+        """The explanations in which the message shows one of those that the channel owes, or its last one `again`."""
         here = sighting.explanation
         channel = here.channels[position]
-        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo):
+        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo, again=again):
             matches = self.matches(owed, content)
             if not assumption or isinstance(matches, Mismatch):
                 continue
@@ -388,32 +437,45 @@ class Oracle:
                 if bound:
                     yield Sighting(tidy(bound), sighting.rules + match.rules)
 
-    def _skip_all(self, explanation: Explanation, name: int) -> Explanation | None:
-        """The explanation in which all that a channel owes is passed over, or None where it cannot be."""
-        assumed, channels = explanation.assumed, []
-        for channel in explanation.channels:
-            if channel.name == name:
+    def _passed_over(
+        self, explanation: Explanation, name: int, topic: Hashable
+    ) -> Iterator[tuple[Explanation, Hashable]]:
+        """The explanations in which all that a channel of that name owes is passed over, each with its topic.
+
+        One whose name is not known yet owes nothing to anybody.
+        """
+        if name not in _channel_names(explanation):
+            yield explanation, None
+            return
+        for position, channel in enumerate(explanation.channels):
+            if channel.name != name or (topic is not None and channel.topic != topic):
+                continue
+            assumed = explanation.assumed
+            if not all(owed.passing for owed in channel.owed):
                 skips = self.spec.delivery(channel.topic).skips
-                if not all(owed.passing for owed in channel.owed):
-                    assumed = meet(assumed, (skips,)) if skips else 0
-                channel = evolve(channel, owed=())  # noqa: PLW2901 - the same channel, further on
-            channels.append(channel)
-        return evolve(explanation, assumed=assumed, channels=tuple(channels)) if assumed else None
+                assumed = meet(assumed, (skips,)) if skips else 0
+            if assumed:
+                passed = evolve(channel, owed=_offers(channel))
+                channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
+                yield evolve(explanation, assumed=assumed, channels=channels), channel.topic
 
     def _ended(self, explanation: Explanation, code: str, name: int) -> Iterator[Sighting]:
         # A stream that nothing is known of yet is that of a call whose answer has not come.
         known = name in _channel_names(explanation)
         for sighting in (Sighting(explanation),) if known else self.closure(explanation):
             here = sighting.explanation
-            for position, channel in enumerate(here.channels):
-                if channel.name == name or (not known and channel.name < GONE):
-                    assumes = self.spec.delivery(channel.topic).ends.get(code)
-                    assumed = meet(here.assumed, assumes) if assumes is not None else 0
-                    bound = unify(here, [(channel.name, name)]) if assumed else None
-                    if bound:
-                        rest = (*bound.channels[:position], *bound.channels[position + 1 :])
-                        ended = evolve(bound, assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
-                        yield Sighting(tidy(ended), sighting.rules)
+            for own in dict.fromkeys(channel.name for channel in here.channels):
+                if own != name and (known or own >= GONE):
+                    continue
+                assumed = here.assumed
+                for topic in (channel.topic for channel in here.channels if channel.name == own):
+                    assumes = self.spec.delivery(topic).ends.get(code)
+                    assumed = meet(assumed, assumes) if assumes is not None else 0
+                bound = unify(here, [(own, name)]) if assumed else None
+                if bound:
+                    rest = tuple(channel for channel in bound.channels if channel.name != name)
+                    ended = evolve(bound, assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
+                    yield Sighting(tidy(ended), sighting.rules)
 
     def _cancelled(self, explanation: Explanation, name: int) -> Iterator[Sighting]:
         rest = tuple(channel for channel in explanation.channels if channel.name != name)
@@ -457,7 +519,7 @@ class Oracle:
                 skips = self.spec.delivery(channel.topic).skips
                 told = channel.last and (due[-1].view, due[-1].names) == (channel.last.view, channel.last.names)
                 assumed = meet(assumed, (skips,)) if skips and told else 0
-            channels.append(evolve(channel, owed=()) if channel.owed else channel)
+            channels.append(evolve(channel, owed=_offers(channel)) if channel.owed else channel)
         return tidy(evolve(explanation, assumed=assumed, channels=tuple(channels))) if assumed else None
 
     # Fewer explanations that say the same.
@@ -509,21 +571,44 @@ def _point(explanation: Explanation) -> Explanation:
     return evolve(explanation, assumed=0, lost=())
 
 
+_EQUAL = (Match(),)
+"""The one way in which equal answers agree."""
+
+
+def _offers(channel: Channel) -> tuple[Owed, ...]:
+    """What a channel may still show once everything else is passed over."""
+    last = channel.owed[-1] if channel.owed else None
+    return (last,) if last and last.stays else ()
+
+
 def _channel_names(explanation: Explanation) -> set[int]:
     return {channel.name for channel in explanation.channels}
 
 
-def _pairs(answer: Answer, own: Names, observed: Names) -> list[tuple[int, int]]:
-    """Which name of ours is which observed one. In an unordered answer those that are known go together first."""
+def _bindings(explanation: Explanation, answer: Answer, own: Names, observed: Names) -> Iterator[Explanation]:
+    """The explanation with the names of an answer, in every way in which they can be ours.
+
+    In an unordered answer those that are known go together; of the others, any can be any. Where nothing else mentions
+    ours, though, which is which makes no difference.
+    """
     if len(own) != len(observed):
-        return [(GONE, -2)]
-    if not answer.unordered:
-        return list(zip(own, observed, strict=True))
-    shared = [name for name in own if name in observed]
-    left = [name for name in own if name not in shared]
-    return [(name, name) for name in shared] + list(
-        zip(left, (name for name in observed if name not in shared), strict=False)
-    )
+        return
+    if answer.unordered:
+        shared = [name for name in own if name in observed]
+        left, free = ([name for name in names if name not in shared] for names in (own, observed))
+        told = [name for name in left if name in set(mentioned(explanation))] if len(left) > 1 else []
+        rest = [name for name in left if name not in told]
+        ways = (
+            [*zip(shared, shared, strict=True), *zip(told, some, strict=True)]
+            + list(zip(rest, (name for name in free if name not in some), strict=False))
+            for some in (itertools.permutations(free, len(told)) if max(left, default=-2) < GONE else ())
+        )
+    else:
+        ways = iter([list(zip(own, observed, strict=True))])  # type: ignore[assignment]
+    for pairs in ways:
+        bound = unify(explanation, pairs)
+        if bound:
+            yield bound
 
 
 def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:

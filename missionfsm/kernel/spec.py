@@ -41,12 +41,16 @@ class Emission:
     `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
     the state after the step.
     `only` is the assumption without which the message is not sent at all; such a message may always be left out.
+    `optional` is a message that may be left out whatever is assumed; one that `stays` as well is an offer: it may come
+    at any time until something later is shown, settled or not, and more than once.
     """
 
     topic: Hashable
     view: View
     refs: tuple[int, ...] | None = None
     only: Assumption | None = None
+    optional: bool = False
+    stays: bool = False
 
 
 @frozen
@@ -132,8 +136,11 @@ class Delivery:
     ends: Mapping[str, tuple[Assumption, ...]] = field(factory=dict)
 
 
-RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative")
-"""How a number compares with its predecessor on its track; 0 is "zero" and less is "negative", whatever came before."""
+RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative", "renumbered")
+"""How a number compares with its predecessor on its track; 0 is "zero" and less is "negative", whatever came before.
+
+One that is not larger is "renumbered" where the numbers of its track are known to have started over since.
+"""
 
 
 @frozen
@@ -144,12 +151,14 @@ class Drive:
         steps: (state, event, refs) to the ways in which it happens; none where it does not apply. `refs` are the
             positions of the event's names among those of the state, as for outcomes.
         by_itself: the events that the environment may produce unseen where nobody drives them.
+        renumbers: the event to the tracks whose numbers start over with it, on every channel.
     """
 
     name: str
     steps: Callable[[State, Any, tuple[int | None, ...]], tuple[Step, ...]]
     by_itself: tuple[Hashable, ...] = ()
     cite: Citation | None = None
+    renumbers: Callable[[Any], tuple[Hashable, ...]] | None = None
 
 
 @frozen
@@ -184,8 +193,12 @@ class Spec:
         request_operation: request to the name of its operation.
         describe: a request, a view or a state in a few words for people.
         rules: all rules of the system that belong to no operation.
-        shortcut: (state, requests, drives) to the states after every step, for the explorer; equal to what the
-            functions above give, only faster.
+        answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or why
+            they do not; None where they have to be equal.
+        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
+            outcomes, and the same events happen in the same ways.
+        shortcut: (requests, events, assumed, most names) to a function from a state to the states after every step,
+            in any order and perhaps some twice: what the functions above give, only faster.
     """
 
     system: str
@@ -208,7 +221,9 @@ class Spec:
     charts: tuple[Chart, ...] = ()
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
-    shortcut: Callable[..., Any] | None = field(default=None)
+    answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
+    situation: Callable[[State], Hashable] = lambda state: state
+    shortcut: Callable[..., Callable[[State], list[State]]] | None = None
 
     @property
     def all_rules(self) -> tuple[Rule, ...]:

@@ -211,8 +211,8 @@ class Model:
 
     def _delivered(self, sent: list[Sent]) -> list[Sent]:
         """What is really sent of what was caused at once: under some readings only the latest."""
-        last = {one.channel: one for one in sent}
-        return [one for one in sent if last[one.channel] is one or not self._skips(one.topic)]
+        last = {(one.channel, one.topic): one for one in sent}
+        return [one for one in sent if last[one.channel, one.topic] is one or not self._skips(one.topic)]
 
     def _skips(self, topic: Hashable) -> bool:
         skips = self.system.spec.delivery(topic).skips

@@ -43,11 +43,12 @@ class Call:
 
 @frozen(cache_hash=True)
 class Message:
-    """What a channel owes; one that is `optional` may be left out."""
+    """What a channel owes; one that is `optional` may be left out, one that `stays` may be shown again and again."""
 
     view: Hashable
     things: Things
     optional: bool = False
+    stays: bool = False
 
 
 @frozen(cache_hash=True)
@@ -161,7 +162,8 @@ class World:
             if emission.only is not None and not self.agrees([emission.only]):
                 return ()
             about = things if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
-            return (Message(emission.view, about, passing or emission.only is not None),)
+            optional = passing or emission.optional or emission.only is not None
+            return (Message(emission.view, about, optional, emission.stays),)
 
         streams = [one for one in here.streams if one.topic not in step.closes]
         for emission in step.emits:
@@ -207,11 +209,12 @@ class World:
             case Ended(channel, _) if channel in here.given_up:
                 yield here
             case Ended(channel, code):
-                for stream in here.streams:
-                    assumes = self.spec.delivery(stream.topic).ends.get(code)
-                    if assumes is not None and self.agrees(assumes):
-                        rest = evolve(here, streams=tuple(one for one in here.streams if one is not stream))
-                        yield from self._bound(rest, [[(stream.thing, channel)]])
+                for thing in {stream.thing for stream in here.streams}:
+                    ended = [one for one in here.streams if one.thing == thing]
+                    assumes = [self.spec.delivery(one.topic).ends.get(code) for one in ended]
+                    if all(one is not None and self.agrees(one) for one in assumes):
+                        rest = evolve(here, streams=tuple(one for one in here.streams if one not in ended))
+                        yield from self._bound(rest, [[(thing, channel)]])
             case Cancelled(channel):
                 streams = tuple(one for one in here.streams if one.thing != here.thing(channel))
                 yield evolve(here, streams=streams, given_up=here.given_up | {channel})
@@ -224,7 +227,8 @@ class World:
                 if not any(self.agrees(step.assumes) for step in self.spec.urgent(here.state)) and all(
                     self.told(stream) for stream in here.streams
                 ):
-                    yield evolve(here, streams=tuple(evolve(one, owed=()) for one in here.streams))
+                    streams = (evolve(one, owed=tuple(each for each in one.owed[-1:] if each.stays)) for one in here.streams)
+                    yield evolve(here, streams=tuple(streams))
 
     def _bound(
         self, here: Configuration, ways: Iterable[list[tuple[int, Name]]]
@@ -254,17 +258,18 @@ class World:
             delivery = self.spec.delivery(stream.topic)
             echo = "equal" in relations and delivery.echoes is not None
             judged = [one for one in relations if not (one == "equal" and echo)]
+            once_more = [delivery.repeats] if not echo else []
+            once_more += [delivery.echoes] if not {"equal", "zero"}.isdisjoint(relations) else []
             if any(
                 isinstance(right, Mismatch) or not self.agrees(right) for right in map(self.spec.sequence, judged)
             ):
                 continue
-            again = delivery.echoes if echo else delivery.repeats
             shown: list[tuple[Message, tuple[Message, ...]]] = []
-            if stream.last and again is not None and self.agrees([again]):
+            if stream.last and any(again is not None and self.agrees([again]) for again in once_more):
                 shown.append((stream.last, stream.owed))
             if not echo:
                 shown += [
-                    (one, stream.owed[index + 1 :])
+                    (one, stream.owed[index if one.stays else index + 1 :])
                     for index, one in enumerate(stream.owed)
                     if self.may_skip(stream, stream.owed[:index])
                 ]
@@ -272,7 +277,7 @@ class World:
                 matches = self.spec.matches(message.view, event.content)
                 for match in () if isinstance(matches, Mismatch) else matches:
                     if self.agrees(match.assumes):
-                        after = evolve(stream, last=evolve(message, optional=False), owed=left)
+                        after = evolve(stream, last=evolve(message, optional=False, stays=False), owed=left)
                         streams = (*here.streams[:at], after, *here.streams[at + 1 :])
                         pairs = [(message.things[ref], event.names[to]) for ref, to in match.names]
                         yield from self._bound(

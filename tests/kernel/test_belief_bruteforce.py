@@ -75,9 +75,9 @@ _TICKET_REQUESTS = {
     ("watch",): (0, ((Answer(OK), -1),)),
 }
 _BOARDS = (((), 0), (("red",), 1), (("blue",), 1), (("red", "blue"), 2), (("blue", "red"), 2), (("red", "red"), 2))
-PLAIN = Alphabet("plain tickets", PLAIN_TICKETS, ((),), _TICKET_REQUESTS, _BOARDS)
-SERVED = Alphabet("tickets", TICKETS, ((),), _TICKET_REQUESTS, _BOARDS, calls=3)
-DRIVEN = Alphabet("driven tickets", TICKETS, ((),), _TICKET_REQUESTS, _BOARDS, (Event("serve"),))
+PLAIN = Alphabet("plain tickets", PLAIN_TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS)
+SERVED = Alphabet("tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, calls=3)
+DRIVEN = Alphabet("driven tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, (Event("serve"),))
 
 _LAMP_REQUESTS = {
     ("press",): (0, (*_answers((FAILED_PRECONDITION, UNAVAILABLE), None), DEADLINE)),

@@ -1,0 +1,63 @@
+"""Judge recorded histories: a file at a time, a robot at a time, a line at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from missionfsm.adapters.historyfile import STDIN, Stamps, fingerprint, lines, lost_calls, open_history
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.readings import constrain
+from missionfsm.kernel.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check import Judge
+from missionfsm.tools.verdict import Verdict
+
+
+def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tuple[str | None, Verdict]]:
+    """The verdict for each robot that a history speaks of, in the order of their first lines.
+
+    A line without a robot belongs to the one conversation of the file.
+
+    Raises:
+        UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
+        ValueError: `readings` names something that does not exist.
+    """
+    lost = lost_calls(path)
+    source = open_history(path)
+    try:
+        numbered = lines(source, path)
+        number, line = next(numbered, (0, None))
+        if not number:
+            message = f"{path}: the history is empty"
+            raise UnreadableError(message)
+        stamps = Stamps()
+        judges: dict[str | None, Judge] = {}
+        try:
+            first = head(line)
+            stamps.robot(line)
+            judged = system(first.system)
+            automaton = Automaton(judged.spec, first.drives, constrain(judged.spec.ambiguities, readings or {}))
+            nobody = Judge(judged, first, automaton, fingerprint=fingerprint, lost=lost.get(None, frozenset()))
+            for number, line in numbered:  # noqa: B007, PLW2901 - the error below says where
+                if not isinstance(line, dict):
+                    message = f"{line!r:.60} is not an object"
+                    raise UnreadableError(message)
+                robot = stamps.robot(line) if "at" in line or "robot" in line else None
+                judge = judges.get(robot)
+                if judge is None:
+                    judge = judges[robot] = (
+                        nobody
+                        if robot is None
+                        else Judge(
+                            judged, first, automaton, fingerprint=fingerprint, lost=lost.get(robot, frozenset())
+                        )
+                    )
+                judge.feed(line)
+        except UnreadableError as error:
+            message = f"{'stdin' if path == STDIN else path}:{number}: {error}"
+            raise UnreadableError(message) from None
+    finally:
+        if path != STDIN:
+            source.close()
+    return [(robot, judge.verdict()) for robot, judge in (judges or {None: nobody}).items()]

@@ -1,0 +1,58 @@
+"""The commands that list: rules and readings."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from missionfsm.cli.common import say, the_system, write_json
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.spec import Spec
+
+Which = Annotated[str | None, typer.Argument(help="Which system; all if left out.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Write JSON.")]
+
+
+def _specs(name: str | None) -> list[Spec]:
+    from missionfsm.systems import names  # noqa: PLC0415 - commands load what they need
+
+    return [the_system(one).spec for one in ([name] if name else names())]
+
+
+def rules(system: Which = None, json: AsJson = False) -> None:  # noqa: FBT001, FBT002 - a flag of the command
+    """List every rule: its id, what it says, and its place in the document."""
+    found: list[JSON] = []
+    for spec in _specs(system):
+        for rule in spec.all_rules:
+            under = str(rule.under) if rule.under else None
+            found.append({"id": rule.id, "says": rule.says, "cite": str(rule.cite), "code": rule.code, "under": under})
+            if not json:
+                say(f"{rule.id}\n    {rule.says} [{rule.cite}]" + (f" under {under}" if under else ""), json=None)
+    if json:
+        write_json("-", found)
+
+
+def readings(system: Which = None, json: AsJson = False) -> None:  # noqa: FBT001, FBT002 - a flag of the command
+    """List every ambiguity with its readings; a star marks the reference's, a dagger a departure from the text."""
+    found: list[JSON] = []
+    for spec in _specs(system):
+        for ambiguity in spec.ambiguities:
+            found.append(
+                {
+                    "system": spec.system,
+                    "id": ambiguity.id,
+                    "question": ambiguity.question,
+                    "readings": dict(ambiguity.readings),
+                    "default": ambiguity.default,
+                    "flagged": sorted(ambiguity.flagged),
+                }
+            )
+            if not json:
+                lines = [f"{ambiguity.id}  {ambiguity.question}"]
+                for letter, answer in ambiguity.readings.items():
+                    mark = "*" if letter == ambiguity.default else "†" if letter in ambiguity.flagged else " "
+                    lines.append(f"  {mark} {letter}  {answer}")
+                say("\n".join(lines), json=None)
+    if json:
+        write_json("-", found)

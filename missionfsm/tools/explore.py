@@ -1,0 +1,277 @@
+"""Every state that can be reached within bounds: counts, invariants, possibilities, shortest counterexamples."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from attrs import field, frozen
+
+from missionfsm.kernel.alphabet import Bounds, Prompt
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
+from missionfsm.kernel.readings import ANYTHING, meet
+from missionfsm.kernel.spec import Invariant, Spec, Step
+from missionfsm.kernel.system import System
+
+State = Any
+
+
+@frozen
+class Labels:
+    """What is tried in every state: requests (and whether each has a name) and drives."""
+
+    requests: tuple[tuple[Any, bool], ...]
+    events: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, system: System, prompts: Iterable[Prompt], drives: Iterable[JSON]) -> Labels:
+        """The requests of some prompts, each once, and the events of some drives."""
+        requests = []
+        for prompt in prompts:
+            names, rest = system.codec.split(prompt.method, prompt.params)
+            requests.append((system.codec.request(prompt.method, rest), bool(names)))
+        return cls(
+            tuple(dict.fromkeys(requests)), tuple(dict.fromkeys(system.codec.drive(drive)[0] for drive in drives))
+        )
+
+
+@frozen
+class Transition:
+    """A step that the explorer took: what was done and how it came out."""
+
+    label: str
+    step: Step
+
+
+@frozen
+class Counterexample:
+    """A state in which an invariant does not hold, and the shortest way there."""
+
+    invariant: str
+    says: str
+    path: tuple[str, ...]
+    state: str
+
+    def __str__(self) -> str:
+        steps = "\n".join(f"    {number}. {label}" for number, label in enumerate(self.path, 1))
+        return f"{self.says}\n  does not hold in {self.state}, reached by\n{steps or '    (it is the first state)'}"
+
+
+@frozen
+class Exploration:
+    """What exploring came to.
+
+    Attributes:
+        states: distinct states.
+        situations: how many of them differ in what can be done.
+        transitions: steps between them, refusals included.
+        depth: steps to the state that is furthest away.
+        by_operation: operation to code to how often it is an allowed answer.
+        unmet: possibilities that no state meets.
+        idle: ids of refusals that no call meets; `constant`: of those that every call meets.
+    """
+
+    system: str
+    bounds: Bounds
+    states: int
+    situations: int
+    transitions: int
+    depth: int
+    by_operation: Mapping[str, Mapping[str, int]] = field(factory=dict)
+    counterexample: Counterexample | None = None
+    unmet: tuple[str, ...] = ()
+    idle: tuple[str, ...] = ()
+    constant: tuple[str, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether every invariant holds and every possibility is met."""
+        return self.counterexample is None and not self.unmet
+
+    def to_json(self) -> JSON:
+        """The exploration as the command line writes it."""
+        return {
+            "system": self.system,
+            "bounds": {"missions": self.bounds.missions, "goals": self.bounds.goals, "batch": self.bounds.batch},
+            "states": self.states,
+            "situations": self.situations,
+            "transitions": self.transitions,
+            "depth": self.depth,
+            "operations": {name: dict(codes) for name, codes in self.by_operation.items()},
+            "counterexample": None if self.counterexample is None else str(self.counterexample),
+            "unmet": list(self.unmet),
+            "idle": list(self.idle),
+            "constant": list(self.constant),
+        }
+
+    def __str__(self) -> str:
+        bounds = f"{self.bounds.missions} missions, {self.bounds.goals} goals, batches of {self.bounds.batch}"
+        lines = [f"{self.system} within {bounds}: {self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"]
+        if self.counterexample:
+            lines.append(f"broken invariant: {self.counterexample}")
+        else:
+            lines.append("every invariant holds")
+        lines += [f"never reached: {one}" for one in self.unmet]
+        lines += [f"never fires within these bounds: {one}" for one in self.idle]
+        lines += [f"fires always: {one}" for one in self.constant]
+        for name, codes in self.by_operation.items():
+            lines.append(f"  {name}: " + ", ".join(f"{code} {times}" for code, times in codes.items()))
+        return "\n".join(lines)
+
+
+def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
+    """Every step from a state: calls with every answer, drives, and what the system does by itself."""
+    for request, named in labels.requests:
+        for refs in _references(spec, state, named=named):
+            for step in spec.outcomes(state, request, refs):
+                if step.label != SPONTANEOUS_FAILURE:
+                    yield Transition(spec.describe(request), step)
+    for event in labels.events:
+        for step in spec.drives[event.name].steps(state, event, ()):
+            yield Transition(spec.describe(event), step)
+    for step in (*spec.urgent(state), *spec.spontaneous(state)):
+        yield Transition("by itself", step)
+
+
+def reachable(
+    spec: Spec,
+    start: State,
+    labels: Labels,
+    most: int,
+    assumed: int = ANYTHING,
+    quotient: Callable[[State], State] | None = None,
+) -> dict[State, State | None]:
+    """Every state within `most` names, nearest first, with the state that it was first reached from.
+
+    Args:
+        quotient: state to the state that stands for it, where several are explored as one.
+    """
+    successors = (
+        spec.shortcut(labels.requests, labels.events, assumed, most)
+        if spec.shortcut
+        else lambda here: [
+            one.step.after
+            for one in steps(spec, here, labels)
+            if meet(assumed, one.step.assumes) and spec.names(one.step.after) <= most
+        ]
+    )
+    found: dict[State, State | None] = {start: None}
+    todo = [start]
+    add = todo.append
+    for here in todo:  # grows while it is walked: a queue without a queue's cost
+        for after in successors(here):
+            if quotient is not None:
+                after = quotient(after)  # noqa: PLW2901 - what stands for it
+            if after not in found:
+                found[after] = here
+                add(after)
+    return found
+
+
+def explore(  # noqa: PLR0913 - every one has a default
+    system: System,
+    bounds: Bounds | None = None,
+    *,
+    world: JSON = None,
+    assumed: int = ANYTHING,
+    invariants: tuple[Invariant, ...] | None = None,
+) -> Exploration:
+    """Every state that a system can reach within bounds, with every step tried in each.
+
+    What is tried to get around are the plain prompts and drives of the alphabet; which rules fire is then asked for
+    every prompt, in one state of every situation.
+
+    Args:
+        world: the world that it starts in; the usual one by default.
+        assumed: the readings that are possible (see `missionfsm.kernel.readings`); by default all, at every step.
+        invariants: what has to hold; the spec's own by default.
+    """
+    bounds = bounds or Bounds()
+    spec = system.spec
+    alphabet = system.alphabet(world or {}, bounds)
+    labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
+    start = spec.initial(system.codec.world(world or {}))
+    found = reachable(spec, start, labels, bounds.missions, assumed)
+    checked = spec.invariants if invariants is None else invariants
+    broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
+    counterexample = _counterexample(spec, labels, found, *broken) if broken else None
+    unmet = tuple(one.says for one in spec.possibilities if not any(map(one.holds, found)))
+    groups = Counter(map(spec.situation, found))
+    representatives = {spec.situation(here): here for here in found}
+    everything = Labels.of(system, alphabet.prompts, alphabet.drives)
+    tally = _Tally(spec)
+    for situation, here in representatives.items():
+        tally.add(here, labels, groups[situation], assumed)
+    firing = firings(spec, representatives.values(), everything, assumed)
+    return Exploration(
+        system.name,
+        bounds,
+        len(found),
+        len(groups),
+        tally.transitions,
+        _depth(found),
+        {name: dict(sorted(codes.items())) for name, codes in sorted(tally.by_operation.items())},
+        counterexample,
+        unmet,
+        tuple(rule for rule, (fires, _) in firing.items() if not fires),
+        tuple(rule for rule, (_, rests) in firing.items() if not rests),
+    )
+
+
+class _Tally:
+    """Counts steps by operation and answer."""
+
+    def __init__(self, spec: Spec) -> None:
+        self.spec = spec
+        self.transitions = 0
+        self.by_operation: dict[str, dict[str, int]] = {}
+
+    def add(self, here: State, labels: Labels, times: int, assumed: int) -> None:
+        for one in steps(self.spec, here, labels):
+            if not meet(assumed, one.step.assumes):
+                continue
+            self.transitions += times
+            if one.step.answer is not None:
+                name = one.label.partition("(")[0]
+                codes = self.by_operation.setdefault(name, {})
+                codes[one.step.answer.code] = codes.get(one.step.answer.code, 0) + times
+
+
+def firings(
+    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = ANYTHING
+) -> dict[str, tuple[bool, bool]]:
+    """For every refusal: whether some call in some of the states meets it, and whether some call does not."""
+    found = {rule.id: [False, False] for operation in spec.operations.values() for rule in operation.refusals}
+    for here in states:
+        for request, named in labels.requests:
+            operation = spec.operations[spec.request_operation(request)]
+            for refs in _references(spec, here, named=named):
+                outcomes = spec.outcomes(here, request, refs)
+                met = {rule for step in outcomes if meet(assumed, step.assumes) for rule in step.rules}
+                for rule in operation.refusals:
+                    found[rule.id][rule.id not in met] = True
+    return {rule: (fires, rests) for rule, (fires, rests) in found.items()}
+
+
+def _references(spec: Spec, here: State, *, named: bool) -> Iterable[tuple[int | None, ...]]:
+    return [(position,) for position in (None, *range(spec.names(here)))] if named else [()]
+
+
+def _depth(found: Mapping[State, State | None]) -> int:
+    depth: dict[State, int] = {}
+    for here, before in found.items():
+        depth[here] = 0 if before is None else depth[before] + 1
+    return max(depth.values())
+
+
+def _counterexample(
+    spec: Spec, labels: Labels, found: Mapping[State, State | None], invariant: Invariant, state: State
+) -> Counterexample:
+    path: list[str] = []
+    here = state
+    while (before := found[here]) is not None:
+        path.append(next(one.label for one in steps(spec, before, labels) if one.step.after == here))
+        here = before
+    return Counterexample(invariant.name, invariant.says, tuple(reversed(path)), spec.describe(state))

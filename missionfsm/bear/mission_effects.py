@@ -56,10 +56,10 @@ from missionfsm.bear.mission_readings import (
 )
 from missionfsm.bear.mission_requests import Call, Request, Target, Wanted
 from missionfsm.bear.mission_rules import CHARGING, LAST_GOAL, OPERATIONS, ranking
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     CANCELLED,
+    DEADLINE_EXCEEDED,
     FAILED_PRECONDITION,
     INTERNAL,
     OK,
@@ -70,6 +70,7 @@ from missionfsm.kernel.rules import (
     Rule,
     decide,
 )
+from missionfsm.kernel.spec import Failure
 
 Assumed = tuple[Assumption, ...]
 Way = tuple[Edit, Assumed]
@@ -88,8 +89,6 @@ class Outcome:
     whose: str = NOBODY
     assumes: Assumed = ()
     rules: tuple[str, ...] = ()
-    label: str = ""
-    applied: bool = True
 
 
 @functools.lru_cache(maxsize=100_000)
@@ -109,7 +108,7 @@ def outcomes(robot: Situation, call: Call) -> tuple[Outcome, ...]:
             found.append(Outcome(decision.code, assumes=decision.assumes, rules=rules))
     found = [faulty for one in found for faulty in _with_fault(robot, one, operation.failures)]
     found.sort(key=lambda one: one.code != OK)
-    return (*found, *_failures(operation.failures, streaming=operation.streaming))
+    return tuple(found)
 
 
 def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -> Iterator[Outcome]:
@@ -120,23 +119,21 @@ def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -
         return
     disarmed: Edit = ((Op.ARM, None),)
     edit = outcome.edit + disarmed if fault.applied else disarmed
-    yield Outcome(fault.status, edit, NOBODY, outcome.assumes, (), "the armed fault")
+    yield Outcome(fault.status, edit, NOBODY, outcome.assumes)
 
 
-def _failures(documented: tuple[str, ...], *, streaming: bool) -> Iterator[Outcome]:
-    """Answers that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
+def failing(request: Request, code: str) -> Failure | None:
+    """Codes that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
 
-    SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well.
+    SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well. AM-61: codes of
+    the transport and of authentication, which no table lists.
     """
-    late = "DEADLINE_EXCEEDED" not in documented
-    for code in documented:
-        applied = code == INTERNAL and (not late or streaming)
-        yield Outcome(code, label=SPONTANEOUS_FAILURE, applied=applied)
-    transport = (AM_61["b"],)
-    for code in (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED):
-        yield Outcome(code, assumes=transport)
-    for code in (UNAVAILABLE, CANCELLED):
-        yield Outcome(code, assumes=transport, applied=False)
+    documented = OPERATIONS[request.operation].failures
+    if code in documented:
+        return Failure(open_ended=code == DEADLINE_EXCEEDED or request.operation == "SkipGoal")
+    if code in (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED):
+        return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED), driven=False)
+    return None
 
 
 def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:

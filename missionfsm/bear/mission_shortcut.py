@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable, Iterator
 from missionfsm.bear.mission import Edit, Mission, Op, Robot, Situation, World, apply, situation
 from missionfsm.bear.mission_effects import Call, Happening, due, happens, outcomes
 from missionfsm.bear.mission_requests import Request, Target
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import meet
 
 _Key = tuple[World, Mission | None, bool, bool, bool, bool, object]
@@ -77,7 +76,7 @@ def _edits(
         if call.target is not None and not _possible(robot, call.target):
             continue
         for outcome in outcomes(robot, call):
-            if outcome.label != SPONTANEOUS_FAILURE and meet(assumed, outcome.assumes):
+            if meet(assumed, outcome.assumes):
                 yield outcome.edit
     for happening in happenings:
         for edit, assumes in happens(robot, happening):

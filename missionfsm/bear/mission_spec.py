@@ -22,7 +22,7 @@ from missionfsm.bear.mission import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, happens, outcomes
+from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, failing, happens, outcomes
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_rules import OPERATIONS
@@ -83,8 +83,6 @@ def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
         assumes=step.assumes,
         answer=answer,
         refs=refs,
-        label=outcome.label,
-        applied=outcome.applied,
     )
 
 
@@ -217,6 +215,7 @@ SPEC = Spec(
     initial=lambda world: Robot(world),
     operations=OPERATIONS,
     outcomes=_outcomes,
+    failing=failing,
     drives={
         one.name: one
         for one in (
@@ -241,6 +240,7 @@ SPEC = Spec(
     invariants=INVARIANTS,
     possibilities=POSSIBILITIES,
     situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+    shape=lambda robot: (situation(robot), min(len(robot.pending), 2)),
     shortcut=shortcut,
 )
 

@@ -126,7 +126,7 @@ OWED = _promise(
 )
 RULES = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE, OWED)
 
-_SHOWN = tuple(rule.id for rule in (OWED, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE))
+_SHOWN = tuple(rule.id for rule in RULES)
 
 _TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
     Kind.BASE_NAVIGATE: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),),

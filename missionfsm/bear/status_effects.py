@@ -55,7 +55,6 @@ from missionfsm.bear.status_rules import OPERATIONS, foreign, own, ranking
 from missionfsm.bear.status_stream import UPDATES, Promised, Seen, Topic, View, each, shows, told, view
 from missionfsm.bear.status_values import clamped
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     CANCELLED,
@@ -67,7 +66,7 @@ from missionfsm.kernel.rules import (
     UNIMPLEMENTED,
     decide,
 )
-from missionfsm.kernel.spec import Emission, Opening, Step
+from missionfsm.kernel.spec import Emission, Failure, Opening, Step
 
 Assumed = tuple[Assumption, ...]
 TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
@@ -91,9 +90,14 @@ def outcomes(fleet: Fleet, request: Request, _: tuple[int | None, ...]) -> tuple
     if request.operation == GET and fleet.fault:
         found = [_failed(fleet, one) for one in found]
     found.sort(key=lambda one: one.answer != Answer(OK))
-    found.append(Step(fleet, answer=Answer(INTERNAL), label=SPONTANEOUS_FAILURE))
-    found += (Step(fleet, answer=Answer(code), assumes=(AS_34["b"],)) for code in TRANSPORT)
     return tuple(found)
+
+
+def failing(_: Request, code: str) -> Failure | None:
+    """Codes that may come at any time: INTERNAL, and (AS-34) those of the transport and of authentication."""
+    if code == INTERNAL:
+        return Failure()
+    return Failure((AS_34["b"],), driven=False) if code in TRANSPORT else None
 
 
 def _failed(fleet: Fleet, step: Step) -> Step:
@@ -180,7 +184,7 @@ def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letters: list[str]) -
         anything = View(robot.id, endpoint, unheard=True)
         if letter == "a":
             yield Emission(topic, anything, ())
-        yield Emission(topic, anything, (), optional=True, stays=True)
+        yield Emission(topic, anything, (), stays=True)
     elif shown is None and letter == "c":
         yield _blank(topic, robot, endpoint)
     elif shown is None or (endpoint is Endpoint.NETWORK and letter == "c"):
@@ -218,7 +222,7 @@ def _forgotten(fleet: Fleet) -> Step:
     """Any robot may report anything from now on: every stream may show it any number of times."""
     after = evolve(fleet, unheard=True)
     emits = tuple(
-        Emission(told(fleet, robot, endpoint), View(robot.id, endpoint, unheard=True), (), optional=True, stays=True)
+        Emission(told(fleet, robot, endpoint), View(robot.id, endpoint, unheard=True), (), stays=True)
         for endpoint, robot in each(one for one in fleet.robots if one.owned)
     )
     return Step(after, emits=emits, label="robots report by themselves")
@@ -241,7 +245,7 @@ def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assu
     if part == LOCALIZATION:
         # Its content is not looked at (AS-24), so whether a message is due is not known either.
         shown = view(robot, Endpoint.ROBOT)
-        emits = (Emission(told(fleet, robot, Endpoint.ROBOT), shown, (), optional=True),) if shown and robot.owned else ()
+        emits = (Emission(told(fleet, robot, Endpoint.ROBOT), shown, (), stays=True),) if shown and robot.owned else ()
         yield Step(fleet, emits=emits, assumes=assumes, label="report")
         return
     if value is None and part in TOPICAL.values() and part != WIFI and robot.part(part) is not None:
@@ -284,7 +288,7 @@ def _ways(
     strict = tuple(one.of.besides(*one.letters) for one in lenient)
     yield (Emission(topic, shown, ()),), strict
     for one in lenient:
-        yield (Emission(topic, shown, (), optional=True, stays=True),), (one,)
+        yield (Emission(topic, shown, (), optional=True),), (one,)
 
 
 def _topical(
@@ -298,7 +302,7 @@ def _topical(
     if shown is None or (shown == view(before, endpoint)):
         yield (), ()
     elif endpoint is Endpoint.NETWORK and not shown.linked:
-        yield (Emission(told(fleet, after, endpoint), shown, (), optional=True, stays=True),), ()
+        yield (Emission(told(fleet, after, endpoint), shown, (), optional=True),), ()
     else:
         yield from _ways(fleet, shown, after, _minor(endpoint, before, after))
 
@@ -349,7 +353,7 @@ def _reconnected(fleet: Fleet, before: Robot, after: Robot) -> Iterator[Emission
     """What a change of the connection may bring to the other streams: what they withheld, or that the network is gone."""
     network = view(after, Endpoint.NETWORK)
     if network:
-        yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), optional=True, stays=True)
+        yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), stays=True)
     if before.offline and after.connection is ConnectionState.STATE_CONNECTED:
         for endpoint in (Endpoint.BATTERY, Endpoint.ERRORS, Endpoint.NAVIGATION):
             shown = view(after, endpoint)
@@ -363,7 +367,7 @@ def restarted(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tupl
     if robot is None:
         return ()
     emits = tuple(
-        Emission(told(fleet, robot, endpoint), shown, (), optional=True)
+        Emission(told(fleet, robot, endpoint), shown, (), stays=True)
         for endpoint in Endpoint
         if robot.owned and not fleet.unheard and (shown := view(robot, endpoint))
     )
@@ -385,7 +389,7 @@ def moved(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[St
         if moves is Moves.FOLLOWED and robot.owned:
             # It joins the streams of its new place; those by robot ids may see it announced again.
             emits = tuple(
-                Emission(told(into, after, endpoint), shown, (), optional=True)
+                Emission(told(into, after, endpoint), shown, (), stays=True)
                 for endpoint in Endpoint
                 if (shown := _anything(fleet, after, endpoint))
             )

@@ -14,7 +14,7 @@ from missionfsm.bear.status import (
     Happening,
     initial,
 )
-from missionfsm.bear.status_effects import armed, moved, outcomes, reported, restarted
+from missionfsm.bear.status_effects import armed, failing, moved, outcomes, reported, restarted
 from missionfsm.bear.status_messages import BatteryMode, ConnectionState, Stuck
 from missionfsm.bear.status_readings import AMBIGUITIES, AS_01, AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_34
 from missionfsm.bear.status_rules import OPERATIONS
@@ -135,6 +135,7 @@ SPEC = Spec(
     initial=initial,
     operations=OPERATIONS,
     outcomes=outcomes,
+    failing=failing,
     drives={
         one.name: one
         for one in (

@@ -2,12 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from attrs import frozen
 
 from missionfsm.kernel.codec import JSON
 
 ANY_NAME = "$name"
 """Stands in a prompt's params for a name that the tester picks: one seen so far, or a wrong one."""
+
+
+def pick(kind: str, slot: int = 0) -> JSON:
+    """Stands in params for a name of a kind that the tester picks: one seen so far, or a wrong one.
+
+    Where one name is meant twice the slot is the same.
+    """
+    return {"$pick": kind, "slot": slot}
+
+
+def new(kind: str) -> JSON:
+    """Stands in params for a name of a kind that was never used."""
+    return {"$new": kind}
+
+
+def as_text(value: JSON) -> JSON:
+    """Stands in params for the JSON text of a value that may hold such stand-ins."""
+    return {"$text": value}
+
+
+def _as_it_is(name: Any) -> JSON:  # noqa: ANN401 - a name
+    return name
+
+
+@frozen
+class Naming:
+    """How a tester writes names into params, and what names it may make up.
+
+    A name is ``(kind, value)``. `write` gives its JSON, `make` a name of a kind that belongs to a serial number, which
+    is 0 for one that is never anything's.
+    """
+
+    write: Callable[[Any], JSON] = _as_it_is
+    make: Callable[[str, int], Any] = lambda kind, serial: (kind, serial)
 
 
 @frozen

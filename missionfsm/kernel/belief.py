@@ -55,6 +55,7 @@ class Edge:
         retired: numbers of names that are gone for good.
         rules: ids of the rules that were exercised.
         touched: the bits of the ambiguities on which this event's explanations depend.
+        appends: whether the new names follow those before, and nothing else becomes of any.
         walked: how often.
     """
 
@@ -63,6 +64,7 @@ class Edge:
     retired: tuple[int, ...]
     rules: tuple[str, ...]
     touched: int
+    appends: bool = False
     walked: int = 0
 
 
@@ -81,6 +83,7 @@ class Automaton:
         self.oracle = Oracle(spec, driven)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges: list[Edge] = []
+        self._times: dict[str, int] = {}
 
     def start(self, world: object) -> Node:
         """The node in which a fresh instance in this world is."""
@@ -92,9 +95,18 @@ class Automaton:
         node = self._nodes.get(explanations)
         if node is None:
             if len(self._nodes) >= NODES:
-                self._nodes.clear()
+                self._start_over()
             node = self._nodes[explanations] = Node(explanations, width)
         return node
+
+    def _start_over(self) -> None:
+        """Forget everything but how often the rules were exercised."""
+        self._times = self.exercised
+        for node in self._nodes.values():
+            node.next.clear()
+        self._nodes.clear()
+        self._edges.clear()
+        self.oracle.forget()
 
     def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
@@ -121,6 +133,7 @@ class Automaton:
             retired,
             tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules)),
             touched,
+            len(keep) > node.width and keep == tuple(range(len(keep))) and not retired,
         )
         node.next[symbol] = edge
         self._edges.append(edge)
@@ -129,7 +142,7 @@ class Automaton:
     @property
     def exercised(self) -> dict[str, int]:
         """How often each rule was exercised by all beliefs that walked here."""
-        times: dict[str, int] = {}
+        times = dict(self._times)
         for edge in self._edges:
             if edge.walked:
                 for rule in edge.rules:
@@ -198,21 +211,23 @@ class Belief:
         """The event with numbers for names, as the automaton knows it, and the names that are new."""
         numbers = self._numbers
         new: list[Name] = []
+        if type(event) is Received:
+            channel = numbers.get(event.channel)
+            if channel is None:
+                (channel,) = self._number((event.channel,), new)
+            relations = self._relations(event.channel, event.marks) if event.marks else ()
+            return (Received, event.content, self._number(event.names, new), relations, channel), new
+        if type(event) is Called:
+            args = self._number(event.names, new) if event.names else ()
+            (call,) = (GONE,) if event.lost else self._number((event.call,), new)
+            return (Called, event.request, args, event.lost, call), new
+        if type(event) is Returned:
+            call = numbers.get(event.call, GONE)
+            return (Returned, event.answer, self._number(event.names, new) if event.names else (), call), new
         if type(event) is Settled:
             return (Settled,), new
         if type(event) is Driven:
             return (Driven, event.event, self._number(event.names, new)), new
-        if type(event) is Returned:
-            call = numbers.get(event.call, GONE)
-            return (Returned, event.answer, self._number(event.names, new), call), new
-        if type(event) is Called:
-            args = self._number(event.names, new)
-            (call,) = (GONE,) if event.lost else self._number((event.call,), new)
-            return (Called, event.request, args, event.lost, call), new
-        if type(event) is Received:
-            (channel,) = self._number((event.channel,), new)
-            relations = self._relations(event.channel, event.marks) if event.marks else ()
-            return (Received, event.content, self._number(event.names, new), relations, channel), new
         if type(event) is Ended:
             (channel,) = self._number((event.channel,), new)
             return (Ended, event.code, channel), new
@@ -222,7 +237,13 @@ class Belief:
         raise TypeError(message)
 
     def _number(self, names: tuple[Name, ...], new: list[Name]) -> tuple[int, ...]:
-        numbers, found = self._numbers, []
+        numbers = self._numbers
+        if not new:
+            try:
+                return tuple(map(numbers.__getitem__, names))  # most often all of them are known
+            except KeyError:
+                pass
+        found = []
         for name in names:
             number = numbers.get(name)
             if number is None:
@@ -264,6 +285,10 @@ class Belief:
         self.node = edge.node
         self.touched |= edge.touched
         if edge.keep is None:
+            return
+        if edge.appends:
+            self._numbers.update(zip(new, range(len(self._names), len(self._names) + len(new)), strict=True))
+            self._names += new
             return
         names = self._names + new
         for number in edge.retired:

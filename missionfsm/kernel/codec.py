@@ -55,6 +55,7 @@ class Codec:
             timestamp so many seconds after the epoch.
         write_world: a world to the parameters of `reset`.
         write_drive: (event, names) to JSON.
+        write_happened: (event, names) to what the result of a drive says besides that it happened.
     """
 
     methods: tuple[str, ...]
@@ -71,3 +72,4 @@ class Codec:
     write_message: Callable[[Any, tuple[Name, ...], int, int, float], JSON]
     write_world: Callable[[Any], JSON]
     write_drive: Callable[[Any, tuple[Name, ...]], JSON]
+    write_happened: Callable[[Any, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}

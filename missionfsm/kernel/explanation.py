@@ -52,14 +52,15 @@ class InFlight:
 class Owed:
     """A message that a channel has still to show.
 
-    A `passing` one may be left out, since its state does not last or since nobody has to say it; one that `stays` may
-    be shown any number of times, until something later is.
+    A `passing` one may be left out, since its state does not last or since nobody has to say it. In the second case,
+    where it is `optional`, it may also come once things have settled; one that `stays` may come any number of times.
     """
 
     view: View
     names: Names
     passing: bool = False
     only: Assumption | None = None
+    optional: bool = False
     stays: bool = False
 
 
@@ -133,7 +134,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         return Ready(one.answer, each(one.names), one.assumes, one.rules) if one.names else one
 
     def owed(one: Owed) -> Owed:
-        return Owed(one.view, each(one.names), one.passing, one.only, one.stays) if one.names else one
+        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays) if one.names else one
 
     return Explanation(
         explanation.state,
@@ -207,8 +208,18 @@ def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
 def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
     """The message that an emission owes, with its names looked up."""
     names = after if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
-    passing = passing or emission.optional or emission.only is not None
-    return Owed(emission.view, names, passing, emission.only, emission.stays)
+    optional = emission.optional or emission.stays
+    passing = (passing and not emission.certain) or optional or emission.only is not None
+    return Owed(emission.view, names, passing, emission.only, optional, emission.stays)
+
+
+def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
+    """The channel with more to show; an offer that it makes already is not made twice."""
+    owed = channel.owed
+    for one in added:
+        if not (one.stays and owed and owed[-1] == one):
+            owed = (*owed, one)
+    return evolve(channel, owed=owed)
 
 
 def take(
@@ -247,15 +258,12 @@ def take(
         channels = tuple(channel for channel in channels if channel.topic not in step.closes)
     if step.emits:
         channels = tuple(
-            evolve(
+            _owing(
                 channel,
-                owed=(
-                    *channel.owed,
-                    *(
-                        owes(emission, pool, names, passing=passing)
-                        for emission in step.emits
-                        if concerns(channel.topic, emission.topic)
-                    ),
+                (
+                    owes(emission, pool, names, passing=passing)
+                    for emission in step.emits
+                    if concerns(channel.topic, emission.topic)
                 ),
             )
             for channel in channels

@@ -79,19 +79,18 @@ class Oracle:
 
     # What the spec says, remembered.
 
+    def forget(self) -> None:
+        """Drop what the spec said; it will say the same again."""
+        for memory in (self._outcomes, self._urgent, self._unseen, self._matches):
+            memory.clear()
+
     def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
         """Every answer to a request in a state."""
         key = (state, request, refs)
         found = self._outcomes.get(key)
         if found is None:
-            found = self._outcomes[key] = tuple(
-                step for step in self.spec.outcomes(state, request, refs) if self._may_come(step)
-            )
+            found = self._outcomes[key] = self.spec.outcomes(state, request, refs)
         return found
-
-    def _may_come(self, step: Step) -> bool:
-        """Whether an outcome is possible here: failures come by themselves only where nobody drives them."""
-        return step.label != SPONTANEOUS_FAILURE or "fault" not in self.driven
 
     def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
         """What must happen before things have settled."""
@@ -562,10 +561,6 @@ class Oracle:
                     reached[key] = later.explanation.assumed
 
 
-SPONTANEOUS_FAILURE = "a failure that nobody caused"
-"""The label of outcomes that stand for failure codes; where a tester drives faults, they come only when driven."""
-
-
 def _point(explanation: Explanation) -> Explanation:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
     return evolve(explanation, assumed=0, lost=())
@@ -578,7 +573,7 @@ _EQUAL = (Match(),)
 def _offers(channel: Channel) -> tuple[Owed, ...]:
     """What a channel may still show once everything else is passed over."""
     last = channel.owed[-1] if channel.owed else None
-    return (last,) if last and last.stays else ()
+    return (last,) if last and last.optional else ()
 
 
 def _channel_names(explanation: Explanation) -> set[int]:

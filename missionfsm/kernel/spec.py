@@ -41,8 +41,9 @@ class Emission:
     `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
     the state after the step.
     `only` is the assumption without which the message is not sent at all; such a message may always be left out.
-    `optional` is a message that may be left out whatever is assumed; one that `stays` as well is an offer: it may come
-    at any time until something later is shown, settled or not, and more than once.
+    `optional` is a message that may be left out whatever is assumed, and that may come at any time, settled or not,
+    until something later is shown. One that `stays` is optional as well, and may come more than once.
+    `certain` is a message that comes even where the state after the step does not last.
     """
 
     topic: Hashable
@@ -51,18 +52,20 @@ class Emission:
     only: Assumption | None = None
     optional: bool = False
     stays: bool = False
+    certain: bool = False
 
 
 @frozen
 class Opening:
     """A channel that a step opens: its topic, and its name as a reference like those in `Step.names`.
 
-    `owed` are the messages that it starts with.
+    `owed` are the messages that it starts with. `kind` is what its name is one of: ``stream`` or ``connection``.
     """
 
     topic: Hashable
     ref: int
     owed: tuple[Emission, ...] = ()
+    kind: str = "stream"
 
 
 @frozen
@@ -84,6 +87,7 @@ class Step:
         refs: the names that the answer mentions, in order.
         label: what happened, for people.
         applied: False for an outcome that may still take effect after its answer (a deadline that passed).
+        kinds: what the names that it adds are names of, in order, for a model that makes them up.
     """
 
     after: State
@@ -97,6 +101,22 @@ class Step:
     refs: tuple[int, ...] = ()
     label: str = ""
     applied: bool = True
+    kinds: tuple[str, ...] = ()
+
+
+@frozen
+class Failure:
+    """That a call may fail with a code whatever the state is, without anybody's doing.
+
+    Attributes:
+        assumes: the readings under which it may.
+        open_ended: whether the call may all the same take effect, at once or later (a deadline that passed).
+        driven: whether it comes only when driven, where a tester drives faults.
+    """
+
+    assumes: tuple[Assumption, ...] = ()
+    open_ended: bool = False
+    driven: bool = True
 
 
 @frozen
@@ -152,6 +172,7 @@ class Drive:
             positions of the event's names among those of the state, as for outcomes.
         by_itself: the events that the environment may produce unseen where nobody drives them.
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
+        ends: what arrived while it was being done, arrived before it (it ends a channel).
     """
 
     name: str
@@ -159,6 +180,7 @@ class Drive:
     by_itself: tuple[Hashable, ...] = ()
     cite: Citation | None = None
     renumbers: Callable[[Any], tuple[Hashable, ...]] | None = None
+    ends: bool = False
 
 
 @frozen
@@ -181,6 +203,8 @@ class Spec:
         operations: what callers may ask, by name.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
             are the positions of the request's names among those of the state, None for one that the state has not.
+        failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated
+            among the outcomes.
         drives: what a tester may make happen, by name.
         urgent: what must have happened once things have settled.
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
@@ -197,6 +221,7 @@ class Spec:
             they do not; None where they have to be equal.
         situation: state to what of it decides its steps: in states with the same one, the same calls have the same
             outcomes, and the same events happen in the same ways.
+        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
         shortcut: (requests, events, assumed, most names) to a function from a state to the states after every step,
             in any order and perhaps some twice: what the functions above give, only faster.
     """
@@ -214,6 +239,7 @@ class Spec:
     names: Callable[[State], int]
     request_operation: Callable[[Any], str]
     ambiguities: tuple[Ambiguity, ...] = ()
+    failing: Callable[[Any, str], Failure | None] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr
@@ -223,6 +249,7 @@ class Spec:
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
+    shape: Callable[[State], Hashable] = lambda state: state
     shortcut: Callable[..., Callable[[State], list[State]]] | None = None
 
     @property

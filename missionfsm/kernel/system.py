@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.spec import Spec
 
@@ -19,3 +19,4 @@ class System:
     spec: Spec
     codec: Codec
     alphabet: Callable[[JSON, Bounds], Alphabet]
+    naming: Naming = Naming()

@@ -133,7 +133,7 @@ class Judge:
             events=self.events,
             readings=self.belief.readings,
             exercised=self.exercised,
-            uncovered=uncovered(self.system.spec, self.exercised),
+            uncovered=uncovered(self.system.spec, self.exercised, self.belief.readings),
             violation=self.violation,
             because=because,
             flagged=flagged(self.system.spec, self.belief.readings),
@@ -145,9 +145,16 @@ class Judge:
         return self.automaton.exercised
 
 
-def uncovered(spec: Spec, exercised: Mapping[str, int]) -> tuple[str, ...]:
-    """The ids of the rules that were not exercised."""
-    return tuple(rule.id for rule in spec.all_rules if rule.id not in exercised)
+def uncovered(
+    spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]
+) -> tuple[str, ...]:
+    """The ids of the rules that were not exercised, though the readings that are followed have them."""
+    return tuple(
+        rule.id
+        for rule in spec.all_rules
+        if rule.id not in exercised
+        and (rule.under is None or set(rule.under.letters) & set(readings.get(rule.under.of.id, rule.under.letters)))
+    )
 
 
 def flagged(spec: Spec, readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:

@@ -21,11 +21,18 @@ from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check import flagged, uncovered
 from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, introduce
+from missionfsm.tools.guide import Guide
 from missionfsm.tools.shrink import shrink
 from missionfsm.tools.verdict import Outcome, Verdict
 
 DEFAULT_EXAMPLES = 100
 DEFAULT_STEPS = 40
+DEFAULT_TOURS = 60
+CHOICES = 12
+"""Among how many of the least walked edges a guided step draws."""
+
+SETTLED = 0.6
+"""How often a tour waits for everything to settle after a step."""
 
 
 class _Found(BaseException):  # noqa: N818 - no error of the run: it passes through Hypothesis as an interrupt does
@@ -48,7 +55,7 @@ class _Run:
     about: Introduced
     automaton: Automaton
     bounds: Bounds
-    worlds: tuple[JSON, ...]
+    guide: Guide
     progress: Callable[[], None]
     last: Conversation | None = None
     events: int = 0
@@ -79,6 +86,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     *,
     examples: int = DEFAULT_EXAMPLES,
     steps: int = DEFAULT_STEPS,
+    tours: int = DEFAULT_TOURS,
     seed: int | None = None,
     readings: Mapping[str, str] | None = None,
     bounds: Bounds | None = None,
@@ -89,6 +97,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     Args:
         examples: conversations, each from a reset on.
         steps: calls and drives in a conversation, at most.
+        tours: conversations before those that walk systematically where the run has been least.
         seed: the same seed asks the same of the same implementation.
         readings: readings that the implementation has to follow; the others are found out.
         progress: called after every conversation.
@@ -101,8 +110,8 @@ def conform(  # noqa: PLR0913 - every one has a default
     about = introduce(system, subject)
     automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
     bounds = bounds or Bounds(goals=3)
-    worlds = system.alphabet({}, bounds).worlds
-    run = _Run(system, subject, about, automaton, bounds, worlds, progress)
+    guide = Guide(system, system.alphabet({}, bounds).worlds, bounds, about.drives)
+    run = _Run(system, subject, about, automaton, bounds, guide, progress)
     machine = with_seed(chosen)(_machine(run))
     options = settings(
         max_examples=examples,
@@ -118,12 +127,46 @@ def conform(  # noqa: PLR0913 - every one has a default
     )
     try:
         with with_reporter(lambda _: None), contextlib.suppress(_Found):
+            _tour(run, random.Random(chosen), tours, steps)
             run_state_machine_as_test(machine, settings=options)
     except _Broke as broke:
         raise broke.error from None
     if run.last and not run.last.judge.exhausted and not run.last.right and _does_anything(run):
         run.last = shrink(run.last, run.attempt, run.simpler)
     return _verdict(run, chosen)
+
+
+def _tour(run: _Run, draw: random.Random, conversations: int, steps: int) -> None:
+    """Systematic conversations: every step walks the edge that was walked least, with the stream watched."""
+    streams = run.system.codec.streams
+    for number in range(conversations):
+        world = number % len(run.guide.worlds)
+        with _stopping():
+            run.last = run.talk(run.guide.worlds[world])
+            opening = [(streams[0], {})] if len(streams) == 1 and number % 4 != 3 else []
+            for method, params in opening:
+                _act(run, method, params)
+            for _ in range(steps):
+                proposals = run.guide.proposals(run.last, world)
+                if not proposals:
+                    break
+                best = run.guide.walked[proposals[0].edge]
+                equal = [one for one in proposals if run.guide.walked[one.edge] == best]
+                proposal = equal[draw.randrange(len(equal))]
+                run.guide.note(proposal)
+                _act(run, proposal.method, proposal.params, proposal.name)
+                if draw.random() < SETTLED:
+                    _act(run, "settle")
+            _act(run, "settle")
+        _gather(run, run.last)
+        run.progress()
+
+
+def _act(run: _Run, method: str, params: JSON = None, name: Given | str | None = None) -> None:
+    assert run.last is not None, "a conversation has begun"  # noqa: S101 - whoever calls has begun one
+    if not run.last.perform(Action(len(run.last.actions) + 1, method, params, name)):
+        _gather(run, run.last)
+        raise _Found
 
 
 def _verdict(run: _Run, chosen: int) -> Verdict:
@@ -147,7 +190,7 @@ def _verdict(run: _Run, chosen: int) -> Verdict:
         run.events,
         followed,
         exercised,
-        uncovered(spec, exercised),
+        uncovered(spec, exercised, followed),
         violation,
         because,
         flagged(spec, followed),
@@ -158,7 +201,7 @@ def _does_anything(run: _Run) -> bool:
     """Whether any call but a subscription succeeds in a fresh instance."""
     if run.succeeded:
         return True
-    world = run.worlds[0]
+    world = run.guide.worlds[0]
     for prompt in run.system.alphabet(world, run.bounds).plain:
         if prompt.method in run.system.codec.streams:
             continue
@@ -169,32 +212,42 @@ def _does_anything(run: _Run) -> bool:
 
 
 def _machine(run: _Run) -> type[RuleBasedStateMachine]:
-    """The state machine: one rule for each operation, one for each drive that the adapter has, one to settle."""
-    alphabets = {index: run.system.alphabet(world, run.bounds) for index, world in enumerate(run.worlds)}
+    """The state machine: a rule for each operation and each drive of the adapter, one to settle, one that is guided."""
 
     class Machine(RuleBasedStateMachine):
         conversation: Conversation
-        alphabet: Alphabet
+        world: int
 
-        @initialize(world=st.integers(0, len(run.worlds) - 1), watched=st.booleans())
+        @property
+        def alphabet(self) -> Alphabet:
+            return run.guide.alphabets[self.world]
+
+        @initialize(world=st.integers(0, len(run.guide.worlds) - 1), watched=st.booleans())
         def start(self, world: int, watched: bool) -> None:  # noqa: FBT001 - drawn
-            self.alphabet = alphabets[world]
+            self.world = world
             with _stopping():
-                self.conversation = run.last = run.talk(run.worlds[world])
+                self.conversation = run.last = run.talk(run.guide.worlds[world])
             streams = run.system.codec.streams
             if watched and len(streams) == 1:
                 self.act(streams[0], {})
 
         def act(self, method: str, params: JSON = None, name: Given | str | None = None) -> None:
             with _stopping():
-                right = self.conversation.perform(Action(len(self.conversation.actions) + 1, method, params, name))
-            if not right:
-                _gather(run, self.conversation)
-                raise _Found
+                _act(run, method, params, name)
 
         @rule()
         def settle(self) -> None:
             self.act("settle")
+
+        @rule(data=st.data())
+        def walk_what_was_walked_least(self, data: st.DataObject) -> None:
+            proposals = run.guide.proposals(self.conversation, self.world)
+            if proposals:
+                proposal = proposals[data.draw(st.integers(0, min(len(proposals), CHOICES) - 1))]
+                run.guide.note(proposal)
+                self.act(proposal.method, proposal.params, proposal.name)
+                if data.draw(st.booleans()):
+                    self.act("settle")
 
         def teardown(self) -> None:
             if hasattr(self, "conversation") and self.conversation.right:

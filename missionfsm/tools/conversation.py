@@ -18,6 +18,7 @@ from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectEr
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transcript import Head, brief
 from missionfsm.tools.check import Judge
+from missionfsm.tools.picking import fill, is_template
 
 PROTOCOL = 1
 WRONG_NAME = "no-such-name"
@@ -65,12 +66,15 @@ class Action:
         method: a documented call, or ``drive``, ``settle``, ``cancel``.
         params: its JSON, with `ANY_NAME` where `name` goes.
         name: the name that is meant: one that was given, or a text that nothing is called.
+        picks: for each slot of the params (see `missionfsm.kernel.alphabet.pick`) the name that was given; a slot that
+            is not here gets a name that is never anything's.
     """
 
     serial: int
     method: str
     params: JSON = None
     name: Given | str | None = None
+    picks: tuple[tuple[int, Given], ...] = ()
 
 
 def filled(params: JSON, name: object) -> JSON:
@@ -96,6 +100,7 @@ class Conversation:
         self.judge = Judge(system, Head(system.name, world, about.drives), automaton, keep=1_000_000)
         self.actions: list[Action] = []
         self.given: dict[Given, object] = {}
+        self._acting = self._learnt = 0
         self.succeeded = 0
         # What was still under way before a reset belongs to nobody.
         self._result("reset", {"world": world})
@@ -110,6 +115,10 @@ class Conversation:
         self.actions.append(action)
         name = self.given.get(action.name, WRONG_NAME) if isinstance(action.name, Given) else action.name
         params = action.params if action.name is None else filled(action.params, name)
+        if is_template(params):
+            picked = {slot: self.given[given] for slot, given in action.picks if given in self.given}
+            params = fill(params, picked, self.system.naming, action.serial)
+        self._acting, self._learnt = action.serial, 0
         if action.method == "settle":
             self._settle()
         elif action.method == "drive":
@@ -132,11 +141,15 @@ class Conversation:
 
     def _learn(self, number: int, method: str, result: JSON) -> None:
         answer, names = self.system.codec.answer(method, result)
-        for position, name in enumerate(names):
-            if name not in self.given.values():
-                self.given[Given(number, position)] = name
+        self._know(names)
         if answer.code == OK and method not in self.system.codec.streams:
             self.succeeded += 1
+
+    def _know(self, names: tuple[object, ...]) -> None:
+        for name in names:
+            if name not in self.given.values():
+                self.given[Given(self._acting, self._learnt)] = name
+            self._learnt += 1
 
     def _drive(self, event: JSON) -> None:
         exchange = self._result("drive", event)
@@ -145,11 +158,16 @@ class Conversation:
         if not isinstance(happened, bool):
             message = f"the adapter answered drive with {brief(exchange.result)}, not with happened true or false"
             raise SubjectError(message)
-        self._notifications(exchange.before)
+        first = not happened or self.system.spec.drives[event["event"]].ends
+        if first:
+            self._notifications(exchange.before)
         if happened:
             # What the environment gave a name to (a connection), the history says with the drive.
-            self._note({"drive": {**event, **{key: value for key, value in result.items() if key != "happened"}}})
-        self._notifications(exchange.after)
+            told = {**event, **{key: value for key, value in result.items() if key != "happened"}}
+            self._note({"drive": told})
+            self._know(self.system.codec.drive(told)[1])
+        # What the drive caused may have come before its answer; what came earlier still may come now.
+        self._notifications(exchange.after if first else exchange.before + exchange.after)
 
     def _settle(self) -> None:
         exchange = self._result("settle", {})
@@ -173,7 +191,11 @@ class Conversation:
                 closed = {"stream": one.params["stream"], "closed": True}
                 self._note({**closed, "error": error} if error else closed)
             else:
-                self._note({"connection": one.params.get("connection", 1), "line": one.params["line"]})
+                line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
+                self._note(line)
+                self._know((("connection", line["connection"]),))
+                for names, _, _ in self.system.codec.strip(line["line"]):
+                    self._know(names)
 
     def _note(self, line: JSON) -> None:
         if self.right:

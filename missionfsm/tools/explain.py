@@ -10,7 +10,7 @@ from attrs import frozen
 from missionfsm.kernel.belief import Belief
 from missionfsm.kernel.explanation import Explanation
 from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE, ExhaustedError, Oracle
+from missionfsm.kernel.oracle import ExhaustedError, Oracle
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Mismatch, Spec
@@ -109,9 +109,7 @@ def _answers(belief: Belief, oracle: Oracle, event: Returned) -> Iterator[_Optio
                 continue
             refs = tuple(here.ref(arg) for arg in call.args)
             for step in oracle.outcomes(here.state, call.request, refs):
-                if step.answer is None or step.label == SPONTANEOUS_FAILURE:
-                    continue
-                if not _compatible(here, step.assumes):
+                if step.answer is None or not _compatible(here, step.assumes):
                     continue
                 names = tuple(here.names[ref] if ref < len(here.names) else -2 for ref in step.refs)
                 yield _Option(_known(belief, step.answer, names), step.rules, tuple(map(str, step.assumes)))

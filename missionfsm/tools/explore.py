@@ -10,7 +10,6 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Bounds, Prompt
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import ANYTHING, meet
 from missionfsm.kernel.spec import Invariant, Spec, Step
 from missionfsm.kernel.system import System
@@ -39,10 +38,14 @@ class Labels:
 
 @frozen
 class Transition:
-    """A step that the explorer took: what was done and how it came out."""
+    """A step that the explorer took: what was done (a request, an event, or None: by itself) and how it came out."""
 
-    label: str
+    what: Any
     step: Step
+
+    def words(self, spec: Spec) -> str:
+        """What was done, for people."""
+        return "by itself" if self.what is None else spec.describe(self.what)
 
 
 @frozen
@@ -126,13 +129,12 @@ def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
     for request, named in labels.requests:
         for refs in _references(spec, state, named=named):
             for step in spec.outcomes(state, request, refs):
-                if step.label != SPONTANEOUS_FAILURE:
-                    yield Transition(spec.describe(request), step)
+                yield Transition(request, step)
     for event in labels.events:
         for step in spec.drives[event.name].steps(state, event, ()):
-            yield Transition(spec.describe(event), step)
+            yield Transition(event, step)
     for step in (*spec.urgent(state), *spec.spontaneous(state)):
-        yield Transition("by itself", step)
+        yield Transition(None, step)
 
 
 def reachable(
@@ -234,7 +236,7 @@ class _Tally:
                 continue
             self.transitions += times
             if one.step.answer is not None:
-                name = one.label.partition("(")[0]
+                name = self.spec.request_operation(one.what)
                 codes = self.by_operation.setdefault(name, {})
                 codes[one.step.answer.code] = codes.get(one.step.answer.code, 0) + times
 
@@ -272,6 +274,6 @@ def _counterexample(
     path: list[str] = []
     here = state
     while (before := found[here]) is not None:
-        path.append(next(one.label for one in steps(spec, before, labels) if one.step.after == here))
+        path.append(next(one.words(spec) for one in steps(spec, before, labels) if one.step.after == here))
         here = before
     return Counterexample(invariant.name, invariant.says, tuple(reversed(path)), spec.describe(state))

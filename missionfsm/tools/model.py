@@ -6,13 +6,13 @@ snapshot and what is asked of it the next snapshot and everything that an observ
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from attrs import evolve, frozen
 
 from missionfsm.kernel.history import Answer, Name
-from missionfsm.kernel.oracle import SPONTANEOUS_FAILURE
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.spec import Emission, Mismatch, Step
 from missionfsm.kernel.system import System
@@ -131,18 +131,25 @@ class Model:
         step = self._choose(self.system.spec.drives[event.name].steps(here.state, event, refs))
         if step is None:
             return here, Reply(None, happened=False)
+        here, names = self._brought(here, step, names)
         after, sent, _ = self._take(here, step, names)
         after, sent = self._settle(after, sent)
-        return after, Reply(None, (), tuple(sent), step.rules)
+        return after, Reply(None, names, tuple(sent), step.rules)
+
+    def _brought(self, here: Snapshot, step: Step, names: tuple[Name, ...]) -> tuple[Snapshot, tuple[Name, ...]]:
+        """The names that an event brings along; those of channels that it opens are made up where it was not told."""
+        kinds = {opening.ref: opening.kind for opening in step.opens if opening.ref < 0}
+        while -len(names) - 1 in kinds:
+            here = evolve(here, minted=here.minted + 1)
+            names = (*names, (kinds[-len(names) - 1], here.minted))
+        return here, names
 
     def cancel(self, here: Snapshot, channel: Name) -> Snapshot:
         """Give a stream up; one that does not exist is no error."""
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
     def _choose(self, steps: tuple[Step, ...]) -> Step | None:
-        return next(
-            (step for step in steps if step.label != SPONTANEOUS_FAILURE and meet(self.choice, step.assumes)), None
-        )
+        return next((step for step in steps if meet(self.choice, step.assumes)), None)
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
         """Take everything urgent at once."""
@@ -156,13 +163,16 @@ class Model:
     def _take(
         self, here: Snapshot, step: Step, given: tuple[Name, ...]
     ) -> tuple[Snapshot, list[Sent], tuple[Name, ...]]:
-        streams = [one.ref for one in step.opens]
-        highest = max((*(step.names or ()), *step.refs, *streams, len(here.names) - 1))
+        channels = {one.ref: one.kind for one in step.opens}
+        highest = max((*(step.names or ()), *step.refs, *channels, len(here.names) - 1))
         pool = list(here.names)
         minted = here.minted
-        for ref in range(len(pool), highest + 1):
+        for ref, kind in zip(range(len(pool), highest + 1), itertools.chain(step.kinds, itertools.repeat("")), strict=False):
             minted += 1
-            pool.append(("stream", minted) if ref in streams else self._mint(minted))
+            if ref in channels:
+                pool.append((channels[ref], minted))
+            else:
+                pool.append(self.system.naming.make(kind, minted) if kind else self._mint(minted))
         pool += reversed(given)
         names = here.names if step.names is None else tuple(pool[ref] for ref in step.names)
         after = evolve(here, state=step.after, names=names, minted=minted)
@@ -194,7 +204,7 @@ class Model:
         names = here.names if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
         if emission.only and not meet(self.choice, (emission.only,)):
             return here
-        if passing and not self._would_show(emission.view, names):
+        if passing and not emission.certain and not self._would_show(emission.view, names):
             return here
         repeats = self.system.spec.delivery(channel.topic).repeats
         for _ in range(2 if repeats and meet(self.choice, (repeats,)) else 1):

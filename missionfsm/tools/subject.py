@@ -79,9 +79,12 @@ class Reference:
         return Exchange({})
 
     def _drive(self, params: JSON) -> Exchange:
-        event, names = self.model.system.codec.drive(params)
+        codec = self.model.system.codec
+        event, names = codec.drive(params)
         self._here, reply = self.model.drive(self._started(), event, names)
-        return Exchange({"happened": reply.happened}, after=self._notifications(reply))
+        self._minted = self._here.minted
+        told = codec.write_happened(event, reply.names) if reply.happened else {}
+        return Exchange({"happened": reply.happened, **told}, after=self._notifications(reply))
 
     def _cancel(self, params: JSON) -> Exchange:
         stream = params.get("stream") if isinstance(params, dict) else None

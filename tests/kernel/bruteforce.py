@@ -227,12 +227,11 @@ class World:
                 if not any(self.agrees(step.assumes) for step in self.spec.urgent(here.state)) and all(
                     self.told(stream) for stream in here.streams
                 ):
-                    streams = (evolve(one, owed=tuple(each for each in one.owed[-1:] if each.stays)) for one in here.streams)
-                    yield evolve(here, streams=tuple(streams))
+                    offers = [tuple(each for each in one.owed[-1:] if each.stays) for one in here.streams]
+                    left = (evolve(one, owed=offer) for one, offer in zip(here.streams, offers, strict=True))
+                    yield evolve(here, streams=tuple(left))
 
-    def _bound(
-        self, here: Configuration, ways: Iterable[list[tuple[int, Name]]]
-    ) -> Iterator[Configuration]:
+    def _bound(self, here: Configuration, ways: Iterable[list[tuple[int, Name]]]) -> Iterator[Configuration]:
         for pairs in ways:
             bound = here.bind(pairs)
             if bound:
@@ -260,9 +259,7 @@ class World:
             judged = [one for one in relations if not (one == "equal" and echo)]
             once_more = [delivery.repeats] if not echo else []
             once_more += [delivery.echoes] if not {"equal", "zero"}.isdisjoint(relations) else []
-            if any(
-                isinstance(right, Mismatch) or not self.agrees(right) for right in map(self.spec.sequence, judged)
-            ):
+            if any(isinstance(right, Mismatch) or not self.agrees(right) for right in map(self.spec.sequence, judged)):
                 continue
             shown: list[tuple[Message, tuple[Message, ...]]] = []
             if stream.last and any(again is not None and self.agrees([again]) for again in once_more):
@@ -280,9 +277,7 @@ class World:
                         after = evolve(stream, last=evolve(message, optional=False, stays=False), owed=left)
                         streams = (*here.streams[:at], after, *here.streams[at + 1 :])
                         pairs = [(message.things[ref], event.names[to]) for ref, to in match.names]
-                        yield from self._bound(
-                            evolve(here, streams=streams), [[(stream.thing, event.channel), *pairs]]
-                        )
+                        yield from self._bound(evolve(here, streams=streams), [[(stream.thing, event.channel), *pairs]])
 
 
 class BruteForce:

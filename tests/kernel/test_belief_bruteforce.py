@@ -10,17 +10,29 @@ from attrs import frozen
 from bruteforce import BruteForce
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from toys import FLAKY_LAMP, LAMP, PLAIN_TICKETS, REGISTER, TICKETS, Event
+from toys import FLAKY_LAMP, LAMP, NEWS, PLAIN_TICKETS, REGISTER, TICKETS, Event
 
 from missionfsm.kernel import history
 from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Name, Received, Returned, Settled
-from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, RESOURCE_EXHAUSTED, UNAVAILABLE
+from missionfsm.kernel.rules import (
+    DEADLINE_EXCEEDED,
+    FAILED_PRECONDITION,
+    NOT_FOUND,
+    OK,
+    RESOURCE_EXHAUSTED,
+    UNAVAILABLE,
+)
 from missionfsm.kernel.spec import Spec
 
 NAMES = ("x", "y", "z")
 STREAMS: tuple[Name, ...] = (("stream", 1), ("stream", 2))
+MOST = 1_500
+"""A conversation with so many configurations is not followed further."""
 DEADLINE = (Answer(DEADLINE_EXCEEDED), 0)
+
+Requests = dict[tuple[object, ...], tuple[int, tuple[tuple[Answer, int], ...]]]
+"""Every request with the number of names that it takes, and its answers with the number of theirs."""
 
 
 @frozen(eq=False)
@@ -28,7 +40,7 @@ class Alphabet:
     """What may be observed of a toy.
 
     Attributes:
-        requests: each with the number of names that it takes, and the answers with the number of theirs.
+        requests: what may be asked, and answered.
         contents: of messages, each with the number of names.
         marks: the numbers that a message may carry.
     """
@@ -36,7 +48,7 @@ class Alphabet:
     name: str
     spec: Spec
     worlds: tuple[object, ...]
-    requests: dict[tuple[object, ...], tuple[int, tuple[tuple[Answer, int], ...]]]
+    requests: Requests
     contents: tuple[tuple[object, int], ...] = ()
     drives: tuple[Event, ...] = ()
     ends: tuple[str, ...] = ()
@@ -66,7 +78,7 @@ REGISTERS = Alphabet(
     calls=5,
 )
 
-_TICKET_REQUESTS = {
+_TICKET_REQUESTS: Requests = {
     ("take", "red"): (0, ((Answer(OK), 1), (Answer(RESOURCE_EXHAUSTED), 0), DEADLINE)),
     ("take", "blue"): (0, ((Answer(OK), 1), DEADLINE)),
     ("drop",): (1, ((Answer(OK), 0), (Answer(NOT_FOUND), 0), (Answer(FAILED_PRECONDITION), 0))),
@@ -79,7 +91,7 @@ PLAIN = Alphabet("plain tickets", PLAIN_TICKETS, ((), ("red", "blue")), _TICKET_
 SERVED = Alphabet("tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, calls=3)
 DRIVEN = Alphabet("driven tickets", TICKETS, ((), ("red", "blue")), _TICKET_REQUESTS, _BOARDS, (Event("serve"),))
 
-_LAMP_REQUESTS = {
+_LAMP_REQUESTS: Requests = {
     ("press",): (0, (*_answers((FAILED_PRECONDITION, UNAVAILABLE), None), DEADLINE)),
     ("look",): (0, _answers((), "off", "warming", "on", "dead")),
     ("unplug",): (0, _answers((), None)),
@@ -88,10 +100,17 @@ _LAMP_REQUESTS = {
 }
 _LIGHTS = (("off", 0), ("warming", 0), ("on", 0), ("dead", 0), ("click", 0))
 _ENDS = (UNAVAILABLE, OK)
-LAMPS = Alphabet(
-    "lamp", LAMP, ("off",), _LAMP_REQUESTS, _LIGHTS, (Event("nudge"),), _ENDS, (1, 2), calls=3
-)
+LAMPS = Alphabet("lamp", LAMP, ("off",), _LAMP_REQUESTS, _LIGHTS, (Event("nudge"),), _ENDS, (1, 2), calls=3)
 FLAKY = Alphabet("flaky lamp", FLAKY_LAMP, ("off",), _LAMP_REQUESTS, _LIGHTS, (Event("nudge"),), _ENDS, calls=3)
+
+_NEWS_REQUESTS: Requests = {
+    ("flip", "left"): (0, _answers((), None)),
+    ("flip", "right"): (0, _answers((), None)),
+    ("hint",): (0, _answers((), None)),
+    ("watch",): (0, ((Answer(OK), -1),)),
+}
+_HEADLINES = tuple(((side, what), 0) for side, whats in (("left", (0, 1, "hint")), ("right", (0, 1))) for what in whats)
+PAPERS = Alphabet("news", NEWS, (0,), _NEWS_REQUESTS, _HEADLINES, ends=(UNAVAILABLE,), calls=4)
 
 
 class Conversation:
@@ -122,12 +141,12 @@ class Conversation:
                         for names in itertools.permutations(self.known, size)
                     ]
                 )
-        sorts += ([Returned(name, *answer) for answer in self.answers(request)] for name, request in self.pending.items())
-        contents = [
-            (content, names) for content, size in a.contents for names in itertools.permutations(NAMES, size)
-        ]
+        sorts += (
+            [Returned(name, *answer) for answer in self.answers(request)] for name, request in self.pending.items()
+        )
+        contents = [(content, names) for content, size in a.contents for names in itertools.permutations(NAMES, size)]
         for stream in STREAMS:
-            marks = [(("", mark),) for mark in a.marks] or [()]
+            marks: list[tuple[history.Mark, ...]] = [(("", mark),) for mark in a.marks] or [()]
             sorts.append([Received(stream, *what, mark) for what in contents for mark in marks])
         sorts.append([Driven(event) for event in a.drives])
         sorts.append([Ended(stream, code) for stream in STREAMS for code in a.ends])
@@ -153,7 +172,7 @@ class Conversation:
             self.seen |= dict.fromkeys((event.channel, *event.names))
 
 
-def replayed(alphabet: Alphabet, automaton: Automaton, world: object, events: list[history.Event]) -> Belief:
+def replayed(automaton: Automaton, world: object, events: list[history.Event]) -> Belief:
     """A belief that observed these events."""
     belief = Belief(automaton, world)
     for event in events:
@@ -176,26 +195,26 @@ def check(alphabet: Alphabet, automaton: Automaton, data: st.DataObject, steps: 
     slow = BruteForce(alphabet.spec, world, alphabet.driven)
     conversation = Conversation(alphabet)
     events: list[history.Event] = []
-    for _ in range(data.draw(st.integers(1, steps))):
+    for _ in range(steps):
         sorts = conversation.sorts()
         explained: list[list[history.Event]] = []
         for sort in sorts:
             right = [event for event in sort if slow.explains(event)]
-            fast = [event for event in sort if replayed(alphabet, automaton, world, events).observe(event)]
+            fast = [event for event in sort if replayed(automaton, world, events).observe(event)]
             assert (events, fast) == (events, right)
             if right:
                 explained.append(right)
-        if not explained:
+        if not explained or sum(map(len, slow.closed.values())) > MOST:
             return
         event = data.draw(st.sampled_from(data.draw(st.sampled_from(explained))))
         events.append(event)
         conversation.note(event)
         slow.observe(event)
-        belief = replayed(alphabet, automaton, world, events)
+        belief = replayed(automaton, world, events)
         assert (events, choices(alphabet, belief)) == (events, slow.choices)
 
 
-ALPHABETS = (REGISTERS, PLAIN, SERVED, DRIVEN, LAMPS, FLAKY)
+ALPHABETS = (REGISTERS, PLAIN, SERVED, DRIVEN, LAMPS, FLAKY, PAPERS)
 
 
 @pytest.mark.parametrize("alphabet", ALPHABETS, ids=lambda one: one.name)
@@ -203,7 +222,7 @@ def test_the_belief_accepts_what_brute_force_accepts(alphabet: Alphabet) -> None
     """On every event that could come next, at every point of a history, the belief decides as brute force does."""
     automaton = Automaton(alphabet.spec, alphabet.driven)
 
-    @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+    @settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
     @given(st.data())
     def compare(data: st.DataObject) -> None:
         check(alphabet, automaton, data)

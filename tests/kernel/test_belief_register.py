@@ -74,6 +74,8 @@ def accepted(events: list[Event]) -> bool:
 
 REQUESTS: tuple[Request, ...] = (("write", 1), ("write", 2), ("swap", 1, 2), ("swap", 2, 1), ("read",), ("read",))
 
+ANSWERS: dict[str, list[object]] = {"write": [None], "swap": [True, False], "read": [0, 1, 2]}
+
 
 @st.composite
 def histories(draw: st.DrawFn) -> tuple[list[Event], list[Operation]]:
@@ -85,7 +87,7 @@ def histories(draw: st.DrawFn) -> tuple[list[Event], list[Operation]]:
         if pending and draw(st.integers(0, 2)):
             number = pending.pop(draw(st.integers(0, len(pending) - 1)))
             sent = operations[number]
-            answers = {"write": [None], "swap": [True, False], "read": [0, 1, 2]}[sent.request[0]]
+            answers: list[object] = ANSWERS[sent.request[0]]
             late = sent.request[0] != "read" and not draw(st.integers(0, 4))
             answer = Answer(DEADLINE_EXCEEDED) if late else Answer(OK, draw(st.sampled_from(answers)))
             operations[number] = Operation(sent.start, sent.request, len(events), answer.code, answer.shape)

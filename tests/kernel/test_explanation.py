@@ -104,9 +104,7 @@ def test_names_are_bound_one_to_one(pairs: list[tuple[int, int]], names: Names |
 def test_a_name_is_bound_everywhere() -> None:
     """What a channel owes mentions the name that was found out."""
     bound = unify(PAIR, [(-2, 5)])
-    assert bound == evolve(
-        PAIR, names=(0, 5, -3), channels=(Channel(1, "topic", owed=(Owed("view", (5, 0)),)),)
-    )
+    assert bound == evolve(PAIR, names=(0, 5, -3), channels=(Channel(1, "topic", owed=(Owed("view", (5, 0)),)),))
 
 
 def test_the_name_of_what_is_no_more_is_spent() -> None:
@@ -177,5 +175,10 @@ def test_a_step_that_assumes_too_much_does_not_happen() -> None:
 def test_a_step_that_nobody_can_tell_changes_nothing() -> None:
     """A step into the very same state that shows nothing leaves no trace; one that shows something does."""
     here = Explanation("state")
-    steps = [Step(here.state), Step("next"), Step(here.state, emits=(Emission("news", "v"),)), Step(here.state, closes=("n",))]
+    steps = [
+        Step(here.state),
+        Step("next"),
+        Step(here.state, emits=(Emission("news", "v"),)),
+        Step(here.state, closes=("n",)),
+    ]
     assert [changes(here, step) for step in steps] == [False, True, True, True]

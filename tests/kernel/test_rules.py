@@ -9,7 +9,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missionfsm.kernel.readings import Ambiguity, Assumption
-from missionfsm.kernel.rules import Citation, Decision, Document, Operation, Ranking, Rule, decide, promise, rule, unranked
+from missionfsm.kernel.rules import (
+    Citation,
+    Decision,
+    Document,
+    Operation,
+    Ranking,
+    Rule,
+    decide,
+    promise,
+    rule,
+    unranked,
+)
 
 PAGE = Document("Toy", "A toy page")
 SHAPE = Ambiguity("D-1", "Does shape count?", {"a": "yes", "b": "no", "c": "sometimes"}, "a")

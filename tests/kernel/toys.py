@@ -10,7 +10,14 @@ from attrs import frozen
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, Assumption
-from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, RESOURCE_EXHAUSTED, UNAVAILABLE
+from missionfsm.kernel.rules import (
+    DEADLINE_EXCEEDED,
+    FAILED_PRECONDITION,
+    NOT_FOUND,
+    OK,
+    RESOURCE_EXHAUSTED,
+    UNAVAILABLE,
+)
 from missionfsm.kernel.spec import Delivery, Drive, Emission, Match, Mismatch, Opening, Spec, Step
 
 Request = tuple[Any, ...]
@@ -26,7 +33,7 @@ class Event:
     name: str
 
 
-def spec(  # noqa: PLR0913 - a toy says what it needs
+def spec(
     system: str,
     initial: Callable[[Any], Hashable],
     outcomes: Callable[[Any, Any, Refs], tuple[Step, ...]],
@@ -151,7 +158,7 @@ def _tickets(queue: Queue, request: Request, refs: Refs) -> tuple[Step, ...]:
             return (Step(queue, opens=(Opening("board", new, (first,)),), answer=Answer(OK), refs=(new,)),)
 
 
-def _serve(queue: Queue, _: Any, __: Refs) -> tuple[Step, ...]:  # noqa: ANN401 - as Drive has it
+def _serve(queue: Queue, _: Any, __: Refs) -> tuple[Step, ...]:
     if not queue:
         return ()
     after = _queue(queue[1:])
@@ -242,11 +249,11 @@ def _warm(state: str) -> tuple[Step, ...]:
     return (Step("on", emits=(_light("on"),), label="it is warm"),) if state == "warming" else ()
 
 
-def _blow(state: str, _: Any, __: Refs) -> tuple[Step, ...]:  # noqa: ANN401 - as Drive has it
+def _blow(state: str, _: Any, __: Refs) -> tuple[Step, ...]:
     return (Step("dead", emits=(_light("dead"),), label="it blows"),) if state == "on" else ()
 
 
-def _nudge(state: str, _: Any, __: Refs) -> tuple[Step, ...]:  # noqa: ANN401
+def _nudge(state: str, _: Any, __: Refs) -> tuple[Step, ...]:
     return (Step("warming", emits=(_light("warming", only=WARMING["b"]),)),) if state == "off" else (Step(state),)
 
 
@@ -323,3 +330,35 @@ def _buttons(state: int, request: Request, _: Refs) -> tuple[Step, ...]:
 
 BUTTONS = spec("buttons", int, _buttons, ambiguities=QUESTIONS)
 """``("button", n)``, ``("either", n)``, ``("quiet", n)`` and ``("turn", n)``."""
+
+
+# A newspaper: several channels under one name, and offers.
+
+SIDES = ("left", "right")
+HEADLINES: Mapping[tuple[int, int], tuple[int, int]] = {
+    (left, right): (left, right) for left in (0, 1) for right in (0, 1)
+}
+
+
+def _news(state: tuple[int, int], request: Request, _: Refs) -> tuple[Step, ...]:
+    match request:
+        case ("flip", side):
+            after = HEADLINES[(1 - state[0], state[1]) if side == "left" else (state[0], 1 - state[1])]
+            shown = Emission(side, (side, after[SIDES.index(side)]), ())
+            return (Step(after, emits=(shown,), answer=Answer(OK)),)
+        case ("hint",):
+            hint = Emission("left", ("left", "hint"), (), optional=True, stays=True)
+            return (Step(state, emits=(hint,), answer=Answer(OK)),)
+        case _:
+            opens = tuple(
+                Opening(side, 0, (Emission(side, (side, value), ()),)) for side, value in zip(SIDES, state, strict=True)
+            )
+            return (Step(state, opens=opens, answer=Answer(OK), refs=(0,)),)
+
+
+_PAPERS: Mapping[Hashable, Delivery] = {
+    "left": Delivery(skips=SKIP["b"], ends={UNAVAILABLE: ()}),
+    "right": Delivery(repeats=REPEAT["b"], ends={UNAVAILABLE: (SKIP["a"],)}),
+}
+NEWS = spec("news", lambda _: HEADLINES[0, 0], _news, delivery=lambda topic: _PAPERS[topic], ambiguities=(SKIP, REPEAT))
+"""``("flip", side)``, ``("hint",)`` and ``("watch",)``, which is about both sides at once."""

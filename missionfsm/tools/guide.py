@@ -1,0 +1,156 @@
+"""Where to go next: the model says what each action would exercise, and the least exercised goes first.
+
+An *edge* is a shape of the system, an operation or drive, and what the rules say to it there. Plain random
+generation finds the common edges again and again; a guide counts them over a whole run and proposes actions on those
+that were walked least, or that lead to situations that were seen least.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterator
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.explanation import Explanation
+from missionfsm.kernel.readings import meet
+from missionfsm.kernel.system import System
+from missionfsm.tools.conversation import Conversation, Given
+
+Edge = tuple[Hashable, ...]
+
+ENOUGH = 6
+"""How many edges that were never walked are enough to choose from."""
+
+MOST = 120
+"""How many proposals are enough in any case."""
+
+
+@frozen
+class Proposal:
+    """An action that a guide proposes, and the edge that it would walk."""
+
+    method: str
+    params: JSON
+    name: Given | str | None
+    edge: Edge
+    leads_to: Hashable
+
+
+@frozen(eq=False)
+class _Call:
+    prompt: Prompt
+    request: Any
+    named: bool
+
+
+class Guide:
+    """Counts the edges that a run has walked, and proposes actions on the ones walked least.
+
+    Args:
+        system: the system.
+        worlds: the worlds that conversations start in.
+        bounds: for the alphabet; longer queues than `bounds.missions` are not sought.
+        drives: the drives that the adapter has.
+    """
+
+    def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds, drives: tuple[str, ...]) -> None:
+        self.system = system
+        self.bounds = bounds
+        self.worlds = worlds
+        self.alphabets = [system.alphabet(world, bounds) for world in worlds]
+        self._calls = [self._prepared(alphabet) for alphabet in self.alphabets]
+        self._events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
+        self._labels = [[*calls, *events] for calls, events in zip(self._calls, self._events, strict=True)]
+        self.walked: Counter[Edge] = Counter()
+        self.tried: Counter[tuple[Hashable, str]] = Counter()
+        self.visited: Counter[Hashable] = Counter()
+        self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
+
+    def _prepared(self, alphabet: Alphabet) -> dict[str, list[_Call]]:
+        """The calls of each operation; those that are the same request in other words only once."""
+        found: dict[str, dict[Any, _Call]] = {}
+        for prompt in alphabet.prompts:
+            names, rest = self.system.codec.split(prompt.method, prompt.params)
+            request = self.system.codec.request(prompt.method, rest)
+            found.setdefault(prompt.method, {}).setdefault(request, _Call(prompt, request, bool(names)))
+        return {method: list(calls.values()) for method, calls in found.items()}
+
+    def _prepared_events(self, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[JSON, Any]]]:
+        found: dict[str, list[tuple[JSON, Any]]] = {}
+        for drive in alphabet.drives:
+            if drive["event"] in drives:
+                found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
+        return found
+
+    def proposals(self, conversation: Conversation, world: int) -> list[Proposal]:
+        """What could be done now, least walked first: of the operations that were tried least, some edges each."""
+        belief = conversation.judge.belief
+        here = belief.node.explanations[0]
+        shape = self.system.spec.shape(here.state)
+        known = {name: given for given, name in conversation.given.items()}
+        names: list[tuple[int | None, Given | str]] = [(None, wrong) for wrong in self.alphabets[world].wrong_names[:1]]
+        for position, number in enumerate(here.names):
+            name = belief.name(number)
+            if name in known:
+                names.append((position, known[name]))
+        found: list[Proposal] = []
+        for label in sorted(self._labels[world], key=lambda one: self.tried[shape, one]):
+            for call in self._calls[world].get(label, ()):
+                for position, name in names if call.named else [(None, None)]:
+                    refs = (position,) if call.named else ()
+                    edge = self._edge(conversation, here, shape, call.request, refs)
+                    if edge:
+                        found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge))
+            for drive, event in self._events[world].get(label, ()):
+                edge = self._drive_edge(here, shape, event)
+                if edge:
+                    found.append(Proposal("drive", drive, None, *edge))
+            if sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST:
+                break
+        found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
+        return found
+
+    def note(self, proposal: Proposal) -> None:
+        """A proposal was taken up."""
+        self.tried[proposal.edge[0], proposal.method if proposal.method != "drive" else proposal.params["event"]] += 1
+        self.walked[proposal.edge] += 1
+        self.visited[proposal.leads_to] += 1
+
+    def _edge(
+        self,
+        conversation: Conversation,
+        here: Explanation,
+        shape: Hashable,
+        request: Any,  # noqa: ANN401 - of any system
+        refs: tuple[int | None, ...],
+    ) -> tuple[Edge, Hashable] | None:
+        key = (shape, request, refs)
+        if key not in self._edges:
+            oracle = conversation.judge.automaton.oracle
+            steps = [
+                step
+                for step in oracle.outcomes(here.state, request, refs)
+                if meet(here.assumed, step.assumes)
+            ]
+            operation = self.system.spec.request_operation(request)
+            says = tuple(sorted({rule for step in steps for rule in step.rules}))
+            after = next((step.after for step in steps if step.after is not here.state), here.state)
+            leads_to = self.system.spec.shape(after)
+            within = self.system.spec.names(after) <= max(self.bounds.missions, self.system.spec.names(here.state))
+            self._edges[key] = ((shape, operation, says), leads_to) if steps and within else None
+        return self._edges[key]
+
+    def _drive_edge(self, here: Explanation, shape: Hashable, event: Any) -> tuple[Edge, Hashable] | None:  # noqa: ANN401
+        key = (shape, "drive", event)
+        if key not in self._edges:
+            steps = [
+                step
+                for step in self.system.spec.drives[event.name].steps(here.state, event, ())
+                if meet(here.assumed, step.assumes)
+            ]
+            self._edges[key] = ((shape, event), self.system.spec.shape(steps[0].after)) if steps else None
+        return self._edges[key]

@@ -17,6 +17,7 @@ HOUSE = {
     "isaac": KERNEL | {"missionfsm.isaac"},
     "tools": KERNEL | {"missionfsm.tools", "missionfsm.systems"},
     "systems": KERNEL | VENDORS,
+    "embedding": KERNEL | VENDORS | {"missionfsm.tools", "missionfsm.embedding"},
     "adapters": KERNEL | VENDORS | {"missionfsm.adapters", "missionfsm.systems"},
 }
 GUESTS = {
@@ -25,12 +26,13 @@ GUESTS = {
     "isaac": {"attr", "attrs", "cattrs"},
     "tools": {"attrs", "graphviz", "transitions"},
     "systems": {"attrs"},
+    "embedding": {"attrs"},
     "adapters": {"attrs", "orjson"},
 }
 PARTICULAR = {"kernel/chart.py": {"transitions"}, "tools/conform.py": {"hypothesis"}}
 LAZY = {"adapters": {"grpc"}}
 WORLD = {"time", "random", "socket", "os", "subprocess", "asyncio", "threading"}
-PURE = {"kernel", "bear", "isaac", "tools", "systems"}
+PURE = {"kernel", "bear", "isaac", "tools", "systems", "embedding"}
 
 
 def imports(tree: ast.AST) -> Iterator[tuple[str, bool]]:

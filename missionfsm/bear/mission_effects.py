@@ -67,6 +67,7 @@ from missionfsm.kernel.rules import (
     UNAUTHENTICATED,
     UNAVAILABLE,
     UNIMPLEMENTED,
+    Operation,
     Rule,
     decide,
 )
@@ -92,9 +93,8 @@ class Outcome:
 
 
 @functools.lru_cache(maxsize=100_000)
-def outcomes(robot: Situation, call: Call) -> tuple[Outcome, ...]:
-    """Every answer that the documents allow to a call, success first."""
-    operation = OPERATIONS[call.request.operation]
+def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcome, ...]:
+    """Every answer that the rules of an operation allow to a call, success first."""
     found: list[Outcome] = []
     for decision in decide(operation.blocking(robot, call), ranking(robot, call)):
         if decision.code is None:

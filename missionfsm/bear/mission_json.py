@@ -199,6 +199,7 @@ _IDS = {
     "CreateMissionWorkflow": wire.MissionIds,
     "ClearMissionStatus": wire.MissionIds,
 }
+_NAMED, _LISTED = Answer(OK), Answer(OK, unordered=True)
 
 
 def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
@@ -210,18 +211,22 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             raise UnreadableError(message)
         return Answer(OK), (("stream", stream),)
     kind = _IDS.get(method)
+    if kind is wire.MissionId and isinstance(result, dict) and len(result) == 1:
+        name = result.get("missionId")
+        if isinstance(name, str) and name:
+            return _NAMED, (name,)  # by far the commonest form, read without further ado
     unordered = method == "ClearMissionStatus"
     try:
         if kind is None:
             read(wire.Empty, result)
-            return Answer(OK), ()
+            return _NAMED, ()
         found = read(kind, result)
     except MalformedError as error:
         return Answer(OK, codec.Garbled(str(error)), unordered), ()
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
     if not all(ids):
         return Answer(OK, codec.Garbled("a mission id is missing"), unordered), ()
-    return Answer(OK, None, unordered), ids
+    return _LISTED if unordered else _NAMED, ids
 
 
 def write_answer(method: str, _: Answer, names: tuple[Name, ...]) -> JSON:
@@ -252,12 +257,9 @@ def _stripped(message: JSON) -> Part:
     marks: tuple[Mark, ...] = ()
     metadata = message.get("metadata")
     if isinstance(metadata, dict):
-        try:
-            found = read(wire.EventMetadata, metadata)
-        except MalformedError:
-            pass
-        else:
-            marks = ((None, found.sequence_number),)
+        number = _sequence_number(metadata)
+        if number is not None:
+            marks = ((None, number),)
             del rest["metadata"]
     key = "missionStates" if "missionStates" in message else "mission_states"
     states = message.get(key)
@@ -275,6 +277,17 @@ def _stripped(message: JSON) -> Part:
         bare.append(mission)
     rest[key] = {**states, "missions": bare}  # type: ignore[dict-item]
     return tuple(ids), marks, rest
+
+
+def _sequence_number(metadata: dict[str, JSON]) -> int | None:
+    """The sequence number of well-formed metadata; None where they are malformed."""
+    number = metadata.get("sequenceNumber")
+    if type(number) is int and type(metadata.get("timestamp")) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
+        return number  # by far the commonest form, read without further ado
+    try:
+        return read(wire.EventMetadata, metadata).sequence_number
+    except MalformedError:
+        return None
 
 
 def content(rest: JSON) -> Seen | Garbled:

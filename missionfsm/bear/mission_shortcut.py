@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from missionfsm.bear.mission import Edit, Mission, Op, Robot, Situation, World, apply, situation
 from missionfsm.bear.mission_effects import Call, Happening, due, happens, outcomes
 from missionfsm.bear.mission_requests import Request, Target
+from missionfsm.bear.mission_rules import OPERATIONS
 from missionfsm.kernel.readings import meet
 
 _Key = tuple[World, Mission | None, bool, bool, bool, bool, object]
@@ -75,7 +76,7 @@ def _edits(
     for call in calls:
         if call.target is not None and not _possible(robot, call.target):
             continue
-        for outcome in outcomes(robot, call):
+        for outcome in outcomes(OPERATIONS[call.request.operation], robot, call):
             if meet(assumed, outcome.assumes):
                 yield outcome.edit
     for happening in happenings:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from missionfsm.bear.messages import Goal, State
 from missionfsm.bear.mission import (
@@ -31,7 +31,7 @@ from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, promise
+from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, Operation, promise
 from missionfsm.kernel.spec import Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
 
 _BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
@@ -112,9 +112,9 @@ def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
         )
 
 
-def _outcomes(robot: Robot, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _outcomes(operation: Operation, robot: Robot, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
     found: list[Step] = []
-    for outcome in outcomes(situation(robot), call_of(robot, request, refs)):
+    for outcome in outcomes(operation, situation(robot), call_of(robot, request, refs)):
         if outcome.whose == "stream":
             found += _opened(robot, outcome)
         else:
@@ -209,39 +209,44 @@ def _describe(value: object) -> str:
     return describe(value)
 
 
-SPEC = Spec(
-    system=SYSTEM,
-    title="one robot's missions",
-    initial=lambda world: Robot(world),
-    operations=OPERATIONS,
-    outcomes=_outcomes,
-    failing=failing,
-    drives={
-        one.name: one
-        for one in (
-            Drive("goalReached", _drive, (Happening("goalReached"),)),
-            Drive("missionSucceeded", _drive, (Happening("missionSucceeded"),)),
-            Drive("missionFailed", _drive, (Happening("missionFailed"),)),
-            # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
-            Drive("world", _drive),
-            Drive("fault", _drive),
-        )
-    },
-    urgent=_urgent,
-    matches=matches,
-    delivery=_delivery,
-    sequence=_sequence,
-    names=lambda robot: len(robot.listed),
-    request_operation=lambda request: request.operation,
-    ambiguities=AMBIGUITIES,
-    describe=_describe,
-    rules=RULES,
-    charts=(LIFECYCLE,),
-    invariants=INVARIANTS,
-    possibilities=POSSIBILITIES,
-    situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
-    shape=lambda robot: (situation(robot), min(len(robot.pending), 2)),
-    shortcut=shortcut,
-)
+def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
+    """The system, with other operations if some rule is to be tried without or with another condition."""
+    return Spec(
+        system=SYSTEM,
+        title="one robot's missions",
+        initial=lambda world: Robot(world),
+        operations=operations,
+        outcomes=lambda robot, request, refs: _outcomes(operations[request.operation], robot, request, refs),
+        failing=failing,
+        drives={
+            one.name: one
+            for one in (
+                Drive("goalReached", _drive, (Happening("goalReached"),)),
+                Drive("missionSucceeded", _drive, (Happening("missionSucceeded"),)),
+                Drive("missionFailed", _drive, (Happening("missionFailed"),)),
+                # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
+                Drive("world", _drive),
+                Drive("fault", _drive),
+            )
+        },
+        urgent=_urgent,
+        matches=matches,
+        delivery=_delivery,
+        sequence=_sequence,
+        names=lambda robot: len(robot.listed),
+        request_operation=lambda request: request.operation,
+        ambiguities=AMBIGUITIES,
+        describe=_describe,
+        rules=RULES,
+        charts=(LIFECYCLE,),
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+        shape=lambda robot: (situation(robot), min(len(robot.pending), 2)),
+        shortcut=shortcut,
+        rebuilt=specification,
+    )
 
+
+SPEC = specification()
 __all__ = ["SPEC", "Goal", "Listing", "World"]

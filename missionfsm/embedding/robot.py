@@ -83,6 +83,8 @@ class Updates:
         self.open = False
 
     def _come(self, update: MissionStatus) -> None:
+        if not self.open:
+            return
         self.latest = update
         if self._callback is None:
             self._unread.append(update)
@@ -122,6 +124,8 @@ class Robot:
     ) -> None:
         self._model = Model(SYSTEM, readings)
         self._subscriptions: dict[Name, Updates] = {}
+        self._on_the_way: deque[tuple[Updates, MissionStatus]] = deque()
+        self._delivering = False
         fields = {
             "family": Family(family).value,
             "destinations": _texts(destinations),
@@ -350,10 +354,20 @@ class Robot:
         return show(view, tuple(map(str, names)), self._model.choice)
 
     def _deliver(self, reply: Reply, opened: Updates | None = None) -> None:
+        """Hand out what was sent; what a callback causes comes after what caused it."""
         for sent in reply.sent:
             updates = self._subscriptions.get(sent.channel, opened)
             if updates is not None:
-                updates._come(self._update(sent))  # noqa: SLF001 - a subscription is filled here and nowhere else
+                self._on_the_way.append((updates, self._update(sent)))
+        if self._delivering:
+            return
+        self._delivering = True
+        try:
+            while self._on_the_way:
+                updates, update = self._on_the_way.popleft()
+                updates._come(update)  # noqa: SLF001 - a subscription is filled here and nowhere else
+        finally:
+            self._delivering = False
 
     def _update(self, sent: Sent) -> MissionStatus:
         message = SYSTEM.codec.write_message(

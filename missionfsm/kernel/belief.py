@@ -55,7 +55,7 @@ class Edge:
         retired: numbers of names that are gone for good.
         rules: ids of the rules that were exercised.
         touched: the bits of the ambiguities on which this event's explanations depend.
-        appends: whether the new names follow those before, and nothing else becomes of any.
+        appends: whether nothing becomes of the names before but that others follow them.
         walked: how often.
     """
 
@@ -286,7 +286,7 @@ class Belief:
         self.touched |= edge.touched
         if edge.keep is None:
             return
-        if edge.appends:
+        if edge.appends and len(edge.keep) == len(self._names) + len(new):
             self._numbers.update(zip(new, range(len(self._names), len(self._names) + len(new)), strict=True))
             self._names += new
             return

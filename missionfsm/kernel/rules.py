@@ -140,7 +140,7 @@ def promise(name: str, says: str, *, cite: Citation, argues: str = "") -> Rule:
     return Rule(name, says, argues, cite)
 
 
-@frozen
+@frozen(eq=False)
 class Operation:
     """What a caller may ask, with the rules of its Errors table in the order in which a reader meets them.
 

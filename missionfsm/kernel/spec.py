@@ -221,6 +221,7 @@ class Spec:
             they do not; None where they have to be equal.
         situation: state to what of it decides its steps: in states with the same one, the same calls have the same
             outcomes, and the same events happen in the same ways.
+        rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
         shortcut: (requests, events, assumed, most names) to a function from a state to the states after every step,
             in any order and perhaps some twice: what the functions above give, only faster.
@@ -248,6 +249,7 @@ class Spec:
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
+    rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state
     shortcut: Callable[..., Callable[[State], list[State]]] | None = None

@@ -27,6 +27,20 @@ from missionfsm.kernel.rules import OK, STATUS_NUMBERS
 
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
+_ANY_KEYS = ("at", "robot")
+_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", *_ANY_KEYS))
+_KEYS: Mapping[str, frozenset[str]] = {
+    keys[0]: frozenset((*keys, *_ANY_KEYS))
+    for keys in (
+        ("call", "method", "params"),
+        ("return", "result", "error"),
+        ("stream", "message", "closed", "error"),
+        ("connection", "line"),
+        ("drive",),
+        ("settled",),
+    )
+}
+"""What each kind of line may have; one that has more means something that would be passed over."""
 REMEMBERED = 20_000
 """How many different requests and messages a transcript knows again without reading them anew."""
 
@@ -54,12 +68,35 @@ def _wrong(says: str) -> UnreadableError:
     return UnreadableError(says)
 
 
+def _known_keys(kind: str, line: dict[str, Any], known: frozenset[str]) -> None:
+    if not line.keys() <= known:
+        unknown = next(key for key in line if key not in known)
+        raise _wrong(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
+
+
+class Ids:
+    """A set of whole numbers that costs next to nothing where they are close together."""
+
+    def __init__(self) -> None:
+        self._blocks: dict[int, int] = {}
+
+    def add(self, number: int) -> bool:
+        """Add a number; whether it is new."""
+        block, bit = number >> 8, 1 << (number & 255)
+        bits = self._blocks.get(block, 0)
+        if bits & bit:
+            return False
+        self._blocks[block] = bits | bit
+        return True
+
+
 def head(line: JSON) -> Head:
     """What the first line says. Raises UnreadableError."""
     if not isinstance(line, dict) or "missionfsm" not in line:
         raise _wrong('the first line has to be {"missionfsm": 1, "system": …, "world": …}')
     if line["missionfsm"] != VERSION or isinstance(line["missionfsm"], bool):
         raise _wrong(f"history format {brief(line['missionfsm'])} is not known; this is version {VERSION}")
+    _known_keys("first", line, _HEAD_KEYS)
     name, drives = line.get("system"), line.get("drives", [])
     if not isinstance(name, str):
         raise _wrong(f"system: {brief(name)} is not the name of a system")
@@ -87,8 +124,7 @@ class Transcript:
         self._fingerprint = fingerprint
         self._lost = lost
         self._open: dict[int, str] = {}
-        self._cancels: dict[int, int] = {}
-        self._seen_calls: set[int] = set()
+        self._sent = Ids()
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
@@ -105,8 +141,10 @@ class Transcript:
         """The events that a line stands for; usually one. Raises UnreadableError."""
         if not isinstance(line, dict):
             raise _wrong(f"{brief(line)} is not an object")
-        for key, reader in self._kinds.items():
-            if key in line:
+        for key in line:
+            reader = self._kinds.get(key)
+            if reader is not None:
+                _known_keys(key, line, _KEYS[key])
                 return reader(line)
         raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
 
@@ -118,12 +156,12 @@ class Transcript:
     def _number(self, line: dict[str, Any], key: str) -> int:
         number = line[key]
         if isinstance(number, bool) or not isinstance(number, int):
-            raise _wrong(f"{key}: {brief(number)} is not a number")
+            raise _wrong(f"{key}: {brief(number)} is not a whole number")
         return number
 
     def _call(self, line: dict[str, Any]) -> tuple[Event, ...]:
         number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
-        if number in self._seen_calls:
+        if not self._sent.add(number):
             raise _wrong(f"call {number} was sent before; ids are unique within a file")
         if not isinstance(method, str):
             raise _wrong(f"method: {brief(method)} is not the name of a call")
@@ -131,11 +169,9 @@ class Transcript:
             stream = params.get("stream") if isinstance(params, dict) else None
             if isinstance(stream, bool) or not isinstance(stream, int):
                 raise _wrong(f"cancel: {brief(params)} names no stream")
-            self._seen_calls.add(number)
             self._open[number] = method
             return (Cancelled(("stream", stream)),)
         request, names = self._request(method, params)
-        self._seen_calls.add(number)
         if number in self._lost:
             return (Called(("call", number), request, names, lost=True),)
         self._open[number] = method

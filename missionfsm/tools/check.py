@@ -75,10 +75,13 @@ class Judge:
         events = self.transcript.read(line)
         self.lines.append(line)
         self.read += 1
-        return all(self._take(event) for event in events)
+        for event in events:
+            if not self._take(event):
+                return False
+        return True
 
     def _take(self, event: Event) -> bool:
-        if not self.right:
+        if self._unexplained is not None or self.exhausted:
             return False
         self.events += 1
         kind = type(event)

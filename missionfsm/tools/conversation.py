@@ -57,6 +57,10 @@ class Given:
     position: int
 
 
+Picks = tuple[tuple[int, Given], ...]
+"""For slots of a template the names that are meant."""
+
+
 @frozen
 class Action:
     """Something that a tester does.
@@ -74,7 +78,7 @@ class Action:
     method: str
     params: JSON = None
     name: Given | str | None = None
-    picks: tuple[tuple[int, Given], ...] = ()
+    picks: Picks = ()
 
 
 def filled(params: JSON, name: object) -> JSON:

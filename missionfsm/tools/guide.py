@@ -8,7 +8,7 @@ that were walked least, or that lead to situations that were seen least.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
 
 from attrs import frozen
@@ -18,7 +18,8 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.explanation import Explanation
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.system import System
-from missionfsm.tools.conversation import Conversation, Given
+from missionfsm.tools.conversation import Conversation, Given, Picks
+from missionfsm.tools.picking import fill, is_template, slots, ways
 
 Edge = tuple[Hashable, ...]
 
@@ -38,6 +39,7 @@ class Proposal:
     name: Given | str | None
     edge: Edge
     leads_to: Hashable
+    picks: Picks = ()
 
 
 @frozen(eq=False)
@@ -64,7 +66,11 @@ class Guide:
         self.alphabets = [system.alphabet(world, bounds) for world in worlds]
         self._calls = [self._prepared(alphabet) for alphabet in self.alphabets]
         self._events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
-        self._labels = [[*calls, *events] for calls, events in zip(self._calls, self._events, strict=True)]
+        self._templates = [_prepared_templates(alphabet, drives) for alphabet in self.alphabets]
+        self._labels = [
+            list(dict.fromkeys((*calls, *events, *templates)))
+            for calls, events, templates in zip(self._calls, self._events, self._templates, strict=True)
+        ]
         self.walked: Counter[Edge] = Counter()
         self.tried: Counter[tuple[Hashable, str]] = Counter()
         self.visited: Counter[Hashable] = Counter()
@@ -74,6 +80,8 @@ class Guide:
         """The calls of each operation; those that are the same request in other words only once."""
         found: dict[str, dict[Any, _Call]] = {}
         for prompt in alphabet.prompts:
+            if is_template(prompt.params):
+                continue
             names, rest = self.system.codec.split(prompt.method, prompt.params)
             request = self.system.codec.request(prompt.method, rest)
             found.setdefault(prompt.method, {}).setdefault(request, _Call(prompt, request, bool(names)))
@@ -82,12 +90,16 @@ class Guide:
     def _prepared_events(self, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[JSON, Any]]]:
         found: dict[str, list[tuple[JSON, Any]]] = {}
         for drive in alphabet.drives:
-            if drive["event"] in drives:
+            if drive["event"] in drives and not is_template(drive):
                 found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
         return found
 
-    def proposals(self, conversation: Conversation, world: int) -> list[Proposal]:
-        """What could be done now, least walked first: of the operations that were tried least, some edges each."""
+    def proposals(self, conversation: Conversation, world: int, only: str | None = None) -> list[Proposal]:
+        """What could be done now, least walked first: of the operations that were tried least, some edges each.
+
+        Args:
+            only: an operation or drive to look at alone.
+        """
         belief = conversation.judge.belief
         here = belief.node.explanations[0]
         shape = self.system.spec.shape(here.state)
@@ -98,7 +110,8 @@ class Guide:
             if name in known:
                 names.append((position, known[name]))
         found: list[Proposal] = []
-        for label in sorted(self._labels[world], key=lambda one: self.tried[shape, one]):
+        labels = [only] if only else self._labels[world]
+        for label in sorted(labels, key=lambda one: self.tried[shape, one]):
             for call in self._calls[world].get(label, ()):
                 for position, name in names if call.named else [(None, None)]:
                     refs = (position,) if call.named else ()
@@ -109,10 +122,33 @@ class Guide:
                 edge = self._drive_edge(here, shape, event)
                 if edge:
                     found.append(Proposal("drive", drive, None, *edge))
+            found += self._filled(conversation, here, shape, self._templates[world].get(label, ()))
             if sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST:
                 break
         found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
         return found
+
+    def _filled(
+        self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[tuple[str, JSON]]
+    ) -> Iterator[Proposal]:
+        """Proposals from templates, with some of the names that were given in their slots."""
+        belief, codec, naming = conversation.judge.belief, self.system.codec, self.system.naming
+        positions = {belief.name(number): position for position, number in enumerate(here.names)}
+        given = {name: one for one, name in conversation.given.items()}
+        for method, template in templates:
+            for picked in ways(slots(template), given, naming):
+                params = fill(template, picked, naming, len(conversation.actions) + 1)
+                if method == "drive":
+                    event, names = codec.drive(params)
+                    refs = tuple(positions.get(name) for name in names)
+                    edge = self._drive_edge(here, shape, event, refs)
+                else:
+                    names, rest = codec.split(method, params)
+                    refs = tuple(positions.get(name) for name in names)
+                    edge = self._edge(conversation, here, shape, codec.request(method, rest), refs)
+                if edge:
+                    picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
+                    yield Proposal(method, template, None, *edge, picks)
 
     def note(self, proposal: Proposal) -> None:
         """A proposal was taken up."""
@@ -144,13 +180,31 @@ class Guide:
             self._edges[key] = ((shape, operation, says), leads_to) if steps and within else None
         return self._edges[key]
 
-    def _drive_edge(self, here: Explanation, shape: Hashable, event: Any) -> tuple[Edge, Hashable] | None:  # noqa: ANN401
-        key = (shape, "drive", event)
+    def _drive_edge(
+        self,
+        here: Explanation,
+        shape: Hashable,
+        event: Any,  # noqa: ANN401 - of any system
+        refs: tuple[int | None, ...] = (),
+    ) -> tuple[Edge, Hashable] | None:
+        key = (shape, "drive", event, refs)
         if key not in self._edges:
             steps = [
                 step
-                for step in self.system.spec.drives[event.name].steps(here.state, event, ())
+                for step in self.system.spec.drives[event.name].steps(here.state, event, refs)
                 if meet(here.assumed, step.assumes)
             ]
-            self._edges[key] = ((shape, event), self.system.spec.shape(steps[0].after)) if steps else None
+            self._edges[key] = ((shape, event, *refs), self.system.spec.shape(steps[0].after)) if steps else None
         return self._edges[key]
+
+
+def _prepared_templates(alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[str, JSON]]]:
+    """The prompts and drives with slots, by the name of the operation or the drive."""
+    found: dict[str, dict[str, tuple[str, JSON]]] = {}
+    for prompt in alphabet.prompts:
+        if is_template(prompt.params):
+            found.setdefault(prompt.method, {})[repr(prompt.params)] = (prompt.method, prompt.params)
+    for drive in alphabet.drives:
+        if drive["event"] in drives and is_template(drive):
+            found.setdefault(drive["event"], {})[repr(drive)] = ("drive", drive)
+    return {name: list(templates.values()) for name, templates in found.items()}

@@ -1,0 +1,130 @@
+"""Worlds, messages and conversations for the tests of bear.status."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from missionfsm.bear.status_system import SYSTEM
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.readings import constrain
+from missionfsm.kernel.subject import Exchange, Notification, Subject
+from missionfsm.kernel.transcript import Head
+from missionfsm.tools.check import Judge
+from missionfsm.tools.subject import Reference
+
+ALPHABET = SYSTEM.alphabet({}, Bounds())
+WORLDS = ALPHABET.worlds
+DRIVES = tuple(SYSTEM.spec.drives)
+
+
+def judge(
+    lines: Iterable[Any],
+    world: Any = None,
+    drives: tuple[str, ...] = DRIVES,
+    readings: Mapping[str, str] | None = None,
+) -> Judge:
+    """A judge that has read these lines."""
+    found = Judge(SYSTEM, Head(SYSTEM.name, WORLDS[0] if world is None else world, drives), readings=readings)
+    for line in lines:
+        found.feed(line)
+    return found
+
+
+def lines_of(notifications: Iterable[Notification]) -> Iterable[Any]:
+    """Notifications as lines of a history."""
+    for one in notifications:
+        if one.method == "message":
+            yield {"stream": one.params["stream"], "message": one.params["message"]}
+        else:
+            yield {"stream": one.params["stream"], "closed": True, **({"error": one.params["error"]} if "error" in one.params else {})}
+
+
+class Walk:
+    """A conversation with a subject that takes its turns from a seeded generator."""
+
+    def __init__(self, subject: Subject, automaton: Automaton, world: Any, drives: tuple[str, ...], seed: int) -> None:
+        self.subject = subject
+        self.random = random.Random(seed)
+        self.judge = Judge(SYSTEM, Head(SYSTEM.name, world, drives), automaton, keep=100_000)
+        self.drives = [one for one in ALPHABET.drives if one["event"] in drives]
+        self.serial = 0
+        self.streams: list[int] = []
+        subject.exchange("reset", {"world": world})
+
+    def feed(self, *lines: Any) -> None:
+        for line in lines:
+            if self.judge.violation is None and not self.judge.exhausted:
+                self.judge.feed(line)
+
+    def call(self, method: str, params: Any) -> Exchange:
+        self.serial += 1
+        self.feed({"call": self.serial, "method": method, "params": params})
+        exchange = self.subject.exchange(method, params)
+        self.feed(*lines_of(exchange.before))
+        answer = {"error": exchange.error} if exchange.error is not None else {"result": exchange.result}
+        self.feed({"return": self.serial, **answer}, *lines_of(exchange.after))
+        if exchange.error is None and isinstance(exchange.result, dict) and "stream" in exchange.result:
+            self.streams.append(exchange.result["stream"])
+        return exchange
+
+    def drive(self, event: Any) -> None:
+        exchange = self.subject.exchange("drive", event)
+        if exchange.result["happened"]:
+            self.feed({"drive": event})
+        self.feed(*lines_of(exchange.before), *lines_of(exchange.after))
+
+    def settle(self) -> None:
+        exchange = self.subject.exchange("settle", {})
+        self.feed(*lines_of(exchange.before), {"settled": True}, *lines_of(exchange.after))
+
+    def cancel(self) -> None:
+        stream = self.streams.pop(self.random.randrange(len(self.streams)))
+        self.serial += 1
+        self.feed({"call": self.serial, "method": "cancel", "params": {"stream": stream}})
+        self.subject.exchange("cancel", {"stream": stream})
+        self.feed({"return": self.serial, "result": {}})
+
+    def turn(self) -> None:
+        dice = self.random.random()
+        if dice < 0.35 and len(self.streams) < 4:
+            prompt = self.random.choice(ALPHABET.prompts)
+            self.call(prompt.method, prompt.params)
+        elif dice < 0.8 and self.drives:
+            self.drive(self.random.choice(self.drives))
+        elif dice < 0.85 and self.streams:
+            self.cancel()
+        elif dice < 0.93:
+            self.call("GetRobotStatus", {"robotId": self.random.choice(("r1", "r2", "r3"))})
+        else:
+            self.settle()
+
+
+def walk(
+    subject: Subject,
+    walks: int = 25,
+    steps: int = 40,
+    *,
+    drives: tuple[str, ...] = DRIVES,
+    readings: Mapping[str, str] | None = None,
+    seed: int = 0,
+) -> Judge:
+    """The judge of the first of so many random conversations that goes wrong, or of the last."""
+    automaton = Automaton(SYSTEM.spec, drives, constrain(SYSTEM.spec.ambiguities, readings or {}))
+    for number in range(walks):
+        one = Walk(subject, automaton, WORLDS[number % len(WORLDS)], drives, seed * 1000 + number)
+        for _ in range(steps):
+            one.turn()
+            if one.judge.violation or one.judge.exhausted:
+                return one.judge
+        one.settle()
+        if one.judge.violation or one.judge.exhausted:
+            return one.judge
+    return one.judge
+
+
+def reference(choice: Mapping[str, str] | None = None) -> Reference:
+    """The reference model under a choice of readings."""
+    return Reference(SYSTEM, choice)

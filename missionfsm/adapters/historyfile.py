@@ -5,6 +5,7 @@ A history is read once and never held: what is kept is one judge for every robot
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -14,6 +15,7 @@ import orjson
 from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.transcript import Ids
 
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024
@@ -31,14 +33,18 @@ def open_history(path: str) -> IO[bytes]:
         raise UnreadableError(message) from None
 
 
+def wrong_line(path: str, number: int, says: object) -> UnreadableError:
+    """What is wrong, with the place where it is."""
+    return UnreadableError(f"{'stdin' if path == STDIN else path}:{number}: {says}")
+
+
 def _raw(source: IO[bytes], path: str) -> Iterator[tuple[int, bytes]]:
     number = 0
     while line := source.readline(LONGEST_LINE + 1):
         number += 1
         if len(line) > LONGEST_LINE:
-            message = f"{path}:{number}: the line has more than {LONGEST_LINE} bytes"
-            raise UnreadableError(message)
-        if line.strip():
+            raise wrong_line(path, number, f"the line has more than {LONGEST_LINE} bytes")
+        if not line.isspace():
             yield number, line
 
 
@@ -46,32 +52,47 @@ def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
     """The JSON of every line with its number. Raises UnreadableError, which says where and what is wrong."""
     for number, line in _raw(source, path):
         try:
-            yield number, orjson.loads(line)
+            found = orjson.loads(line)
         except orjson.JSONDecodeError as error:
             short = " (the file ends in the middle of it)" if not line.endswith(b"\n") else ""
-            message = f"{path}:{number}: not JSON: {error}{short}"
-            raise UnreadableError(message) from None
+            raise wrong_line(path, number, f"not JSON: {error}{short}") from None
+        yield number, found
+
+
+_PLAIN = re.compile(rb'\{"(call|return)": ?(\d+)[,}]')
+"""How the commonest lines that call or return begin; what they say can be told without reading all of them."""
 
 
 def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
-    """Ids of the calls of each robot that a file never answers; nothing is known of stdin.
+    """Ids of the calls of each robot that a file never answers; nothing is known of what can be read only once.
 
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
     """
-    if path == STDIN:
+    if not Path(path).is_file():
         return {}
+    sent: dict[str | None, Ids] = {}
     waiting: dict[str | None, set[int]] = {}
     with open_history(path) as source:
         try:
             for _, line in _raw(source, path):
-                if b'"call"' not in line and b'"return"' not in line:
+                plain = _PLAIN.match(line)
+                if plain and b'"robot"' not in line and b'"cancel"' not in line:
+                    robot, called, number = None, plain[1] == b"call", int(plain[2])
+                elif b'"call"' in line or b'"return"' in line:
+                    one = orjson.loads(line)
+                    if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
+                        continue
+                    robot, called = one.get("robot"), "call" in one
+                    number = one["call" if called else "return"]
+                else:
                     continue
-                one = orjson.loads(line)
-                calls = waiting.setdefault(one.get("robot"), set())
-                if "call" in one and one.get("method") != "cancel":
-                    calls.add(one["call"])
-                elif "return" in one:
-                    calls.discard(one["return"])
+                calls = waiting.setdefault(robot, set())
+                if not called:
+                    calls.discard(number)
+                elif sent.setdefault(robot, Ids()).add(number):
+                    calls.add(number)
+                else:
+                    return {}
         except (orjson.JSONDecodeError, UnreadableError, TypeError, AttributeError):
             return {}
     return {robot: frozenset(calls) for robot, calls in waiting.items()}
@@ -90,8 +111,11 @@ class Stamps:
 
     def robot(self, line: JSON) -> str | None:
         """Whose line it is. Raises UnreadableError."""
-        at = line.get("at")
-        if at is not None:
+        if not isinstance(line, dict):
+            message = f"{line!r:.60} is not an object"
+            raise UnreadableError(message)
+        if "at" in line:
+            at = line["at"]
             if isinstance(at, bool) or not isinstance(at, int | float):
                 message = f"at: {at!r:.60} is not a number of seconds"
                 raise UnreadableError(message)
@@ -100,7 +124,9 @@ class Stamps:
                 raise UnreadableError(message)
             self._latest["at"] = at
         robot = line.get("robot")
-        if robot is not None and not isinstance(robot, str):
+        if robot is None and "robot" not in line:
+            return None
+        if not isinstance(robot, str):
             message = f"robot: {robot!r:.60} is not a text"
             raise UnreadableError(message)
         return robot

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from missionfsm.adapters.historyfile import STDIN, Stamps, fingerprint, lines, lost_calls, open_history
+from missionfsm.adapters.historyfile import (
+    STDIN,
+    Stamps,
+    fingerprint,
+    lines,
+    lost_calls,
+    open_history,
+    wrong_line,
+)
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.readings import constrain
@@ -29,34 +37,32 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         numbered = lines(source, path)
         number, line = next(numbered, (0, None))
         if not number:
-            message = f"{path}: the history is empty"
+            message = f"{'stdin' if path == STDIN else path}: the history is empty"
             raise UnreadableError(message)
-        stamps = Stamps()
-        judges: dict[str | None, Judge] = {}
         try:
             first = head(line)
+            stamps = Stamps()
             stamps.robot(line)
             judged = system(first.system)
             automaton = Automaton(judged.spec, first.drives, constrain(judged.spec.ambiguities, readings or {}))
-            nobody = Judge(judged, first, automaton, fingerprint=fingerprint, lost=lost.get(None, frozenset()))
-            for number, line in numbered:  # noqa: B007, PLW2901 - the error below says where
-                if not isinstance(line, dict):
-                    message = f"{line!r:.60} is not an object"
-                    raise UnreadableError(message)
-                robot = stamps.robot(line) if "at" in line or "robot" in line else None
+
+            def new_judge(robot: str | None) -> Judge:
+                calls = lost.get(robot, frozenset())
+                return Judge(judged, first, automaton, fingerprint=fingerprint, lost=calls)
+
+            nobody = new_judge(None)
+        except UnreadableError as error:
+            raise wrong_line(path, number, error) from None
+        judges: dict[str | None, Judge] = {}
+        for number, line in numbered:
+            try:
+                robot = stamps.robot(line)
                 judge = judges.get(robot)
                 if judge is None:
-                    judge = judges[robot] = (
-                        nobody
-                        if robot is None
-                        else Judge(
-                            judged, first, automaton, fingerprint=fingerprint, lost=lost.get(robot, frozenset())
-                        )
-                    )
+                    judge = judges[robot] = nobody if robot is None else new_judge(robot)
                 judge.feed(line)
-        except UnreadableError as error:
-            message = f"{'stdin' if path == STDIN else path}:{number}: {error}"
-            raise UnreadableError(message) from None
+            except UnreadableError as error:
+                raise wrong_line(path, number, error) from None
     finally:
         if path != STDIN:
             source.close()

@@ -264,11 +264,13 @@ def _stripped(message: JSON) -> Part:
     key = "missionStates" if "missionStates" in message else "mission_states"
     states = message.get(key)
     missions = states.get("missions") if isinstance(states, dict) else None
-    if not isinstance(missions, list) or not all(isinstance(one, dict) for one in missions):
+    if not isinstance(missions, list):
         return (), marks, rest
     ids: list[Name] = []
     bare: list[JSON] = []
     for mission in missions:
+        if not isinstance(mission, dict):
+            return (), marks, rest
         name = "missionId" if "missionId" in mission else "mission_id"
         given = mission.get(name)
         if isinstance(given, str) and given:

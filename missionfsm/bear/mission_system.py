@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from missionfsm.bear.mission_breaks import BENDS, TWISTS
 from missionfsm.bear.mission_json import CODEC
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
@@ -219,4 +220,4 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import enum
 import functools
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
+from typing import Any
 
 from attrs import evolve, frozen
 
@@ -131,8 +132,8 @@ STUCK: Chart[Stuck] = Chart(
 )
 CHARTS = (CONNECTION, BATTERY, EMERGENCY_STOP, STUCK)
 
-Value = Hashable
-"""A part of a robot's state as it was reported, or None where it is not reported."""
+Value = Any
+"""A part of a robot's state as it was reported (frozen and hashable), or None where it is not reported."""
 
 
 @frozen(cache_hash=True)

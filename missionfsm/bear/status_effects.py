@@ -170,7 +170,9 @@ def _firsts(
     for letters in itertools.product(*(_LETTERS[one] for one in questions)):
         choice = dict(zip(questions, letters, strict=True))
         owed = {
-            robot.id: tuple(_first(fleet, robot, endpoint, [choice[one] for one in _open_questions(fleet, endpoint, robot)]))
+            robot.id: tuple(
+                _first(fleet, robot, endpoint, [choice[one] for one in _open_questions(fleet, endpoint, robot)])
+            )
             for robot in selected
         }
         yield owed, tuple(one[letter] for one, letter in choice.items())
@@ -350,7 +352,7 @@ def _whole(fleet: Fleet, before: Robot, after: Robot, part: str) -> Iterator[tup
 
 
 def _reconnected(fleet: Fleet, before: Robot, after: Robot) -> Iterator[Emission]:
-    """What a change of the connection may bring to the other streams: what they withheld, or that the network is gone."""
+    """What a change of the connection may bring to the other streams: what they withheld, or a network that is gone."""
     network = view(after, Endpoint.NETWORK)
     if network:
         yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), stays=True)

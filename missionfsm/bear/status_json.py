@@ -52,15 +52,14 @@ def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
 def request(method: str, params: JSON) -> Request:
     """The request that a call makes."""
     params = {} if params is None else params
-    kind = wire.StatusRequest if method == GET else wire.SubscribeRequest
     try:
-        asked = read(kind, params)
+        if method == GET:
+            unknown = bool(unknown_fields(wire.StatusRequest, params))
+            return Request(method, (read(wire.StatusRequest, params).robot_id,), unknown_field=unknown)
+        selector = read(wire.SubscribeRequest, params).selector or wire.RobotSelector()
     except MalformedError as error:
         return Request(method, malformed=str(error))
-    unknown = bool(unknown_fields(kind, params))
-    if isinstance(asked, wire.StatusRequest):
-        return Request(method, (asked.robot_id,), unknown_field=unknown)
-    selector = asked.selector or wire.RobotSelector()
+    unknown = bool(unknown_fields(wire.SubscribeRequest, params))
     given = selector.robot_ids.ids if selector.robot_ids else ()
     ids = tuple(dict.fromkeys(given))
     return Request(
@@ -196,7 +195,7 @@ def _entry(name: str, robot: str, entry: JSON) -> Part:
     return (), marks, {name: {robot: rest}}
 
 
-_TIMESTAMP = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?(Z|[+-]\d\d:\d\d)")
+TIMESTAMP = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?(Z|[+-]\d\d:\d\d)")
 
 
 def metadata_of(given: JSON) -> EventMetadata:
@@ -207,7 +206,7 @@ def metadata_of(given: JSON) -> EventMetadata:
         found = read(EventMetadata, given)
     except MalformedError as error:
         raise error.inside("metadata") from None
-    if found.timestamp is not None and not _TIMESTAMP.fullmatch(found.timestamp):
+    if found.timestamp is not None and not TIMESTAMP.fullmatch(found.timestamp):
         raise MalformedError(f"{brief(found.timestamp)} is not a timestamp", "metadata.timestamp")
     return found
 
@@ -286,7 +285,7 @@ def _entry_value(endpoint: Endpoint, entry: JSON) -> Value:
 def map_value(endpoint: Endpoint, entry: JSON) -> Value:
     """The state in an entry of a map that has no metadata any more. Raises MalformedError."""
     if endpoint is Endpoint.ERRORS:
-        return canonical("error_codes", ErrorCodes(read(wire.ErrorCodesEntry, entry).codes))  # type: ignore[no-any-return]
+        return canonical("error_codes", ErrorCodes(read(wire.ErrorCodesEntry, entry).codes))
     if endpoint is Endpoint.NETWORK:
         return read(wire.NetworkEntry, entry).connected_wifi
     return read(wire.OnlineEntry, entry).connection or wire.RobotConnection()
@@ -385,7 +384,7 @@ def _robot(given: dict[str, JSON], where: str) -> Robot:
     known = evolve(known, battery=clamped(known.battery))
     if known.servi_state is not None and known.carti_state is not None:
         raise _refuse(f"{where}.state: servi_state and carti_state are both set")
-    return Robot(robot_id, location, _owned(given, where), known, clamped(network))  # type: ignore[arg-type]
+    return Robot(robot_id, location, _owned(given, where), known, clamped(network))
 
 
 def world(given: JSON) -> World:

@@ -98,7 +98,12 @@ AS_08 = Ambiguity(
 AS_09_OFFLINE = Ambiguity(
     "AS-09.offline",
     "What does a new stream show first of a robot that is offline?",
-    {"a": "the last known values", "b": "nothing, until the robot is back", "c": "UNKNOWN values", "d": "INTERNAL is answered"},
+    {
+        "a": "the last known values",
+        "b": "nothing, until the robot is back",
+        "c": "UNKNOWN values",
+        "d": "INTERNAL is answered",
+    },
     default="a",
     flagged=frozenset("cd"),
 )
@@ -306,7 +311,7 @@ WAIVED: Mapping[str, str] = {
     "AS-24": "localization_state is not defined on the page: its content is not looked at",
     "AS-26": "a stream may end with INTERNAL at any time (a) or never (b), and one that just ends is a violation; that "
     "an account loses a robot while it watches cannot be said in the adapter protocol",
-    "AS-29 b": "a list of changes instead of the active codes is no reading of \"currently active\"",
+    "AS-29 b": 'a list of changes instead of the active codes is no reading of "currently active"',
     "AS-30": "mission, velocity and emergency stop of a stuck robot are its own; that a stuck robot goes on moving is "
     "reported once it lasts (the stream monitor)",
     "AS-31": "no bound for noticing that a robot is gone is documented; the sequence rule holds for such events too",

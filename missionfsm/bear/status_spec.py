@@ -8,6 +8,7 @@ from missionfsm.bear.status import (
     CHARTS,
     FORGET,
     MAPS,
+    STATE_PARTS,
     SYSTEM,
     Endpoint,
     Fleet,
@@ -114,7 +115,11 @@ POSSIBILITIES = (
             for one in fleet.robots
         ),
     ),
-    Invariant("a-robot-has-no-network", "Some robot is on no network.", lambda fleet: any(one.wifi is None for one in fleet.robots)),
+    Invariant(
+        "a-robot-has-no-network",
+        "Some robot is on no network.",
+        lambda fleet: any(one.wifi is None for one in fleet.robots),
+    ),
     Invariant("a-fault-is-armed", "The next answer is a failure.", lambda fleet: fleet.fault),
 )
 
@@ -127,6 +132,14 @@ def _describe(value: object) -> str:
 
 def _names(_: Fleet) -> int:
     return 0
+
+
+def _shape(fleet: Fleet) -> tuple[object, ...]:
+    """Fleets that differ in values alone are of one shape: what is reported, who is offline, what is armed."""
+    reported = tuple(
+        (one.connection, *(part for part in STATE_PARTS if one.part(part) is not None)) for one in fleet.robots
+    )
+    return (reported, fleet.fault, fleet.unheard, fleet.moves)
 
 
 SPEC = Spec(
@@ -161,6 +174,7 @@ SPEC = Spec(
     invariants=INVARIANTS,
     possibilities=POSSIBILITIES,
     answers=answers,
+    shape=_shape,
 )
 
 __all__ = ["SPEC"]

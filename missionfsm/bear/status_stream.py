@@ -91,13 +91,13 @@ class Told:
     moves: Moves
 
 
-def concerns(channel: Topic, emission: Told) -> bool:
+def concerns(channel: Any, emission: Any) -> bool:  # noqa: ANN401 - a `Topic` and a `Told`
     """Whether a channel gets an emission."""
     if channel.robot != emission.robot or channel.endpoint is not emission.endpoint:
         return False
     if channel.location is None or emission.moves is not Moves.FOLLOWED:
-        return channel.member
-    return channel.location == emission.location
+        return bool(channel.member)
+    return bool(channel.location == emission.location)
 
 
 @frozen(cache_hash=True)
@@ -235,7 +235,9 @@ def matches(view: View, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch
     if isinstance(content, Garbled):
         return Mismatch(WELL_FORMED.id, content.says)
     if content.robot != view.robot:
-        return Mismatch(SELECTED.id, f"the message is about robot {brief(content.robot)}, not about {brief(view.robot)}")
+        return Mismatch(
+            SELECTED.id, f"the message is about robot {brief(content.robot)}, not about {brief(view.robot)}"
+        )
     if content.endpoint is not view.endpoint and not (content.endpoint is None and view.endpoint in _BLANK):
         return Mismatch(WELL_FORMED.id, f"the message is none of {view.endpoint.value}")
     value = _BLANK[view.endpoint] if content.endpoint is None else content.value
@@ -279,11 +281,11 @@ def _matched(view: View, value: Value, wrapped: bool | None, rule: Rule) -> tupl
         assumes.append(AS_22["b" if wrapped else "a"])
     if view.unheard:
         return ((*assumes, *_of_itself(value)),)
-    wanted = _BLANK.get(view.endpoint) if view.blank else view.value
+    wanted: Value = _BLANK.get(view.endpoint) if view.blank else view.value
     if view.endpoint is Endpoint.NETWORK:
         found: tuple[Assumed, ...] | str = _network(view, value)
     elif view.endpoint is Endpoint.ROBOT:
-        found = _whole(view, wanted, value)  # type: ignore[arg-type]
+        found = _whole(view, wanted, value)
     else:
         found = ((),) if wanted == value else difference(wanted, value)
     if isinstance(found, str):
@@ -330,7 +332,11 @@ def _whole(view: View, wanted: RobotState, shown: RobotState) -> tuple[Assumed, 
 def _part(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed] | str:  # noqa: ANN401 - any part
     if part == "mission" and wanted is None and (shown is None or shown in _NO_MISSION):
         return [(AS_21["a" if shown is None else "b"],)]
-    if part == "error_codes" and ErrorCodes() in (wanted, shown) and (wanted or ErrorCodes()) == (shown or ErrorCodes()):
+    if (
+        part == "error_codes"
+        and ErrorCodes() in (wanted, shown)
+        and (wanted or ErrorCodes()) == (shown or ErrorCodes())
+    ):
         return [()] if wanted is None else [(AS_29_EMPTY["d" if shown is None else "c"],)]
     if part == "twist" and wanted is not None and shown in (None, wanted):
         return _twist(view, wanted, omitted=shown is None)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.bear.status import GET, SYSTEM as NAME, Endpoint
+from missionfsm.bear.status import GET, Endpoint
+from missionfsm.bear.status import SYSTEM as NAME
 from missionfsm.bear.status_json import CODEC
 from missionfsm.bear.status_spec import SPEC
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
@@ -75,8 +76,14 @@ _POSES: tuple[JSON, ...] = (
     {"xMeters": 1.5, "yMeters": 2.8, "headingRadians": 0.78},
     {"xMeters": 2.1, "yMeters": 1.8, "headingRadians": 1.2},
 )
-_TRAYS: JSON = {"trayStates": {"trayStates": [{"trayName": "top", "loadState": "LOAD_STATE_LOADED", "weightKg": 2.5, "loadRatio": 0.8}]}}
-_CONVEYOR: JSON = {"conveyorState": {"index": 0, "operationState": "OPERATION_STATE_ROLLING", "payloadState": "PAYLOAD_STATE_LOADED"}}
+_TRAYS: JSON = {
+    "trayStates": {
+        "trayStates": [{"trayName": "top", "loadState": "LOAD_STATE_LOADED", "weightKg": 2.5, "loadRatio": 0.8}]
+    }
+}
+_CONVEYOR: JSON = {
+    "conveyorState": {"index": 0, "operationState": "OPERATION_STATE_ROLLING", "payloadState": "PAYLOAD_STATE_LOADED"}
+}
 
 _REPORTS: tuple[tuple[str, tuple[JSON, ...]], ...] = (
     ("battery", _BATTERIES),
@@ -201,7 +208,14 @@ _DEFECTIVE: tuple[JSON, ...] = (
 def _prompts() -> Iterator[Prompt]:
     for robot in ("r1", "r2", "r3"):
         yield from (Prompt(GET, {"robotId": robot}) for _ in range(3))
-    for params in ({}, {"robotId": ""}, {"robotId": "x1"}, {"robotId": "nobody"}, {"robotId": 7}, {"robotId": "r1", "x": 1}):
+    for params in (
+        {},
+        {"robotId": ""},
+        {"robotId": "x1"},
+        {"robotId": "nobody"},
+        {"robotId": 7},
+        {"robotId": "r1", "x": 1},
+    ):
         yield Prompt(GET, params)
     for endpoint in Endpoint:
         # What works is worth more tries than what does not.

@@ -205,7 +205,7 @@ def named(value: object) -> str:
 
 
 @functools.cache
-def _enums(kind: type) -> tuple[tuple[str, bool], ...]:
+def _enums(kind: Any) -> tuple[tuple[str, bool], ...]:  # noqa: ANN401 - a message class
     """The fields of a message class, and whether each holds an enum."""
     attrs.resolve_types(kind)
     found = []
@@ -216,13 +216,13 @@ def _enums(kind: type) -> tuple[tuple[str, bool], ...]:
     return tuple(found)
 
 
-def _undocumented(value: object) -> tuple[str, int] | None:
+def _undocumented(value: Any) -> tuple[str, int] | None:  # noqa: ANN401 - any part of a message
     """The first enum in a message, and in those inside it, whose number has no name."""
     if isinstance(value, tuple):
         return next(filter(None, map(_undocumented, value)), None)
     if not attrs.has(type(value)):
         return None
-    for name, is_enum in _enums(type(value)):
+    for name, is_enum in _enums(value.__class__):
         content = getattr(value, name)
         if is_enum and isinstance(content, int) and not isinstance(content, enum.IntEnum):
             return camel(name), content
@@ -232,7 +232,7 @@ def _undocumented(value: object) -> tuple[str, int] | None:
     return None
 
 
-def within(value: object) -> Iterator[object]:
+def within(value: Any) -> Iterator[Any]:  # noqa: ANN401 - any part of a message
     """A value of a message and every message that it holds."""
     if isinstance(value, tuple):
         for one in value:
@@ -262,8 +262,8 @@ def _fault(one: Check, says: str) -> Fault:
     return Fault(one.rule.id, says, one.robots, one.lasts)
 
 
-def clamped(value: object) -> object:
-    """AS-28: a battery or a network with its numbers brought into their documented ranges; the same object if in them."""
+def clamped(value: Any) -> Any:  # noqa: ANN401 - any part of a state
+    """AS-28: a battery or a network with its numbers brought into their ranges; the same object if they are in them."""
     if isinstance(value, BatteryState) and the_charge_is_a_percentage.wrong(value):
         return evolve(value, charge_percent=min(max(value.charge_percent, 0), 100))
     if isinstance(value, Wifi) and the_link_quality_is_in_its_range.wrong(value):
@@ -272,7 +272,7 @@ def clamped(value: object) -> object:
 
 
 def single(value: Any) -> Any:  # noqa: ANN401 - any part of a message
-    """A message with its floats as they are on the wire: 32 bits, so that equal ones are equal however they are written."""
+    """A message with its floats as they are on the wire, in 32 bits: equal ones are equal however they are written."""
     if isinstance(value, float):
         try:
             rounded: float = struct.unpack("<f", struct.pack("<f", value))[0]

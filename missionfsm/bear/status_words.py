@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from missionfsm.bear.protojson import brief, camel
 from missionfsm.bear.status import GET, Fleet, Happening, Request
 from missionfsm.bear.status_stream import Garbled, Promised, Seen, View, brief_value
-from missionfsm.bear.protojson import brief, camel
 
 
 def describe(value: object) -> str:
@@ -12,7 +12,8 @@ def describe(value: object) -> str:
     if isinstance(value, Request):
         return _request(value)
     if isinstance(value, Fleet):
-        return f"{len(value.robots)} robots at {len(value.locations)} locations" + (", a fault armed" if value.fault else "")
+        fault = ", a fault armed" if value.fault else ""
+        return f"{len(value.robots)} robots at {len(value.locations)} locations{fault}"
     if isinstance(value, View):
         return f"{value.robot}: {_shown(value)}"
     if isinstance(value, Seen):

@@ -6,7 +6,7 @@ import json
 import math
 
 from missionfsm.isaac import strictjson
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
+from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid, WireStatus
 from missionfsm.isaac.robot_readings import AI_10, AI_25_HEADER, AI_28_STATUS
 from missionfsm.isaac.robot_spec import (
     NULL,
@@ -59,10 +59,10 @@ def text_line(given: JSON) -> str:
 def _arrives(line: str) -> tuple[Arrives, tuple[Name, ...]]:
     found = decode_line(line.encode(errors="surrogatepass")) if line.strip() else []
     message = found[0] if found else None
-    if not isinstance(message, Message) or not isinstance(message.payload, MissionProto):
+    if not isinstance(message, Message) or message.header.channel != MISSION_CHANNEL:
         return Arrives(), ()
-    if message.header.channel != MISSION_CHANNEL:
-        return Arrives(), ()
+    if not isinstance(message.payload, MissionProto):
+        return Arrives(foreign=True), ()
     strict = decode_line(line.encode(errors="surrogatepass"), numbers=False)
     numeric = not (strict and isinstance(strict[0], Message))
     uuid = message.payload.uuid
@@ -96,6 +96,8 @@ def write_drive(event: Arrives | Stops | Passes, names: tuple[Name, ...]) -> JSO
         return {"event": "advance", "seconds": event.time / MICROSECONDS}
     if isinstance(event, Stops):
         return {"event": event.name}
+    if event.foreign:
+        return {"event": "line", "line": encode(Message(Header(MISSION_CHANNEL), TextProto(""))).decode().rstrip()}
     if event.mission is None:
         return {"event": "line", "line": "{}"}
     config = {USABLE: "{}", NULL: "null", UNUSABLE: "no json"}[event.mission]

@@ -25,6 +25,13 @@ AI_25_HEADER = Ambiguity(
     default="s",
     flagged=frozenset("n"),
 )
+AI_27_TYPE = Ambiguity(
+    "AI-27.type",
+    "What is a message of another type on the mission channel?",
+    {"a": "nothing to the codelet", "b": "a mission without a configuration: only the channel counts"},
+    default="a",
+    flagged=frozenset("b"),
+)
 AI_28_STATUS = Ambiguity(
     "AI-28.status",
     "How is a status written?",
@@ -45,12 +52,13 @@ AI_33_UNUSABLE = Ambiguity(
     flagged=frozenset("b"),
 )
 
-AMBIGUITIES = (AI_10, AI_25_TAKEN, AI_25_HEADER, AI_28_STATUS, AI_33_NULL, AI_33_UNUSABLE)
+AMBIGUITIES = (AI_10, AI_25_TAKEN, AI_25_HEADER, AI_27_TYPE, AI_28_STATUS, AI_33_NULL, AI_33_UNUSABLE)
 
 WAIVED: Mapping[str, str] = {
     "AI-26": "lines are framed by the adapter protocol; a line that is no message is skipped, since nothing can close or "
     "reopen the one connection here",
-    "AI-27": "only the channel is needed to route a message, so other header fields may be missing",
+    "AI-27": "only the channel is needed to route a message, so other header fields may be missing; what a message's "
+    "type is worth is asked apart",
     "AI-31": "no period is documented; RUNNING has to come within the stated bound, however often it does",
     "AI-32": "one reading is left: FAILURE for the old mission comes before anything about the new one",
     "AI-33": "whether earlier values persist (a, b) cannot be seen from outside; null and unusable are asked apart",

@@ -15,6 +15,7 @@ from missionfsm.isaac.robot_readings import (
     AI_10,
     AI_25_HEADER,
     AI_25_TAKEN,
+    AI_27_TYPE,
     AI_28_STATUS,
     AI_33_NULL,
     AI_33_UNUSABLE,
@@ -71,12 +72,13 @@ USABLE, NULL, UNUSABLE = "usable", "null", "unusable"
 class Arrives:
     """A line arrives: a mission (its configuration `USABLE`, `NULL` or `UNUSABLE`), or something that has no effect (None).
 
-    `numeric` says that 64-bit integers in it are numbers.
+    `numeric` says that 64-bit integers in it are numbers, `foreign` that it is another message on the mission channel.
     """
 
     mission: str | None = None
     named: bool = False
     numeric: bool = False
+    foreign: bool = False
     name: str = "line"
 
 
@@ -114,6 +116,9 @@ def _arrives(here: Codelet, event: Arrives, _: tuple[int | None, ...]) -> tuple[
     if not here.connected:
         return ()
     ignored = Step(here, rules=(rules.IGNORES.id,))
+    if event.foreign:
+        taken = _mission(here, event, (AI_27_TYPE["b"],), usable=True)
+        return (evolve(ignored, assumes=(AI_27_TYPE["a"],)), taken)
     if event.mission is None:
         return (ignored,)
     ways: list[tuple[bool, tuple[Assumption, ...]]] = []

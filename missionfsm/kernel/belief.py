@@ -162,7 +162,18 @@ class Belief:
     had explanations.
     """
 
-    __slots__ = ("_given_up", "_marks", "_names", "_numbers", "_renumbered", "_retired", "automaton", "broken", "node", "touched")
+    __slots__ = (
+        "_given_up",
+        "_marks",
+        "_names",
+        "_numbers",
+        "_renumbered",
+        "_retired",
+        "automaton",
+        "broken",
+        "node",
+        "touched",
+    )
 
     def __init__(self, automaton: Automaton, world: object) -> None:
         self.automaton = automaton
@@ -214,12 +225,14 @@ class Belief:
         if type(event) is Received:
             channel = numbers.get(event.channel)
             if channel is None:
-                (channel,) = self._number((event.channel,), new)
+                channel = self._number_anew(event.channel, new)
             relations = self._relations(event.channel, event.marks) if event.marks else ()
             return (Received, event.content, self._number(event.names, new), relations, channel), new
         if type(event) is Called:
             args = self._number(event.names, new) if event.names else ()
-            (call,) = (GONE,) if event.lost else self._number((event.call,), new)
+            call = GONE if event.lost else numbers.get(event.call)
+            if call is None:
+                call = self._number_anew(event.call, new)
             return (Called, event.request, args, event.lost, call), new
         if type(event) is Returned:
             call = numbers.get(event.call, GONE)
@@ -237,25 +250,21 @@ class Belief:
         raise TypeError(message)
 
     def _number(self, names: tuple[Name, ...], new: list[Name]) -> tuple[int, ...]:
-        numbers = self._numbers
-        if not new:
-            try:
-                return tuple(map(numbers.__getitem__, names))  # most often all of them are known
-            except KeyError:
-                pass
-        found = []
-        for name in names:
-            number = numbers.get(name)
-            if number is None:
-                if name in self._retired:
-                    number = GONE
-                elif name in new:
-                    number = self.node.width + new.index(name)
-                else:
-                    number = self.node.width + len(new)
-                    new.append(name)
-            found.append(number)
-        return tuple(found)
+        numbers = tuple(map(self._numbers.get, names))
+        if None in numbers:
+            return tuple(
+                self._number_anew(name, new) if number is None else number
+                for name, number in zip(names, numbers, strict=True)
+            )
+        return numbers  # type: ignore[return-value] - none is None
+
+    def _number_anew(self, name: Name, new: list[Name]) -> int:
+        if name in self._retired:
+            return GONE
+        if name in new:
+            return self.node.width + new.index(name)
+        new.append(name)
+        return self.node.width + len(new) - 1
 
     def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
         """How the numbers of a message compare with those before; asking changes nothing."""

@@ -57,6 +57,7 @@ class Ambiguity:
     default: str
     flagged: frozenset[str] = frozenset()
     _bit: Mapping[str, int] = field(init=False, repr=False)
+    _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
     group: int = field(init=False, repr=False)
     """The bits of all its readings."""
 
@@ -75,7 +76,10 @@ class Ambiguity:
 
     def where(self, bits: int) -> Assumption:
         """The assumption that a reading with one of these bits is followed."""
-        return Assumption(self, ~(self.group & ~bits), self.group)
+        made = self._made.get(bits)
+        if made is None:
+            made = self._made[bits] = Assumption(self, ~(self.group & ~bits), self.group)
+        return made
 
     def besides(self, *letters: str) -> Assumption:
         """The assumption that none of these letters is followed."""

@@ -217,8 +217,8 @@ class Spec:
         request_operation: request to the name of its operation.
         describe: a request, a view or a state in a few words for people.
         rules: all rules of the system that belong to no operation.
-        answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or why
-            they do not; None where they have to be equal.
+        answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
+            why they do not; None where they have to be equal.
         situation: state to what of it decides its steps: in states with the same one, the same calls have the same
             outcomes, and the same events happen in the same ways.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.

@@ -3,20 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from attrs import frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
-from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.spec import Spec, Step
+
+
+@frozen
+class Bend:
+    """A way to send wrong messages: the rule that it breaks, what it does, and how it changes a message's JSON."""
+
+    rule: str
+    says: str
+    bend: Callable[[JSON], JSON]
+
+
+@frozen
+class Break:
+    """A way to take wrong steps: the rule that it breaks, what it does, and how it changes a step.
+
+    `twist` takes the state before and a step that the rule justifies.
+    """
+
+    rule: str
+    says: str
+    twist: Callable[[Any, Step], Step | None]
 
 
 @frozen(eq=False)
 class System:
-    """A specification, how its JSON is read, and what is worth trying (in a world, within bounds)."""
+    """A specification, how its JSON is read, and what is worth trying (in a world, within bounds).
+
+    Attributes:
+        naming: how its names are made up and written.
+        bends, twists: how an implementation may break its promises, besides the ways that fit any system.
+    """
 
     name: str
     spec: Spec
     codec: Codec
     alphabet: Callable[[JSON, Bounds], Alphabet]
     naming: Naming = Naming()
+    bends: tuple[Bend, ...] = ()
+    twists: tuple[Break, ...] = ()

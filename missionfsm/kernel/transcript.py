@@ -125,6 +125,7 @@ class Transcript:
         self._lost = lost
         self._open: dict[int, str] = {}
         self._sent = Ids()
+        self._errors: dict[str, Answer] = {}
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
@@ -200,7 +201,11 @@ class Transcript:
         if method == "cancel":
             return ()
         if "error" in line:
-            return (Returned(("call", number), Answer(self._status(line["error"])), ()),)
+            status = self._status(line["error"])
+            answer = self._errors.get(status)
+            if answer is None:
+                answer = self._errors[status] = Answer(status)
+            return (Returned(("call", number), answer, ()),)
         answer, names = self.codec.answer(method, line["result"])
         return (Returned(("call", number), answer, names),)
 

@@ -32,11 +32,11 @@ def event_words(spec: Spec, event: Event) -> str:
     if isinstance(event, Called):
         return spec.describe(event.request)
     if isinstance(event, Returned):
-        return "answered " + answer_words(event.answer, tuple(map(str, event.names)))
+        return "answered " + answer_words(event.answer, tuple(map(name_words, event.names)))
     if isinstance(event, Received):
-        return f"{_channel(event.channel)} showed {spec.describe(event.content)}"
+        return f"{name_words(event.channel)} showed {spec.describe(event.content)}"
     if isinstance(event, Ended):
-        return f"{_channel(event.channel)} ended" + (f" with {event.code}" if event.code != OK else " cleanly")
+        return f"{name_words(event.channel)} ended" + (f" with {event.code}" if event.code != OK else " cleanly")
     if isinstance(event, Driven):
         return spec.describe(event.event)
     return "everything settled" if isinstance(event, Settled) else "a stream was cancelled"
@@ -47,7 +47,7 @@ def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
     return f"{answer}{' ' + ', '.join(names) if names else ''}"
 
 
-def _channel(name: Any) -> str:  # noqa: ANN401 - a name
+def name_words(name: Any) -> str:  # noqa: ANN401 - a name
     return " ".join(map(str, name)) if isinstance(name, tuple) else str(name)
 
 
@@ -120,7 +120,7 @@ def _compatible(here: Explanation, assumes: tuple[Assumption, ...]) -> bool:
 
 
 def _known(belief: Belief, answer: Answer, names: tuple[int, ...]) -> str:
-    said = tuple(str(belief.name(name) or "a new name") for name in names)
+    said = tuple(name_words(belief.name(name) or "a new name") for name in names)
     return answer_words(answer, said)
 
 
@@ -178,7 +178,7 @@ def _against_message(
             if len(options) > MOST:
                 break
         if not found:
-            notes.append(f"{_channel(event.channel)} is not open")
+            notes.append(f"{name_words(event.channel)} is not open")
     return options, rules, tuple(notes)
 
 
@@ -193,7 +193,7 @@ def _still_due(belief: Belief, oracle: Oracle) -> tuple[list[_Option], list[str]
                 due = [owed for owed in channel.owed if not owed.passing]
                 if due:
                     name = belief.name(channel.name)
-                    where = _channel(name) if name else "a stream"
+                    where = name_words(name) if name else "a stream"
                     options.append(_Option(f"{where} shows {spec.describe(due[-1].view)}", (), ()))
                     notes.append(f"{where} did not show {spec.describe(due[-1].view)}")
             if len(options) > MOST:

@@ -7,6 +7,7 @@ that were walked least, or that lead to situations that were seen least.
 
 from __future__ import annotations
 
+import copy
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
@@ -149,6 +150,12 @@ class Guide:
                 if edge:
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
                     yield Proposal(method, template, None, *edge, picks)
+
+    def fresh(self) -> Guide:
+        """A guide to the same system that has not been anywhere yet."""
+        other = copy.copy(self)
+        other.walked, other.tried, other.visited = Counter(), Counter(), Counter()
+        return other
 
     def note(self, proposal: Proposal) -> None:
         """A proposal was taken up."""

@@ -73,6 +73,15 @@ def mission_name(serial: int) -> Name:
     return f"mission-{serial}"
 
 
+Twist = Callable[[Any, Step | None], Step | None]
+"""(state, step) to the step that is taken in its place; for implementations with one thing broken."""
+
+
+def straight(_: Any, step: Step | None) -> Step | None:  # noqa: ANN401 - a state of any system
+    """The step itself: nothing is broken."""
+    return step
+
+
 class Model:
     """The reference of a system under one choice of readings.
 
@@ -80,6 +89,7 @@ class Model:
         system: the system.
         choice: ambiguity id to letter; the others follow their defaults.
         mint: serial number to a name that was never given out.
+        twist: what is broken, if anything.
 
     Raises:
         ValueError: `choice` names an ambiguity or a letter that does not exist.
@@ -90,10 +100,12 @@ class Model:
         system: System,
         choice: Mapping[str, str] | None = None,
         mint: Callable[[int], Name] = mission_name,
+        twist: Twist = straight,
     ) -> None:
         self.system = system
         self.choice = choose(system.spec.ambiguities, choice)
         self._mint = mint
+        self._twist = twist
         self._chosen: dict[Any, Step | None] = {}
 
     def start(self, world: object) -> Snapshot:
@@ -118,7 +130,7 @@ class Model:
         key = (state, request, refs)
         step = self._chosen.get(key)
         if step is None:
-            step = self._choose(self.system.spec.outcomes(state, request, refs))
+            step = self._choose(state, self.system.spec.outcomes(state, request, refs))
             if step is None:
                 message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
                 raise AssertionError(message)
@@ -128,7 +140,7 @@ class Model:
     def drive(self, here: Snapshot, event: Any, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:  # noqa: ANN401
         """Make something happen; the reply says whether it applied."""
         refs = tuple(here.names.index(name) if name in here.names else None for name in names)
-        step = self._choose(self.system.spec.drives[event.name].steps(here.state, event, refs))
+        step = self.happening(here.state, event, refs)
         if step is None:
             return here, Reply(None, happened=False)
         here, names = self._brought(here, step, names)
@@ -144,17 +156,25 @@ class Model:
             names = (*names, (kinds[-len(names) - 1], here.minted))
         return here, names
 
+    def urgent(self, state: Any) -> Step | None:  # noqa: ANN401 - of any system
+        """What the reference does by itself at once, if anything."""
+        return self._choose(state, self.system.spec.urgent(state))
+
+    def happening(self, state: Any, event: Any, refs: tuple[int | None, ...]) -> Step | None:  # noqa: ANN401
+        """How something that the environment does comes about; None where it does not apply."""
+        return self._choose(state, self.system.spec.drives[event.name].steps(state, event, refs))
+
     def cancel(self, here: Snapshot, channel: Name) -> Snapshot:
         """Give a stream up; one that does not exist is no error."""
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
-    def _choose(self, steps: tuple[Step, ...]) -> Step | None:
-        return next((step for step in steps if meet(self.choice, step.assumes)), None)
+    def _choose(self, state: Any, steps: tuple[Step, ...]) -> Step | None:  # noqa: ANN401 - of any system
+        return self._twist(state, next((step for step in steps if meet(self.choice, step.assumes)), None))
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
         """Take everything urgent at once."""
         while True:
-            step = self._choose(self.system.spec.urgent(here.state))
+            step = self.urgent(here.state)
             if step is None:
                 return here, self._delivered(sent)
             here, more, _ = self._take(here, step, ())
@@ -179,7 +199,7 @@ class Model:
         if step.closes:
             after = evolve(after, channels=tuple(one for one in after.channels if one.topic not in step.closes))
         sent: list[Sent] = []
-        passing = bool(self._choose(self.system.spec.urgent(step.after))) if step.emits else False
+        passing = self.urgent(step.after) is not None if step.emits else False
         for emission in step.emits:
             for channel in after.channels:
                 if self.system.spec.concerns(channel.topic, emission.topic):

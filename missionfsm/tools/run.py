@@ -40,7 +40,7 @@ class Run:
     automaton: Automaton
     bounds: Bounds
     progress: Callable[[], None] = lambda: None
-    guide: Guide = field(init=False)
+    guide: Guide = field(default=None)  # type: ignore[assignment] - made below where none is given
     last: Conversation | None = None
     found: Conversation | None = None
     events: int = 0
@@ -51,6 +51,8 @@ class Run:
     contradiction: str | None = None
 
     def __attrs_post_init__(self) -> None:
+        if self.guide is not None:
+            return
         worlds = self.system.alphabet({}, self.bounds).worlds
         self.guide = Guide(self.system, worlds, self.bounds, self.about.drives)
 
@@ -71,9 +73,10 @@ class Run:
         self.gather()
         return False
 
-    def take_up(self, proposal: Proposal) -> bool:
-        """Do what the guide proposed."""
-        self.guide.note(proposal)
+    def take_up(self, proposal: Proposal, *, counts: bool = True) -> bool:
+        """Do what the guide proposed; the guide remembers it if it counts."""
+        if counts:
+            self.guide.note(proposal)
         return self.act(proposal.method, proposal.params, proposal.name, proposal.picks)
 
     def gather(self) -> bool:

@@ -12,7 +12,7 @@ from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Re
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transcript import Transcript, head
 from missionfsm.tools.check import Judge
-from missionfsm.tools.explain import answer_words, event_words
+from missionfsm.tools.explain import answer_words, event_words, name_words
 from missionfsm.tools.verdict import Allowed, Violation
 
 if TYPE_CHECKING:
@@ -37,14 +37,14 @@ def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
     spec = system.spec
     for event in _events(system, history[1:]):
         if isinstance(event, Returned) and event.call == waits_for and waiting is not None:
-            yield f"{waiting} → {answer_words(event.answer, tuple(map(str, event.names)))}"
+            yield f"{waiting} → {answer_words(event.answer, tuple(map(name_words, event.names)))}"
             waiting = waits_for = None
             continue
         if waiting is not None:
             yield waiting
             waiting = waits_for = None
         if isinstance(event, Called):
-            about = f" of {', '.join(map(str, event.names))}" if event.names else ""
+            about = f" of {', '.join(map(name_words, event.names))}" if event.names else ""
             waiting, waits_for = event_words(spec, event) + about, event.call
         elif isinstance(event, Settled):
             yield "(settled)"

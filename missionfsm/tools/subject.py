@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.tools.model import Model, Reply, Sent, Snapshot
+from missionfsm.tools.model import Model, Reply, Sent, Snapshot, Twist, straight
 
 
 class Reference:
@@ -17,11 +17,19 @@ class Reference:
 
     Args:
         system: the system.
-        choice: the readings that it follows; see `missionfsm.tools.model.Model`.
+        choice, twist: the readings that it follows, and what is broken; see `missionfsm.tools.model.Model`.
+        bend: a message to the one that is sent in its place; for one that is broken.
     """
 
-    def __init__(self, system: System, choice: Mapping[str, str] | None = None) -> None:
-        self.model = Model(system, choice)
+    def __init__(
+        self,
+        system: System,
+        choice: Mapping[str, str] | None = None,
+        twist: Twist = straight,
+        bend: Callable[[JSON], JSON] = lambda message: message,
+    ) -> None:
+        self.model = Model(system, choice, twist=twist)
+        self._bend = bend
         self._here: Snapshot | None = None
         self._minted = 0
 
@@ -110,6 +118,7 @@ class Reference:
     def _notification(self, sent: Sent) -> Notification:
         codec = self.model.system.codec
         message = codec.write_message(sent.view, sent.names, self.model.choice, sent.number, float(sent.number))
+        message = self._bend(message)
         kind, number = _channel(sent.channel)
         if kind == "connection":
             return Notification("line", {"connection": number, "line": message})

@@ -39,7 +39,11 @@ def lines_of(notifications: Iterable[Notification]) -> Iterable[Any]:
         if one.method == "message":
             yield {"stream": one.params["stream"], "message": one.params["message"]}
         else:
-            yield {"stream": one.params["stream"], "closed": True, **({"error": one.params["error"]} if "error" in one.params else {})}
+            yield {
+                "stream": one.params["stream"],
+                "closed": True,
+                **({"error": one.params["error"]} if "error" in one.params else {}),
+            }
 
 
 class Walk:
@@ -128,3 +132,53 @@ def walk(
 def reference(choice: Mapping[str, str] | None = None) -> Reference:
     """The reference model under a choice of readings."""
     return Reference(SYSTEM, choice)
+
+
+# Lines of histories, written by hand.
+
+
+def by_ids(*robots: str) -> Any:
+    return {"selector": {"robotIds": {"ids": list(robots)}}}
+
+
+def at(location: str) -> Any:
+    return {"selector": {"locationId": location}}
+
+
+def opened(stream: int, method: str, params: Any) -> list[Any]:
+    """The lines of a subscription that succeeds; the call has the number of the stream."""
+    return [{"call": stream, "method": method, "params": params}, {"return": stream, "result": {"stream": stream}}]
+
+
+def refused(method: str, params: Any, status: str, call: int = 90) -> list[Any]:
+    return [{"call": call, "method": method, "params": params}, {"return": call, "error": {"status": status}}]
+
+
+def metadata(number: int) -> Any:
+    return {"timestamp": "2025-04-01T16:45:00Z", "sequenceNumber": number}
+
+
+def battery(percent: int = 78, state: str = "STATE_CHARGING", method: str = "CHARGE_METHOD_CONTACT") -> Any:
+    return {"chargePercent": percent, "state": state, "chargeMethod": method}
+
+
+def battery_message(stream: int, robot: str, number: int, value: Any) -> Any:
+    return {"stream": stream, "message": {"metadata": metadata(number), "robotId": robot, "batteryState": value}}
+
+
+def robot_message(stream: int, robot: str, number: int, state: Any) -> Any:
+    return {"stream": stream, "message": {"metadata": metadata(number), "robotId": robot, "robotState": state}}
+
+
+def online_message(stream: int, **robots: tuple[int, str]) -> Any:
+    states = {
+        robot: {"metadata": metadata(number), "connection": {"state": state}} for robot, (number, state) in robots.items()
+    }
+    return {"stream": stream, "message": {"onlineStates": states}}
+
+
+def report(robot: str, part: str, value: Any) -> Any:
+    return {"drive": {"event": "report", "robotId": robot, "part": part, "value": value}}
+
+
+SETTLED = {"settled": True}

@@ -72,7 +72,7 @@ REGISTERS = Alphabet(
     {
         ("write", 1): (0, (*_answers((), None), DEADLINE)),
         ("write", 2): (0, (*_answers((), None), DEADLINE)),
-        ("swap", 1, 2): (0, (*_answers((), True, False), DEADLINE)),
+        ("swap", 1, 2): (0, (*_answers((), *(True, False)), DEADLINE)),
         ("read",): (0, _answers((), 0, 1, 2)),
     },
     calls=5,
@@ -134,13 +134,13 @@ class Conversation:
         if self.called < a.calls:
             name = ("call", self.called)
             for lost in (False, True):
-                sorts.append(
+                sorts += [
                     [
                         Called(name, request, names, lost)
                         for request, (size, _) in a.requests.items()
                         for names in itertools.permutations(self.known, size)
                     ]
-                )
+                ]
         sorts += (
             [Returned(name, *answer) for answer in self.answers(request)] for name, request in self.pending.items()
         )

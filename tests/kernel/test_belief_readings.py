@@ -83,6 +83,24 @@ def test_readings_that_lead_apart_are_explanations_of_their_own() -> None:
     assert (found, belief.readings) == ({(1, ("a",)), (0, ("b", "c"))}, {"Q-0": ("a", "b", "c")})
 
 
+def test_a_question_that_mattered_stays_reported() -> None:
+    """Once everything is as before under every reading, one explanation is left, and the question is still reported."""
+    belief, _ = pressed((("turn", 0), None), (("reset",), None))
+    assert (len(belief.node.explanations), belief.readings) == (1, {"Q-0": ("a", "b", "c")})
+
+
+@pytest.mark.parametrize(("letter", "verdict"), [("a", True), ("b", True), ("c", False)])
+def test_one_point_is_reached_under_several_readings(letter: str, verdict: bool) -> None:  # noqa: FBT001
+    """A call in flight may have taken effect under either of two readings, and under no third."""
+    belief = Belief(AUTOMATON, 0)
+    events = (
+        Called(("call", 1), ("jump", 0)),
+        *(Called(("call", 2), ("read",)), Returned(("call", 2), Answer(OK, 1))),
+        *(Called(("call", 3), ("button", 0)), Returned(("call", 3), Answer(OK, letter))),
+    )
+    assert [belief.observe(event) for event in events] == [True, True, True, True, verdict]
+
+
 def test_what_is_the_same_again_is_merged() -> None:
     """Turns under k questions lead to k + 1 states; explanations that a state has no box for stay apart."""
     sizes = []

@@ -69,7 +69,7 @@ def _explains(order: tuple[Operation, ...]) -> bool:
 def accepted(events: list[Event]) -> bool:
     """Whether the belief explains a history."""
     belief = Belief(AUTOMATON, 0)
-    return all([belief.observe(event) for event in events])
+    return all(belief.observe(event) for event in events)
 
 
 REQUESTS: tuple[Request, ...] = (("write", 1), ("write", 2), ("swap", 1, 2), ("swap", 2, 1), ("read",), ("read",))
@@ -84,7 +84,7 @@ def histories(draw: st.DrawFn) -> tuple[list[Event], list[Operation]]:
     operations: dict[int, Operation] = {}
     pending: list[int] = []
     for _ in range(draw(st.integers(2, 10))):
-        if pending and draw(st.integers(0, 2)):
+        if pending and draw(st.integers(0, 2)) > 0:
             number = pending.pop(draw(st.integers(0, len(pending) - 1)))
             sent = operations[number]
             answers: list[object] = ANSWERS[sent.request[0]]

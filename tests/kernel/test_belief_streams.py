@@ -73,6 +73,7 @@ LAMPS: list[tuple[str, list[Observed], int | None]] = [
     ),
     ("a repeat is a reading", [*watched(), shows("off", number=2), shows("off", number=3)], None),
     ("a skip is a reading", [*watched(), NUDGE, call(1, "press"), answer(1), shows("off", number=2), SETTLED], None),
+    ("what is back where it was seen may stay unsaid", [*watched(), NUDGE, call(1, "press"), answer(1), SETTLED], None),
     (
         "a repeat decides nothing about skips",
         [*watched(), shows("off", number=2), NUDGE, SETTLED],
@@ -205,6 +206,12 @@ def test_a_queue_is_judged(
     assert failing(PLAIN_TICKETS, world, (), events) == fails
 
 
+def test_a_name_may_be_seen_when_its_thing_is_gone() -> None:
+    """A late message names a ticket that was served already; that name is spent as well."""
+    events = [*watched(shown=None), SERVE, shows(RED, "x"), shows(()), call(1, "take", "red"), answer(1, "x")]
+    assert failing(TICKETS, RED, ("serve",), events) == 6
+
+
 def test_readings_follow_the_names() -> None:
     """In which order the board lists is found out from the names, and reported."""
     belief = Belief(Automaton(TICKETS), ())
@@ -212,4 +219,4 @@ def test_readings_follow_the_names() -> None:
         *(call(1, "take", "red"), answer(1, "x"), call(2, "take", "red"), answer(2, "y")),
         *(call(3, "watch"), answer(3, ONE), shows(("red", "red"), "y", "x")),
     ]
-    assert (all([belief.observe(event) for event in taken]), belief.readings) == (True, {"T-1": ("b",)})
+    assert (all(belief.observe(event) for event in taken), belief.readings) == (True, {"T-1": ("b",)})

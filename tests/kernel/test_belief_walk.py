@@ -79,7 +79,7 @@ def walk(automaton: Automaton, seed: int, count: int = EVENTS) -> tuple[list[boo
 
 
 def test_a_long_walk_stays_small() -> None:
-    """A thousand events of a robot of which nothing is driven: the explanations stay few, and their number is pinned."""
+    """A thousand events of a robot of which nothing is driven: the explanations stay few, as pinned."""
     automaton = Automaton(SYSTEM.spec)
     verdicts, sizes = walk(automaton, 1)
     assert all(verdicts)
@@ -115,7 +115,7 @@ def test_the_same_situation_with_other_names_is_the_same_node() -> None:
             Driven(Event("serve")),
             Settled(),
         )
-        assert all([here.observe(event) for event in events])
+        assert all(here.observe(event) for event in events)
         sizes.append(automaton.size)
     assert len(set(sizes[2:])) == 1
 

@@ -320,16 +320,24 @@ def _buttons(state: int, request: Request, _: Refs) -> tuple[Step, ...]:
                 Step(state, answer=Answer(OK), assumes=(question[letter],), rules=(f"quiet-{letter}",))
                 for letter in question.readings
             )
+        case ("jump", number):
+            up, question = state + 1, QUESTIONS[number]
+            return tuple(Step(up, answer=Answer(OK), assumes=(question[letter],)) for letter in ("a", "b"))
+        case ("read",):
+            return (Step(state, answer=Answer(OK, shape=state)),)
+        case ("reset",):
+            return (Step(0 if state else state, answer=Answer(OK)),)
         case _:  # turn: its effect depends on the reading, and is seen by and by
             question = QUESTIONS[request[1]]
             turned = ((state + 1, "a"), (state, "b"), (state, "c"))
-            return tuple(Step(after, answer=Answer(OK), assumes=(question[letter],)) for after, letter in turned) + (
-                Step(state, answer=Answer(FAILED_PRECONDITION), assumes=(question["c"],)),
+            return (
+                *(Step(after, answer=Answer(OK), assumes=(question[letter],)) for after, letter in turned),
+                refused(state, FAILED_PRECONDITION, question["c"]),
             )
 
 
 BUTTONS = spec("buttons", int, _buttons, ambiguities=QUESTIONS)
-"""``("button", n)``, ``("either", n)``, ``("quiet", n)`` and ``("turn", n)``."""
+"""``button``, ``either``, ``quiet``, ``turn`` and ``jump``, each with the number of a question; ``read``, ``reset``."""
 
 
 # A newspaper: several channels under one name, and offers.

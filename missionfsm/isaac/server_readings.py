@@ -1,0 +1,309 @@
+"""Where the page can be read in more than one way as to the mission server; ``specs/isaac-missions.md`` argues each.
+
+Letters are those of the readings' list; an entry with several questions has an ambiguity for each. Readings that the
+list calls violations are not offered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from missionfsm.kernel.readings import Ambiguity
+
+
+def _flags(letters: str) -> frozenset[str]:
+    return frozenset(letters)
+
+
+AI_02 = Ambiguity(
+    "AI-02",
+    "How are missions called that were cancelled or aborted?",
+    {
+        "a": "canceled, and aborted",
+        "b": "failed, both",
+        "c": "canceled, and timed out",
+    },
+    default="c",
+)
+AI_03 = Ambiguity(
+    "AI-03",
+    "Which failures of an upstream cancel a mission?",
+    {
+        "a": "all: cancelled and aborted upstreams as well",
+        "b": "only what a robot reported; after others the mission waits for ever",
+        "c": "all but cancellations; after those the mission waits for ever",
+    },
+    default="a",
+    flagged=_flags("bc"),
+)
+AI_04 = Ambiguity(
+    "AI-04",
+    "What is a submitted mission that waits for upstreams?",
+    {"a": "QUEUED", "b": "CREATED"},
+    default="a",
+)
+AI_05 = Ambiguity(
+    "AI-05",
+    "From when does start_timeout count?",
+    {
+        "a": "from when the mission is sent",
+        "b": "from its submission",
+        "c": "from when its upstreams have succeeded",
+        "d": "from when its robot is connected",
+    },
+    default="a",
+    flagged=_flags("bcd"),
+)
+AI_06 = Ambiguity(
+    "AI-06",
+    "From when does timeout count?",
+    {"a": "from the acknowledgement", "b": "from when the mission is sent", "c": "from its submission"},
+    default="a",
+    flagged=_flags("c"),
+)
+AI_07 = Ambiguity(
+    "AI-07",
+    "What acknowledges a mission?",
+    {
+        "a": "any status",
+        "b": "RUNNING only; a final status before it is not heard",
+        "c": "that it could be sent",
+    },
+    default="a",
+    flagged=_flags("bc"),
+)
+AI_08 = Ambiguity(
+    "AI-08",
+    "What does an abort do to the robot?",
+    {"a": "nothing: it goes on until it is preempted", "c": "its connection is closed"},
+    default="a",
+    flagged=_flags("c"),
+)
+AI_09 = Ambiguity(
+    "AI-09",
+    "What is a final status worth that comes after the end?",
+    {"a": "nothing", "b": "the last one counts", "c": "the first after an abort counts"},
+    default="a",
+    flagged=_flags("bc"),
+)
+AI_10 = Ambiguity(
+    "AI-10",
+    "How is a status matched to a mission?",
+    {
+        "a": "by the mission that it names, or else to the robot's current one on that channel",
+        "b": "only by the mission that its payload names",
+        "c": "only by the identifier in its header",
+    },
+    default="a",
+)
+AI_11 = Ambiguity(
+    "AI-11",
+    "How many missions is a robot sent at a time?",
+    {"a": "one", "b": "all that are ready", "c": "one on each channel"},
+    default="a",
+    flagged=_flags("b"),
+)
+AI_12 = Ambiguity(
+    "AI-12",
+    "Does a mission that waits for upstreams hold up those behind it?",
+    {"a": "no, they overtake it", "b": "yes"},
+    default="a",
+)
+AI_13 = Ambiguity(
+    "AI-13",
+    "Which of several missions that are ready goes first?",
+    {"a": "the one that was submitted first", "b": "any"},
+    default="a",
+)
+AI_14_STATUS = Ambiguity(
+    "AI-14.status",
+    "On which channel are the statuses of a mission that names only its channel?",
+    {"a": '"mission_status"', "b": "its channel's name with _status appended"},
+    default="a",
+    flagged=_flags("b"),
+)
+AI_15 = Ambiguity(
+    "AI-15",
+    "What becomes of a mission that was sent when its robot's connection drops?",
+    {"a": "nothing: its timeouts decide", "b": "it is sent again", "c": "it has failed"},
+    default="c",
+)
+AI_16 = Ambiguity(
+    "AI-16",
+    "Which of two connections with one name is the robot?",
+    {"a": "the newer", "b": "the one that had the name first", "d": "that one, and the other is closed"},
+    default="a",
+)
+AI_16_UNDER_WAY = Ambiguity(
+    "AI-16.under-way",
+    "A newer connection becomes the robot: what of the mission that was sent on the older?",
+    {"k": "it goes on there", "l": "as if that connection had dropped"},
+    default="l",
+)
+AI_16_BACK = Ambiguity(
+    "AI-16.back",
+    "The connection that is the robot drops, and another has said the same name: is that the robot now?",
+    {"p": "at once", "q": "when it says its name again"},
+    default="q",
+)
+AI_17 = Ambiguity(
+    "AI-17",
+    "What does another name on a connection do?",
+    {"a": "nothing", "b": "the connection is that robot's from then on"},
+    default="a",
+)
+AI_18_EARLY = Ambiguity(
+    "AI-18.early",
+    "What becomes of a status that comes before the name?",
+    {"a": "it is ignored", "b": "it is kept until the name is known"},
+    default="a",
+)
+AI_19 = Ambiguity(
+    "AI-19",
+    "What becomes of a mission without a robot?",
+    {"a": "it is never sent", "b": "any robot gets it", "c": "it is refused"},
+    default="c",
+    flagged=_flags("b"),
+)
+AI_20_KEYS = Ambiguity(
+    "AI-20.keys", "Is a mission with an unknown key refused?", {"a": "yes", "c": "no, the key is ignored"}, default="c"
+)
+AI_20_NULL = Ambiguity(
+    "AI-20.null",
+    "What is a field that is null?",
+    {"a": "of the wrong type: the mission is refused", "c": "left out"},
+    default="a",
+)
+AI_20_EMPTY = Ambiguity(
+    "AI-20.empty", "Is a mission with an empty channel refused?", {"a": "yes", "c": "no"}, default="c"
+)
+AI_22_STARTED = Ambiguity(
+    "AI-22.started",
+    "What is an upstream that was sent but not acknowledged when its downstream is submitted?",
+    {"a": "waited for", "i": "as good as failed, as in the shipped software"},
+    default="a",
+    flagged=_flags("i"),
+)
+AI_24 = Ambiguity(
+    "AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a"
+)
+AI_25_TAKEN = Ambiguity(
+    "AI-25.taken",
+    "Is a message understood whose 64-bit integers are numbers instead of strings?",
+    {"a": "yes, both are", "b": "no, strings only"},
+    default="a",
+)
+AI_25_HEADER = Ambiguity(
+    "AI-25.header",
+    "How are the halves of the header's uuid sent?",
+    {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
+    default="s",
+    flagged=_flags("n"),
+)
+AI_26 = Ambiguity(
+    "AI-26",
+    "What does a line do that cannot be read?",
+    {"e": "it is skipped", "f": "its connection is closed"},
+    default="e",
+)
+AI_28_CONFIG = Ambiguity(
+    "AI-28.config",
+    "How does a MissionProto carry its configuration?",
+    {"a": "as an object", "b": "as a string that holds JSON"},
+    default="b",
+)
+AI_31 = Ambiguity(
+    "AI-31",
+    "Is a mission lost whose robot stops reporting RUNNING?",
+    {"a": "yes, after some time", "b": "no"},
+    default="b",
+    flagged=_flags("a"),
+)
+AI_33_NULL = Ambiguity(
+    "AI-33.null", "What is a configuration that is null?", {"a": "an empty one", "b": "a reason to refuse"}, default="a"
+)
+AI_36 = Ambiguity(
+    "AI-36",
+    "When is a mission cancelled that waits for other upstreams too?",
+    {"a": "at once", "b": "when they have ended as well"},
+    default="a",
+)
+AI_37 = Ambiguity(
+    "AI-37",
+    "How is the text taken that a robot says as its name?",
+    {"a": "exactly", "b": "without the space around it"},
+    default="a",
+)
+AI_38 = Ambiguity(
+    "AI-38",
+    "What does a message of a type do that does not travel as JSON?",
+    {"a": "it is skipped", "d": "its connection is closed"},
+    default="a",
+    flagged=_flags("d"),
+)
+AI_39 = Ambiguity(
+    "AI-39",
+    "When is a mission sent that can be, and when is a timeout noticed?",
+    {"a": "at once", "b": "when the server looks, about once a second"},
+    default="a",
+)
+
+AMBIGUITIES = (
+    AI_02,
+    AI_03,
+    AI_04,
+    AI_05,
+    AI_06,
+    AI_07,
+    AI_08,
+    AI_09,
+    AI_10,
+    AI_11,
+    AI_12,
+    AI_13,
+    AI_14_STATUS,
+    AI_15,
+    AI_16,
+    AI_16_UNDER_WAY,
+    AI_16_BACK,
+    AI_17,
+    AI_18_EARLY,
+    AI_19,
+    AI_20_KEYS,
+    AI_20_NULL,
+    AI_20_EMPTY,
+    AI_22_STARTED,
+    AI_24,
+    AI_25_TAKEN,
+    AI_25_HEADER,
+    AI_26,
+    AI_28_CONFIG,
+    AI_31,
+    AI_33_NULL,
+    AI_36,
+    AI_37,
+    AI_38,
+    AI_39,
+)
+
+WAIVED: Mapping[str, str] = {
+    "AI-01": "one reading is left: completed successfully. A downstream that is sent after a failure is a violation",
+    "AI-08": "b, a stop message, is not offered: no such message is documented, so none could be told from a mistake",
+    "AI-14": "missions on several channels of one robot are the same question as AI-11 c; its other half is AI-14.status",
+    "AI-16": "c, both connections get the mission, is a violation and not offered",
+    "AI-18": "whether a connection without a name is closed after a time (c, d) cannot be seen: nothing is owed to it, and "
+    "a drive on a connection that is closed does not happen",
+    "AI-20": "the mission file is read by the program around the server; of a submission, defects other than the three "
+    "that are asked apart are always refused",
+    "AI-21": "an upstream is named by a handle, which exists once that mission was submitted: no reference is forward",
+    "AI-22": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor a second "
+    "submission can be said; an upstream that has ended counts at once (g), and h is a violation",
+    "AI-23": "not observable: slips in the sample",
+    "AI-27": "only the channel is needed to route a message; other header fields may be missing",
+    "AI-29": "about the program around the server",
+    "AI-30": "about the program around the server",
+    "AI-32": "a FAILURE fails the mission that it is about, preempted or not (c)",
+    "AI-34": "the server's statuses are AI-04's; STARTED is sent and not acknowledged (b)",
+    "AI-35": "one reading is left: a failure does not affect missions that do not depend on it",
+}
+"""Entries, or readings of them, that make no ambiguity of the server, each with the reason."""

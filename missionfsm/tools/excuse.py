@@ -1,0 +1,138 @@
+"""Proof, within bounds, that an implementation does nothing that the documents forbid.
+
+An implementation that is a model can be explored. If every step that it takes in every state that it reaches is among
+those that the spec allows there, under readings that agree with one another, then every conversation with it can be
+explained: the explanation takes the very same steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import ANYTHING, meet
+from missionfsm.kernel.spec import Mismatch, Spec, Step
+from missionfsm.kernel.system import System
+from missionfsm.tools.explore import Labels
+from missionfsm.tools.model import Model
+
+BOUNDS = Bounds(missions=2, goals=2, batch=2)
+
+
+class _GuiltyError(Exception):
+    """A step is allowed under no reading that agrees with those assumed before."""
+
+
+def excuse(system: System, model: Model, bend: Callable[[JSON], JSON], worlds: tuple[JSON, ...]) -> str:
+    """The readings under which everything that a model does within bounds is allowed; empty if there are none.
+
+    Args:
+        model: the implementation.
+        bend: what it does to its messages.
+        worlds: those that it is explored in.
+    """
+    assumed = ANYTHING
+    states = 0
+    try:
+        for world in worlds:
+            assumed, seen = _explored(system, model, bend, world, assumed)
+            states += seen
+    except _GuiltyError:
+        return ""
+    followed = {one.id: one.possible(assumed) for one in system.spec.ambiguities}
+    own = {one.id: one.possible(model.choice)[0] for one in system.spec.ambiguities}
+    others = [f"{name}={'|'.join(letters)}" for name, letters in followed.items() if own[name] not in letters]
+    why = f"which {', '.join(others)} allows" if others else "which its own readings allow"
+    return f"it only does, in the {states} states that it reaches, {why}"
+
+
+def _explored(
+    system: System, model: Model, bend: Callable[[JSON], JSON], world: JSON, assumed: int
+) -> tuple[int, int]:
+    spec = system.spec
+    alphabet = system.alphabet(world, BOUNDS)
+    plain = Labels.of(system, alphabet.plain, alphabet.plain_drives)
+    everything = Labels.of(system, alphabet.prompts, alphabet.drives)
+    start = spec.initial(system.codec.world(world))
+    found, todo, situations = {start}, [start], set()
+    for here in todo:
+        situation = spec.situation(here)
+        labels = plain if situation in situations else everything
+        situations.add(situation)
+        for taken, allowed, leads_on in _taken(spec, model, here, labels):
+            passing = model.urgent(taken.after) is not None
+            assumed = _allowed(taken, allowed, assumed, here, passing=passing)
+            if not passing:
+                assumed = _shown(system, model, bend, taken, assumed)
+            if leads_on and taken.after not in found and spec.names(taken.after) <= BOUNDS.missions:
+                found.add(taken.after)
+                todo.append(taken.after)
+    return assumed, len(found)
+
+
+def _taken(spec: Spec, model: Model, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...], bool]]:  # noqa: ANN401
+    """Every step that the model takes in a state, with those that it might take there; the urgent ones come first."""
+    urgent = spec.urgent(here)
+    taken = model.urgent(here)
+    if taken is not None:
+        yield taken, urgent, True
+        return
+    if urgent and not any(meet(model.choice, step.assumes) for step in urgent):
+        urgent = ()
+    if urgent:
+        raise _GuiltyError
+    for request, named in labels.requests:
+        for ref in (None, *range(spec.names(here))) if named else (None,):
+            refs = (ref,) if named else ()
+            try:
+                step = model.outcome(here, request, refs)
+            except (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+                raise _GuiltyError from None
+            yield step, spec.outcomes(here, request, refs), True
+    for event in labels.events:
+        steps = spec.drives[event.name].steps(here, event, ())
+        happened = model.happening(here, event, ())
+        if happened is not None:
+            yield happened, steps, True
+
+
+def _allowed(taken: Step, allowed: tuple[Step, ...], assumed: int, here: Any, *, passing: bool) -> int:  # noqa: ANN401
+    found = 0
+    for step in allowed:
+        # What shows a state that does not last may be left out.
+        silent = passing and not taken.emits
+        if _seen(step, here, silent=silent) == _seen(taken, here, silent=silent):
+            agreed = meet(assumed, step.assumes)
+            # The one that leaves the most open; where two leave different things open the first is taken.
+            found = agreed if agreed and not found else (agreed if agreed & found == found and agreed else found)
+    if not found:
+        raise _GuiltyError
+    return found
+
+
+def _seen(step: Step, here: Any, *, silent: bool) -> Any:  # noqa: ANN401 - what matters of a step
+    names = None if step.after is here else step.names
+    return (step.answer, step.after, names, () if silent else step.emits, step.opens, step.refs)
+
+
+def _shown(system: System, model: Model, bend: Callable[[JSON], JSON], step: Step, assumed: int) -> int:
+    for emission in (*step.emits, *(owed for opening in step.opens for owed in opening.owed)):
+        if emission.only and not meet(model.choice, (emission.only,)):
+            continue
+        count = 1 + max((*(emission.refs or ()), system.spec.names(step.after) - 1), default=0)
+        names = tuple(f"n{number}" for number in range(count if emission.refs is None else len(emission.refs)))
+        message = bend(system.codec.write_message(emission.view, names, model.choice, 1, 0.0))
+        for _, _, rest in system.codec.strip(message):
+            matches = system.spec.matches(emission.view, system.codec.content(rest))
+            if isinstance(matches, Mismatch):
+                raise _GuiltyError
+            agreed = next((both for match in matches if (both := meet(assumed, match.assumes))), 0)
+            if not agreed:
+                if meet(model.choice, [one for match in matches for one in match.assumes]):
+                    raise _GuiltyError
+                continue
+            assumed = agreed
+    return assumed
+

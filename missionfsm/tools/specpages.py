@@ -1,0 +1,222 @@
+"""The written specifications in ``specs/``: what they claim to cover, and the parts of them that are computed.
+
+A page is Markdown with two conventions. A *clause* is a paragraph that begins with its number and its place,
+
+    **M-7** (`Mission › CreateMission › Errors`) In our own words … *Checked by* `CreateMission/INVALID_ARGUMENT/…`.
+
+and names rules by their ids without the system, in which ``*`` stands for anything. A *computed part* stands between
+two comments, the first of which says what it is:
+
+    <!-- generated: rules CreateMission -->
+    <!-- end -->
+
+`regenerate` fills those parts in; what else stands on a page is left alone. Kinds of parts:
+
+- ``operations``: every operation with its codes;
+- ``rules NAME``: the rules of an operation or a topic, each with the clauses that name it;
+- ``chart NAME``: the moves of a lifecycle;
+- ``readings``: every ambiguity in one line;
+- ``entry AM-09``: the ambiguities of an entry with their readings, and what of it is waived;
+- ``waived``: everything that is waived.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from attrs import frozen
+
+from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.system import System
+
+_PART = re.compile(
+    r"(<!-- generated: (?P<kind>\w+)(?: (?P<what>[^\n]*?))? -->\n)(?P<body>.*?)(<!-- end -->)", re.DOTALL
+)
+_CLAUSE = re.compile(r"^\*\*(?P<number>[A-Z]+-\d+)\*\* \(`(?P<place>[^`]+)`\)")
+_RULE = re.compile(r"`([\w*]+(?:/[\w*-]+)+)`")
+_ENTRY = re.compile(r"\b[A-Z]{2}-\d\d\b")
+_HEADING = re.compile(r"^### ([A-Z]{2}-\d\d)\b.*$", re.MULTILINE)
+
+
+@frozen
+class Clause:
+    """A numbered clause: where the sentence stands that it is about, the rules and the entries that it names."""
+
+    number: str
+    place: str
+    rules: tuple[str, ...]
+    entries: tuple[str, ...]
+    text: str
+
+
+def clauses(text: str) -> tuple[Clause, ...]:
+    """The clauses of a page, in its order."""
+    paragraphs = (" ".join(one.split()) for one in _PART.sub("", text).split("\n\n"))
+    found = ((_CLAUSE.match(paragraph), paragraph) for paragraph in paragraphs)
+    return tuple(
+        Clause(
+            match["number"],
+            match["place"],
+            tuple(_RULE.findall(paragraph)),
+            tuple(dict.fromkeys(_ENTRY.findall(paragraph))),
+            paragraph[match.end() :].strip(),
+        )
+        for match, paragraph in found
+        if match
+    )
+
+
+def entries(text: str) -> tuple[str, ...]:
+    """The entries that have a section of their own, in the order of the page."""
+    return tuple(_HEADING.findall(text))
+
+
+def named(pattern: str, spec: Spec) -> tuple[str, ...]:
+    """The ids of the rules that a clause names by one pattern."""
+    return tuple(one for one in spec.rules_by_id if fnmatch.fnmatchcase(one, f"{spec.system}/{pattern}"))
+
+
+def citing(text: str, spec: Spec) -> Mapping[str, tuple[Clause, ...]]:
+    """Rule id to the clauses that name it; rules that none names have an empty tuple."""
+    found: dict[str, list[Clause]] = {rule: [] for rule in spec.rules_by_id}
+    for clause in clauses(text):
+        for rule in dict.fromkeys(rule for pattern in clause.rules for rule in named(pattern, spec)):
+            found[rule].append(clause)
+    return {rule: tuple(some) for rule, some in found.items()}
+
+
+def regenerate(text: str, system: System, waived: Mapping[str, str] | None = None) -> str:
+    """The page with its computed parts as they should be.
+
+    Args:
+        text: the page.
+        system: what it specifies.
+        waived: entry, perhaps with letters (``AM-30 c``), to the reason.
+
+    Raises:
+        ValueError: a part is of a kind, or about something, that does not exist.
+    """
+    spec, waived = system.spec, waived or {}
+    by_clause = citing(text, spec)
+    kinds: Mapping[str, Callable[[str], Iterable[str]]] = {
+        "operations": lambda _: _operations(spec),
+        "rules": lambda name: _rules(spec, name, by_clause),
+        "chart": lambda name: _chart(spec, name),
+        "readings": lambda _: _readings(spec.ambiguities),
+        "entry": lambda name: _entry(spec.ambiguities, waived, name),
+        "waived": lambda _: _waived(waived),
+    }
+
+    def computed(match: re.Match[str]) -> str:
+        kind, what = match["kind"], match["what"] or ""
+        if kind not in kinds:
+            message = f"{system.name}: a page has no computed part {kind!r}; there are {', '.join(kinds)}"
+            raise ValueError(message)
+        lines = list(kinds[kind](what))
+        if not lines:
+            message = f"{system.name}: there is nothing to say in a computed part {kind} {what!r}"
+            raise ValueError(message)
+        return match[1] + "\n".join(("", *lines, "", "")) + match[5]
+
+    return _PART.sub(computed, text)
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    rows = tuple(rows)
+    if rows:
+        yield "| " + " | ".join(head) + " |"
+        yield "|" + " --- |" * len(head)
+        yield from ("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows)
+
+
+def _operations(spec: Spec) -> Iterator[str]:
+    head = ("operation", "refused with", "may fail with", "answers")
+    return _table(
+        head,
+        (
+            (
+                f"[{one.name}](#{one.name.lower()})",
+                ", ".join(dict.fromkeys(str(rule.code) for rule in one.refusals)),
+                ", ".join(one.failures),
+                "a stream" if one.streaming else "once",
+            )
+            for one in spec.operations.values()
+        ),
+    )
+
+
+def _rules(spec: Spec, name: str, by_clause: Mapping[str, tuple[Clause, ...]]) -> Iterator[str]:
+    rules = [rule for rule in spec.all_rules if rule.id.split("/")[1] == name]
+    head = ("answer", "rule", "where", "under", "clauses")
+    return _table(head, (_rule(rule, by_clause[rule.id]) for rule in rules))
+
+
+def _rule(rule: Rule, named_by: tuple[Clause, ...]) -> tuple[str, ...]:
+    under = str(rule.under) if rule.under else ""
+    numbers = ", ".join(clause.number for clause in named_by)
+    return rule.code or "(promise)", f"`{rule.name}`", rule.says, under, numbers
+
+
+def _chart(spec: Spec, name: str) -> Iterator[str]:
+    (chart,) = (one for one in spec.charts if one.name == name)
+    notes: Mapping[str, str] = chart.notes
+    moves = ((move, _state(source), _state(after), notes.get(move, "")) for move, source, after in chart.table)
+    return _table(("move", "from", "to", "note"), moves)
+
+
+def _state(state: object) -> str:
+    return str(getattr(state, "name", state))
+
+
+def _readings(ambiguities: Iterable[Ambiguity]) -> Iterator[str]:
+    head = ("entry", "question", "reference", "also accepted", "accepted, but departs from the text")
+    return _table(
+        head,
+        (
+            (
+                f"[{one.id}](#{_anchor(one.id)})",
+                one.question,
+                one.default,
+                ", ".join(letter for letter in one.readings if letter != one.default and letter not in one.flagged),
+                ", ".join(letter for letter in one.readings if letter in one.flagged),
+            )
+            for one in ambiguities
+        ),
+    )
+
+
+def _anchor(entry: str) -> str:
+    """Sections of entries carry an anchor of their own, so that their titles may change."""
+    return base(entry).lower()
+
+
+def base(entry: str) -> str:
+    """The number of the entry that an ambiguity or a waived part belongs to: ``AM-14`` of ``AM-14.paused``."""
+    return re.split(r"[. ]", entry, maxsplit=1)[0]
+
+
+def _entry(ambiguities: Iterable[Ambiguity], waived: Mapping[str, str], entry: str) -> Iterator[str]:
+    blocks: list[list[str]] = []
+    for ambiguity in ambiguities:
+        if base(ambiguity.id) == entry:
+            letters = (f"- {_letter(ambiguity, letter)}: {says}" for letter, says in ambiguity.readings.items())
+            blocks.append([f"**{ambiguity.id}** {ambiguity.question}", "", *letters])
+    for part, reason in waived.items():
+        if base(part) == entry:
+            blocks.append([f"{'Waived' if part == entry else f'Not offered, {part}'}: {reason}."])
+    for number, block in enumerate(blocks):
+        yield from ("", *block) if number else block
+
+
+def _letter(ambiguity: Ambiguity, letter: str) -> str:
+    if letter == ambiguity.default:
+        return f"**{letter}** (reference)"
+    return f"{letter} (departs from the text)" if letter in ambiguity.flagged else letter
+
+
+def _waived(waived: Mapping[str, str]) -> Iterator[str]:
+    return _table(("entry", "reason"), ((f"[{part}](#{_anchor(part)})", reason) for part, reason in waived.items()))

@@ -1,0 +1,30 @@
+"""What several tests need: the command line in this process."""
+
+from __future__ import annotations
+
+import io
+import sys
+
+import pytest
+
+from commandline import CommandLine, Ended
+from missionfsm.cli import main
+
+
+@pytest.fixture
+def command_line(monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]) -> CommandLine:
+    """Run ``missionfsm`` with arguments, and with a text on its stdin."""
+
+    def run(*arguments: object, stdin: bytes = b"") -> Ended:
+        monkeypatch.setattr(sys, "argv", ["missionfsm", *map(str, arguments)])
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stdin)))
+        try:
+            main()
+            status = 0
+        except SystemExit as ended:
+            status = int(ended.code or 0)
+        sys.stdout.flush()
+        out, err = capfdbinary.readouterr()
+        return Ended(status, out.decode(), err.decode())
+
+    return run

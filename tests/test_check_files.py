@@ -1,0 +1,286 @@
+"""Recorded histories as files: what is malformed is refused in one line that says where; what is not is judged."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import orjson
+import pytest
+
+from commandline import CommandLine
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.transcript import Ids
+
+FIRST = '{"missionfsm": 1, "system": "bear.mission", "world": {}}'
+CLEAR = '{"call": 1, "method": "ClearMissionStatus", "params": {}}'
+CLEARED = '{"return": 1, "result": {"missionIds": []}}'
+
+
+def clear(**more: JSON) -> str:
+    return orjson.dumps({"call": 1, "method": "ClearMissionStatus", "params": {}, **more}).decode()
+
+
+def first(**more: JSON) -> str:
+    return orjson.dumps({"missionfsm": 1, "system": "bear.mission", "world": {}, **more}).decode()
+
+
+# Name of the case: lines, number of the malformed one, what is said about it.
+MALFORMED = {
+    "not JSON": ([FIRST, '{"call": 1, oops'], 2, "not JSON"),
+    "two values in a line": ([FIRST, CLEAR + CLEARED], 2, "not JSON"),
+    "NaN": ([FIRST, '{"call": 1, "method": "CreateMission", "params": {"x": NaN}}'], 2, "not JSON"),
+    "half a surrogate": ([FIRST, '{"call": 1, "method": "\\ud800"}'], 2, "not JSON"),
+    "too deep": ([FIRST, '{"call": 1, "method": "SkipGoal", "params": ' + "[" * 5000 + "]" * 5000 + "}"], 2, "not JSON"),
+    "a list": ([FIRST, "[1]"], 2, "[1] is not an object"),
+    "null": ([FIRST, "null"], 2, "None is not an object"),
+    "no first line": ([CLEAR], 1, "the first line has to be"),
+    "a first line that is a list": (["[]"], 1, "the first line has to be"),
+    "another version": ([first(missionfsm=2)], 1, "history format 2 is not known; this is version 1"),
+    "a version that is no number": ([first(missionfsm=True)], 1, "history format True is not known"),
+    "an unknown system": ([first(system="bear.missoin")], 1, "there is no system 'bear.missoin'"),
+    "a system that is no text": ([first(system=7)], 1, "system: 7 is not the name of a system"),
+    "an unknown key of the first line": ([first(wrold={})], 1, "'wrold' is not known in a first line"),
+    "an unknown drive of the tester": ([first(drives=["fly"])], 1, "drives: bear.mission has no 'fly'"),
+    "drives that are no list": ([first(drives="world")], 1, "drives: 'world' is not a list of names"),
+    "an unknown field of the world": ([first(world={"colour": "red"})], 1, "world.colour: there is no such field"),
+    "a wrong value in the world": ([first(world={"family": "cat"})], 1, "world.family: 'cat' is none of"),
+    "a wrong type in the world": ([first(world={"blocked": 1})], 1, "world.blocked: 1 is not true or false"),
+    "a world that is no object": ([first(world=[])], 1, "world: [] is not an object"),
+    "a second first line": ([FIRST, FIRST], 2, "is none of call, return"),
+    "a line of no kind": ([FIRST, '{"frobnicate": 1}'], 2, "is none of call, return"),
+    "a line of two kinds": ([FIRST, clear(**{"return": 1})], 2, "'return' is not known in a call line"),
+    "an unknown key": ([FIRST, clear(parms={})], 2, "'parms' is not known in a call line"),
+    "an unknown method": ([FIRST, clear(method="Clear")], 2, "'Clear' is not a method of bear.mission"),
+    "a method that is no text": ([FIRST, clear(method=3)], 2, "method: 3 is not the name of a call"),
+    "no method": ([FIRST, '{"call": 1}'], 2, "method: None is not the name of a call"),
+    "an id that is no number": ([FIRST, clear(call="1")], 2, "call: '1' is not a whole number"),
+    "an id that is true": ([FIRST, clear(call=True)], 2, "call: True is not a whole number"),
+    "an id that is no whole number": ([FIRST, clear(call=1.5)], 2, "call: 1.5 is not a whole number"),
+    "an id that is too long": ([FIRST, '{"call": 1' + 40 * "0" + ', "method": "SkipGoal"}'], 2, "is not a whole number"),
+    "an id of a call in flight": ([FIRST, CLEAR, CLEAR], 3, "call 1 was sent before"),
+    "an id of an answered call": ([FIRST, CLEAR, CLEARED, CLEAR], 4, "call 1 was sent before"),
+    "an answer to nothing": ([FIRST, CLEARED], 2, "return 1: no call with this id is waiting"),
+    "a second answer": ([FIRST, CLEAR, CLEARED, CLEARED], 4, "return 1: no call with this id is waiting"),
+    "an answer of two kinds": (
+        [FIRST, CLEAR, '{"return": 1, "result": {}, "error": {"status": "INTERNAL"}}'],
+        3,
+        "return 1: expected either a result or an error",
+    ),
+    "an answer of no kind": ([FIRST, CLEAR, '{"return": 1}'], 3, "return 1: expected either a result or an error"),
+    "an unknown error": ([FIRST, CLEAR, '{"return": 1, "error": {"status": "BOOM"}}'], 3, "'BOOM' is not the name of"),
+    "an error that is OK": ([FIRST, CLEAR, '{"return": 1, "error": {"status": "OK"}}'], 3, "'OK' is not the name of"),
+    "an error that is null": ([FIRST, CLEAR, '{"return": 1, "error": null}'], 3, "None is not the name of"),
+    "a stream without a number": (
+        [FIRST, '{"call": 1, "method": "SubscribeMissionStatus"}', '{"return": 1, "result": {}}'],
+        3,
+        "carries no stream number",
+    ),
+    "a stream that is true": ([FIRST, '{"stream": true, "message": {}}'], 2, "stream: True is not a whole number"),
+    "a stream without a message": ([FIRST, '{"stream": 1}'], 2, "stream 1: expected a message or closed"),
+    "a stream that ends with no error": (
+        [FIRST, '{"stream": 1, "closed": true, "error": {"status": 13}}'],
+        2,
+        "error.status: 13 is not the name of",
+    ),
+    "cancelling nothing": ([FIRST, '{"call": 1, "method": "cancel", "params": {}}'], 2, "cancel: {} names no stream"),
+    "an unknown drive": ([FIRST, '{"drive": {"event": "fly"}}'], 2, "drive.event: 'fly' is not a drive"),
+    "a drive without an event": ([FIRST, '{"drive": {}}'], 2, "drive: {} names no event"),
+    "a drive with a wrong field": (
+        [FIRST, '{"drive": {"event": "world", "colour": "red"}}'],
+        2,
+        "world.colour: there is no such field",
+    ),
+    "a drive of the family": (
+        [FIRST, '{"drive": {"event": "world", "family": "base"}}'],
+        2,
+        "drive.family: the family changes only with reset",
+    ),
+    "settled but not true": ([FIRST, '{"settled": 1}'], 2, "settled: 1 is not true"),
+    "time going down": ([FIRST, clear(at=5.5), '{"return": 1, "at": 4}'], 3, "at: 4 comes after 5.5"),
+    "time that is a text": ([FIRST, clear(at="5")], 2, "at: '5' is not a number of seconds"),
+    "time that is null": ([FIRST, clear(at=None)], 2, "at: None is not a number of seconds"),
+    "a robot that is no text": ([FIRST, clear(robot=5)], 2, "robot: 5 is not a text"),
+    "a robot that is null": ([FIRST, clear(robot=None)], 2, "robot: None is not a text"),
+    "a line of 10 MB": ([FIRST, clear(method=10_000_000 * "x")], 2, "is not a method of bear.mission"),
+    "10 MB in the place of a robot": ([FIRST, clear(robot=[10_000_000 * "x"])], 2, "is not a text"),
+}
+
+
+@pytest.mark.parametrize("case", MALFORMED)
+def test_a_malformed_line_is_refused_in_one_line(command_line: CommandLine, tmp_path: Path, case: str) -> None:
+    """A malformed history ends with status 2 and one short line: file, line number, what is wrong; and no verdict."""
+    lines, number, says = MALFORMED[case]
+    path = tmp_path / "log.jsonl"
+    path.write_text("".join(f"{line}\n" for line in lines))
+    ended = command_line("check", path)
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err.startswith(f"missionfsm: {path}:{number}: ")
+    assert says in ended.err
+    assert ended.err.count("\n") == 1
+    assert len(ended.err) < 400
+
+
+@pytest.mark.parametrize(
+    ("content", "where", "says"),
+    [
+        (b"", "", "the history is empty"),
+        (b"\n \n", "", "the history is empty"),
+        (bytes(range(256)) * 40, ":1", "not JSON"),
+        (FIRST.encode() + b"\n" + bytes(range(128, 256)) * 40, ":2", "not JSON"),
+        (FIRST.encode("utf-16"), ":1", "not JSON"),
+        (f"{FIRST}\n{CLEAR[:30]}".encode(), ":2", "the file ends in the middle of it"),
+    ],
+    ids=["empty", "blank", "rubbish", "rubbish after the first line", "UTF-16", "cut short"],
+)
+def test_what_is_no_history_is_refused(
+    command_line: CommandLine, tmp_path: Path, content: bytes, where: str, says: str
+) -> None:
+    """A file that is empty, binary, or cut short ends with status 2 and one line."""
+    path = tmp_path / "log.jsonl"
+    path.write_bytes(content)
+    ended = command_line("check", path)
+    assert (ended.status, ended.out, ended.err.count("\n")) == (2, "", 1)
+    assert ended.err.startswith(f"missionfsm: {path}{where}: ")
+    assert says in ended.err
+
+
+@pytest.mark.parametrize(("name", "says"), [("missing.jsonl", "No such file or directory"), ("", "Is a directory")])
+def test_what_is_no_file_is_refused(command_line: CommandLine, tmp_path: Path, name: str, says: str) -> None:
+    """A path without a file ends with status 2 and the system's word for it."""
+    path = tmp_path / name
+    ended = command_line("check", path)
+    assert (ended.status, ended.out, ended.err) == (2, "", f"missionfsm: {path}: {says}\n")
+
+
+def test_the_first_malformed_file_stops(command_line: CommandLine, tmp_path: Path) -> None:
+    """Of several files, those before the malformed one are judged, and the status is 2 all the same."""
+    good, bad = tmp_path / "good.jsonl", tmp_path / "bad.jsonl"
+    good.write_text(f"{FIRST}\n{CLEAR}\n{CLEARED}\n")
+    bad.write_text("{")
+    ended = command_line("check", good, bad)
+    assert (ended.status, ended.err.count("\n")) == (2, 1)
+    assert ended.out.startswith(f"{good}: conforms: bear.mission, 2 events\n")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n"], ids=["lines", "lines of Windows", "empty lines between"])
+@pytest.mark.parametrize("last", [True, False], ids=["ended", "open"])
+def test_a_well_formed_history_is_judged(command_line: CommandLine, tmp_path: Path, end: str, *, last: bool) -> None:
+    """Any line ends do, also none after the last line."""
+    path = tmp_path / "log.jsonl"
+    path.write_bytes((end.join((FIRST, CLEAR, CLEARED)) + (end if last else "")).encode())
+    ended = command_line("check", path)
+    assert (ended.status, ended.err) == (0, "")
+    assert ended.out.startswith(f"{path}: conforms: bear.mission, 2 events\n")
+
+
+def test_stdin_is_judged(command_line: CommandLine) -> None:
+    """``check -`` reads stdin, and says so where it is malformed."""
+    good = command_line("check", "-", stdin=f"{FIRST}\n{CLEAR}\n{CLEARED}\n".encode())
+    bad = command_line("check", "-", stdin=f"{FIRST}\n{CLEARED}\n".encode())
+    nothing = command_line("check", "-")
+    assert (good.status, good.out.partition("\n")[0]) == (0, "-: conforms: bear.mission, 2 events")
+    assert (bad.status, bad.out) == (2, "")
+    assert bad.err == "missionfsm: stdin:2: return 1: no call with this id is waiting for an answer\n"
+    assert (nothing.status, nothing.err) == (2, "missionfsm: stdin: the history is empty\n")
+
+
+def test_a_pipe_is_read_once(command_line: CommandLine, tmp_path: Path) -> None:
+    """A named pipe, which cannot be read twice, is judged like a file."""
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    writer = threading.Thread(target=path.write_text, args=(f"{FIRST}\n{CLEAR}\n{CLEARED}\n",))
+    writer.start()
+    ended = command_line("check", path)
+    writer.join()
+    assert (ended.status, ended.out.partition("\n")[0]) == (0, f"{path}: conforms: bear.mission, 2 events")
+
+
+# Several robots in one file.
+
+DELIVERY = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
+
+
+def fleet(*answers: JSON) -> list[JSON]:
+    """Robots that are each asked for a mission, at the same time and with the same call id; with their answers."""
+    asked = [
+        {"call": 1, "method": "CreateMission", "params": DELIVERY, "robot": f"r{index}", "at": 1}
+        for index in range(len(answers))
+    ]
+    said = [{"return": 1, "robot": f"r{index}", "at": 2 + index, **answer} for index, answer in enumerate(answers)]
+    return [orjson.loads(FIRST), *asked, *said]
+
+
+def write(path: Path, lines: list[JSON]) -> Path:
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    return path
+
+
+def test_robots_are_judged_apart(command_line: CommandLine, tmp_path: Path) -> None:
+    """Lines of several robots may be mixed: each robot has its own ids, its own missions and its own verdict."""
+    wrong = {"error": {"status": "FAILED_PRECONDITION"}}
+    path = write(tmp_path / "fleet.jsonl", fleet({"result": {"missionId": "m"}}, wrong, {"result": {"missionId": "m"}}))
+    ended = command_line("check", path, "--json", "-")
+    found = orjson.loads(ended.out)
+    assert ended.status == 1
+    assert [(one["robot"], one["verdict"], one["events"]) for one in found] == [
+        ("r0", "conforms", 2),
+        ("r1", "violates", 2),
+        ("r2", "conforms", 2),
+    ]
+    assert {one["file"] for one in found} == {str(path)}
+
+
+def test_lines_without_a_robot_are_a_robot_of_their_own(command_line: CommandLine, tmp_path: Path) -> None:
+    """Lines with and without ``robot`` in one file are conversations apart."""
+    named = {"call": 1, "method": "CreateMission", "params": DELIVERY}
+    lines = [orjson.loads(FIRST), {**named, "robot": "r"}, named]
+    answers = [{"return": 1, "result": {"missionId": "m"}, "robot": "r"}, {"return": 1, "result": {"missionId": "m"}}]
+    path = write(tmp_path / "log.jsonl", lines + answers)
+    ended = command_line("check", path)
+    assert ended.status == 0
+    heads = [line for line in ended.out.splitlines() if line.startswith(str(path))]
+    assert heads == [f"{path} r: conforms: bear.mission, 2 events", f"{path}: conforms: bear.mission, 2 events"]
+
+
+def test_only_the_last_lines_of_a_long_history_are_kept(command_line: CommandLine, tmp_path: Path) -> None:
+    """A violation at the end of a long history is found at its line, and shown with a few lines before it."""
+    quiet = [
+        line
+        for number in range(2_000)
+        for line in (
+            {"call": number, "method": "ClearMissionStatus", "params": {}},
+            {"return": number, "result": {"missionIds": []}},
+        )
+    ]
+    wrong = [{"call": -1, "method": "SkipGoal"}, {"return": -1, "result": {"missionId": "m"}}, {"settled": True}]
+    path = write(tmp_path / "log.jsonl", [orjson.loads(FIRST), *quiet, *wrong])
+    ended = command_line("check", path, "--json", "-")
+    found = orjson.loads(ended.out)
+    assert (ended.status, found["verdict"], found["events"]) == (1, "violates", 4002)
+    history = found["violation"]["history"]
+    assert history[0] == orjson.loads(FIRST)
+    assert wrong[1] in history
+    assert len(history) < 250
+
+
+def test_the_command_itself_refuses_in_one_line(tmp_path: Path) -> None:
+    """The installed command, as a process: status 2, one line, no traceback."""
+    path = tmp_path / "log.jsonl"
+    path.write_text("{\n")
+    command = [sys.executable, "-m", "missionfsm", "check", str(path)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr.count("\n")) == (2, "", 1)
+    assert ended.stderr.startswith(f"missionfsm: {path}:1: not JSON: ")
+
+
+def test_ids_are_a_set() -> None:
+    """`Ids` tells numbers that came before from new ones, negative and huge ones as well."""
+    ids = Ids()
+    numbers = [0, 1, -1, 255, 256, -256, -257, 1 << 62, -(1 << 62)]
+    assert [ids.add(number) for number in numbers] == [True] * len(numbers)
+    assert [ids.add(number) for number in numbers] == [False] * len(numbers)
+    assert ids.add(2)

@@ -1,0 +1,335 @@
+"""Every system is held to the laws of `missionfsm.kernel.spec`, in all states of a small exploration.
+
+Choices of readings are the default one and those that differ from it in a single reading.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Hashable, Iterator
+from typing import Any
+
+import pytest
+from attrs import evolve, frozen
+
+from missionfsm import systems
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, choose, meet
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
+from missionfsm.kernel.system import System
+from missionfsm.tools.explore import Labels, explore, reachable, steps
+
+BOUNDS = Bounds(missions=2, goals=2, batch=2)
+NEAR = 150
+"""How many states of an exploration are looked at, nearest first."""
+
+SITUATIONS = 20
+"""In how many different situations every prompt is tried."""
+
+State = Any
+References = tuple[int | None, ...]
+
+
+def alternatives(system: System) -> Iterator[tuple[Ambiguity, str]]:
+    """Every reading that is not the default."""
+    for ambiguity in system.spec.ambiguities:
+        yield from ((ambiguity, letter) for letter in ambiguity.readings if letter != ambiguity.default)
+
+
+def choices(system: System) -> dict[str, int]:
+    """The default choice, and one for every single alternative reading."""
+    ambiguities = system.spec.ambiguities
+    single = {f"{one.id}={letter}": choose(ambiguities, {one.id: letter}) for one, letter in alternatives(system)}
+    return {"default": choose(ambiguities), **single}
+
+
+@frozen
+class Taken:
+    """A step that may be taken in a state, and the request that it answers."""
+
+    before: State
+    request: Any
+    refs: References
+    step: Step
+
+
+class Lab:
+    """A system with what has been found out about it."""
+
+    def __init__(self, name: str) -> None:
+        self.system = systems.system(name)
+        self.spec: Spec = self.system.spec
+        alphabet = self.system.alphabet({}, BOUNDS)
+        self.worlds = alphabet.worlds
+        self.plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
+        self.everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
+        self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
+
+    def start(self, world: JSON) -> State:
+        return self.spec.initial(self.system.codec.world(world))
+
+    def near(self, assumed: int, world: JSON) -> list[State]:
+        """The states that are nearest to the start, under some readings."""
+        found = {self.start(world): None}
+        most = max(BOUNDS.missions, self.spec.names(self.start(world)))
+        for here in iter(found):
+            for one in steps(self.spec, here, self.plain):
+                if meet(assumed, one.step.assumes) and self.spec.names(one.step.after) <= most:
+                    found = {**found, one.step.after: None} if len(found) < NEAR else found
+            break
+        todo = list(found)
+        for here in todo:
+            if len(todo) >= NEAR:
+                break
+            for one in steps(self.spec, here, self.plain):
+                after = one.step.after
+                if after not in found and meet(assumed, one.step.assumes) and self.spec.names(after) <= most:
+                    found[after] = None
+                    todo.append(after)
+        return todo
+
+    def situations(self, assumed: int, world: JSON) -> list[State]:
+        """A few of them in which different things can be done."""
+        found: dict[Hashable, State] = {}
+        for here in self.near(assumed, world):
+            found.setdefault(self.spec.situation(here), here)
+        return list(found.values())[:SITUATIONS]
+
+    def references(self, here: State, *, named: bool) -> list[References]:
+        return [(ref,) for ref in (None, *range(self.spec.names(here)))] if named else [()]
+
+    def outcomes(self, here: State, request: Any, refs: References) -> tuple[Step, ...]:
+        key = (here, request, refs)
+        found = self._steps.get(key)
+        if found is None:
+            found = self._steps[key] = self.spec.outcomes(here, request, refs)
+        return found
+
+    def calls(self, here: State) -> Iterator[tuple[Any, References]]:
+        for request, named in self.everything.requests:
+            for refs in self.references(here, named=named):
+                yield request, refs
+
+    def taken(self, here: State) -> Iterator[Taken]:
+        """Every step from a state, under any readings."""
+        for request, refs in self.calls(here):
+            yield from (Taken(here, request, refs, step) for step in self.outcomes(here, request, refs))
+        for event in self.everything.events:
+            yield from (Taken(here, event, (), step) for step in self.spec.drives[event.name].steps(here, event, ()))
+        for step in (*self.spec.urgent(here), *self.spec.spontaneous(here)):
+            yield Taken(here, None, (), step)
+
+    @functools.cached_property
+    def all_taken(self) -> list[Taken]:
+        """Every step from some situations in every world, under any readings."""
+        states = dict.fromkeys(here for world in self.worlds for here in self.situations(ANYTHING, world))
+        return [taken for here in states for taken in self.taken(here)]
+
+
+@pytest.fixture(scope="module", params=systems.names())
+def lab(request: pytest.FixtureRequest) -> Lab:
+    return Lab(request.param)
+
+
+def test_every_call_has_an_outcome_under_every_choice(lab: Lab) -> None:
+    """Total: whatever is called in whatever state, each single choice of readings has an answer to it."""
+    unanswered = [
+        (name, lab.spec.describe(request), refs, lab.spec.describe(here))
+        for name, choice in choices(lab.system).items()
+        for here in lab.situations(choice, lab.worlds[0])
+        for request, refs in lab.calls(here)
+        if not any(meet(choice, step.assumes) for step in lab.outcomes(here, request, refs))
+    ]
+    assert unanswered == []
+
+
+def test_an_outcome_is_an_answer(lab: Lab) -> None:
+    """Every outcome of a call has an answer, and no other step has one."""
+    calls = [type(request) for request, _ in lab.everything.requests]
+    assert [taken for taken in lab.all_taken if (taken.step.answer is None) is (type(taken.request) in calls)] == []
+
+
+def test_a_refusal_changes_nothing(lab: Lab) -> None:
+    """An outcome that is neither OK nor a failure keeps the very state, shows nothing, opens and closes nothing."""
+
+    def refused(taken: Taken) -> bool:
+        if taken.step.answer is None or taken.step.answer.code == OK or taken.step.label:
+            return False
+        operation = lab.spec.operations[lab.spec.request_operation(taken.request)]
+        return taken.step.answer.code not in operation.failures
+
+    found = [taken for taken in lab.all_taken if refused(taken)]
+    assert [
+        taken
+        for taken in found
+        if taken.step.after is not taken.before or taken.step.emits or taken.step.opens or taken.step.closes
+    ] == []
+    assert found or not lab.spec.operations
+
+
+def test_names_are_kept_apart(lab: Lab) -> None:
+    """A step's names are those of its state before or new ones, each once, as many as the state after it has."""
+
+    def wrong(taken: Taken) -> bool:
+        step, before = taken.step, lab.spec.names(taken.before)
+        names = tuple(range(before)) if step.names is None else step.names
+        opened = tuple(one.ref for one in step.opens)
+        own = {*range(before), *names, *opened}
+        shown = {ref for one in (*step.emits, *(owed for new in step.opens for owed in new.owed)) for ref in one.refs or ()}
+        new = sorted({ref for ref in own if ref >= before})
+        return (
+            len(names) != lab.spec.names(step.after)
+            or len(set(names)) < len(names)
+            or not {*step.refs, *shown} <= own
+            or new != list(range(before, before + len(new)))
+        )
+
+    assert [taken for taken in lab.all_taken if wrong(taken)] == []
+
+
+def test_a_rule_that_is_named_exists(lab: Lab) -> None:
+    """Every rule by which a step is justified is a rule of the system."""
+    known = set(lab.spec.rules_by_id)
+    assert {rule for taken in lab.all_taken for rule in taken.step.rules if rule not in known} == set()
+
+
+def test_urgency_ends(lab: Lab) -> None:
+    """Urgent steps come to rest from every state that a step leads to, whichever of them are taken."""
+    resting: dict[State, bool] = {}
+
+    def comes_to_rest(here: State, above: tuple[State, ...]) -> bool:
+        if here in above:
+            return False
+        if here not in resting:
+            resting[here] = all(comes_to_rest(step.after, (*above, here)) for step in lab.spec.urgent(here))
+        return resting[here]
+
+    assert [taken for taken in lab.all_taken if not comes_to_rest(taken.step.after, ())] == []
+
+
+@pytest.mark.parametrize("decided", [True, False], ids=["default readings", "all readings"])
+def test_invariants_hold_and_possibilities_are_met(lab: Lab, *, decided: bool) -> None:
+    """Every invariant holds in every state within bounds, and every possibility is met in one."""
+    assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
+    found = explore(lab.system, BOUNDS, assumed=assumed)
+    assert (found.counterexample, found.unmet) == (None, ())
+
+
+def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
+    """In states with one situation, every call has the same answers under the same readings."""
+    groups = defaultdict(list)
+    for here in lab.near(ANYTHING, lab.worlds[0]):
+        groups[lab.spec.situation(here)].append(here)
+
+    def answers(here: State) -> list[Any]:
+        return [
+            [(step.answer, step.refs, step.assumes, step.rules, step.label) for step in lab.outcomes(here, request, refs)]
+            for request, refs in lab.calls(here)
+        ]
+
+    alike = [(group[0], other) for group in list(groups.values())[:SITUATIONS] for other in group[1:3]]
+    assert [pair for pair in alike if answers(pair[0]) != answers(pair[1])] == []
+
+
+@pytest.mark.parametrize("decided", [True, False], ids=["default readings", "all readings"])
+def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
+    """The shortcut of a system reaches exactly the states that its steps reach, in every world."""
+    if lab.spec.shortcut is None:
+        pytest.skip(f"{lab.system.name} has no shortcut")
+    assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
+    slow = evolve(lab.spec, shortcut=None)
+    bounds = Bounds(missions=2, goals=1, batch=2)
+    for world in lab.worlds:
+        alphabet = lab.system.alphabet(world, bounds)
+        labels = Labels.of(lab.system, alphabet.plain, alphabet.plain_drives)
+        start = lab.start(world)
+        fast = reachable(lab.spec, start, labels, bounds.missions, assumed)
+        assert fast.keys() == reachable(slow, start, labels, bounds.missions, assumed).keys()
+
+
+# What is shown is recognised.
+
+
+def lasting(lab: Lab, choice: int, states: list[State]) -> Iterator[tuple[Emission, int]]:
+    """What has to be shown under a choice, with how many names there are to show."""
+    for here in states:
+        for one in steps(lab.spec, here, lab.plain):
+            step = one.step
+            if not meet(choice, step.assumes):
+                continue
+            if not any(meet(choice, urgent.assumes) for urgent in lab.spec.urgent(step.after)):
+                yield from ((emission, lab.spec.names(step.after)) for emission in step.emits)
+            yield from ((emission, lab.spec.names(step.after)) for new in step.opens for emission in new.owed)
+
+
+def test_what_is_shown_is_recognised(lab: Lab) -> None:
+    """A message made from a view under a choice is accepted for that view, with its names, agreeing with the choice."""
+    codec = lab.system.codec
+    seen = set()
+    for name, choice in choices(lab.system).items():
+        for emission, count in lasting(lab, choice, lab.near(choice, lab.worlds[0])):
+            if emission.only is not None and not meet(choice, (emission.only,)):
+                continue
+            width = count if emission.refs is None else len(emission.refs)
+            if (name, emission.view, width) in seen:
+                continue
+            seen.add((name, emission.view, width))
+            names = tuple(lab.system.naming.mint(index + 1) for index in range(width))
+            ((known, _, rest),) = codec.strip(codec.write_message(emission.view, names, choice, 1, 0.0))
+            matches = lab.spec.matches(emission.view, codec.content(rest))
+            assert not isinstance(matches, Mismatch), (name, lab.spec.describe(emission.view), matches.says)
+            agreeing = [match for match in matches if meet(choice, match.assumes)]
+            assert agreeing, (name, lab.spec.describe(emission.view))
+            assert any(all(names[own] == known[at] for own, at in match.names) for match in agreeing)
+    assert seen
+
+
+# Pure.
+
+LEDGER = """
+import hashlib, sys
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.readings import choose
+from missionfsm.systems import system
+from missionfsm.tools.explore import Labels, reachable, steps
+
+found = system(sys.argv[1])
+bounds = Bounds(1, 2, 1)
+alphabet = found.alphabet({}, bounds)
+plain = Labels.of(found, alphabet.plain, alphabet.plain_drives)
+everything = Labels.of(found, alphabet.prompts, alphabet.drives)
+start = found.spec.initial(found.codec.world({}))
+ledger = hashlib.sha256()
+for here in list(reachable(found.spec, start, plain, max(1, found.spec.names(start)), choose(found.spec.ambiguities)))[:40]:
+    ledger.update(found.spec.describe(here).encode())
+    for one in steps(found.spec, here, everything):
+        step = one.step
+        told = (one.label, step.label, step.names, step.refs, step.rules, step.applied, str(step.answer))
+        shown = [(str(emission.topic), found.spec.describe(emission.view)) for emission in step.emits]
+        assumed = [str(one) for one in step.assumes]
+        ledger.update(repr((told, shown, assumed, found.spec.describe(step.after))).encode())
+print(ledger.hexdigest())
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", systems.names())
+def test_nothing_depends_on_the_hash_seed(name: str) -> None:
+    """Pure: under other hash seeds the same steps come in the same order."""
+    ledgers = {
+        subprocess.run(
+            [sys.executable, "-c", LEDGER, name],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1", "4711")
+    }
+    assert len(ledgers) == 1

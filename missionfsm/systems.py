@@ -11,6 +11,7 @@ from missionfsm.kernel.system import System
 _MODULES: Mapping[str, str] = {
     "bear.mission": "missionfsm.bear.mission_system",
     "bear.status": "missionfsm.bear.status_system",
+    "isaac.server": "missionfsm.isaac.server_system",
     "isaac.robot": "missionfsm.isaac.robot_system",
 }
 """Where each system is put together; it is loaded when it is asked for."""

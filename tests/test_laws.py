@@ -17,17 +17,20 @@ import pytest
 from attrs import evolve, frozen
 
 from missionfsm import systems
-from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.alphabet import Bounds, Naming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import ANYTHING, Ambiguity, choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore import Labels, explore, reachable, steps
+from missionfsm.tools.explore import Labels, reachable, references, steps
 
 BOUNDS = Bounds(missions=2, goals=2, batch=2)
-NEAR = 150
+NEAR = 100
 """How many states of an exploration are looked at, nearest first."""
+
+NAMES = {"isaac.server": 5}
+"""Where a mission is not all that has a name: how many names are room enough for `BOUNDS`."""
 
 SITUATIONS = 20
 """In how many different situations every prompt is tried."""
@@ -65,34 +68,40 @@ class Lab:
     def __init__(self, name: str) -> None:
         self.system = systems.system(name)
         self.spec: Spec = self.system.spec
-        alphabet = self.system.alphabet({}, BOUNDS)
-        self.worlds = alphabet.worlds
+        self.worlds = self.system.alphabet({}, BOUNDS).worlds
+        alphabet = self.system.alphabet(self.worlds[0], BOUNDS)
         self.plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
         self.everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
+        self._near: dict[State, list[Step]] = {}
         self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
 
     def start(self, world: JSON) -> State:
         return self.spec.initial(self.system.codec.world(world))
 
+    def most(self, start: State) -> int:
+        """How many names a state may have to be looked at."""
+        return max(NAMES.get(self.system.name, BOUNDS.missions), self.spec.names(start))
+
+    def plain_steps(self, here: State) -> list[Step]:
+        found = self._near.get(here)
+        if found is None:
+            found = self._near[here] = [one.step for one in steps(self.spec, here, self.plain)]
+        return found
+
     def near(self, assumed: int, world: JSON) -> list[State]:
         """The states that are nearest to the start, under some readings."""
-        found = {self.start(world): None}
-        most = max(BOUNDS.missions, self.spec.names(self.start(world)))
-        for here in iter(found):
-            for one in steps(self.spec, here, self.plain):
-                if meet(assumed, one.step.assumes) and self.spec.names(one.step.after) <= most:
-                    found = {**found, one.step.after: None} if len(found) < NEAR else found
-            break
-        todo = list(found)
-        for here in todo:
-            if len(todo) >= NEAR:
+        start = self.start(world)
+        found, most = [start], self.most(start)
+        known = {start}
+        for here in found:  # grows while it is walked
+            for step in self.plain_steps(here):
+                after = step.after
+                if after not in known and meet(assumed, step.assumes) and self.spec.names(after) <= most:
+                    known.add(after)
+                    found.append(after)
+            if len(found) >= NEAR:
                 break
-            for one in steps(self.spec, here, self.plain):
-                after = one.step.after
-                if after not in found and meet(assumed, one.step.assumes) and self.spec.names(after) <= most:
-                    found[after] = None
-                    todo.append(after)
-        return todo
+        return found
 
     def situations(self, assumed: int, world: JSON) -> list[State]:
         """A few of them in which different things can be done."""
@@ -100,9 +109,6 @@ class Lab:
         for here in self.near(assumed, world):
             found.setdefault(self.spec.situation(here), here)
         return list(found.values())[:SITUATIONS]
-
-    def references(self, here: State, *, named: bool) -> list[References]:
-        return [(ref,) for ref in (None, *range(self.spec.names(here)))] if named else [()]
 
     def outcomes(self, here: State, request: Any, refs: References) -> tuple[Step, ...]:
         key = (here, request, refs)
@@ -112,16 +118,17 @@ class Lab:
         return found
 
     def calls(self, here: State) -> Iterator[tuple[Any, References]]:
-        for request, named in self.everything.requests:
-            for refs in self.references(here, named=named):
-                yield request, refs
+        for request, free in self.everything.requests:
+            yield from ((request, refs) for refs in references(self.spec, here, free))
 
     def taken(self, here: State) -> Iterator[Taken]:
         """Every step from a state, under any readings."""
         for request, refs in self.calls(here):
             yield from (Taken(here, request, refs, step) for step in self.outcomes(here, request, refs))
-        for event in self.everything.events:
-            yield from (Taken(here, event, (), step) for step in self.spec.drives[event.name].steps(here, event, ()))
+        for event, free in self.everything.events:
+            for refs in references(self.spec, here, free):
+                found = self.spec.drives[event.name].steps(here, event, refs)
+                yield from (Taken(here, event, refs, step) for step in found)
         for step in (*self.spec.urgent(here), *self.spec.spontaneous(here)):
             yield Taken(here, None, (), step)
 
@@ -156,7 +163,7 @@ def test_an_outcome_is_an_answer(lab: Lab) -> None:
 
 
 def test_a_refusal_changes_nothing(lab: Lab) -> None:
-    """An outcome that is neither OK nor a failure keeps the very state, shows nothing, opens and closes nothing."""
+    """An outcome that is neither OK nor a failure keeps the state, shows nothing, opens and closes nothing."""
 
     def refused(taken: Taken) -> bool:
         if taken.step.answer is None or taken.step.answer.code == OK or taken.step.label:
@@ -168,7 +175,7 @@ def test_a_refusal_changes_nothing(lab: Lab) -> None:
     assert [
         taken
         for taken in found
-        if taken.step.after is not taken.before or taken.step.emits or taken.step.opens or taken.step.closes
+        if taken.step.after != taken.before or taken.step.emits or taken.step.opens or taken.step.closes
     ] == []
     assert found or not lab.spec.operations
 
@@ -180,7 +187,8 @@ def test_names_are_kept_apart(lab: Lab) -> None:
         step, before = taken.step, lab.spec.names(taken.before)
         names = tuple(range(before)) if step.names is None else step.names
         opened = tuple(one.ref for one in step.opens)
-        own = {*range(before), *names, *opened}
+        given = range(-len(taken.refs), 0) if step.answer is None else ()
+        own = {*given, *range(before), *names, *opened}
         shown = {ref for one in (*step.emits, *(owed for new in step.opens for owed in new.owed)) for ref in one.refs or ()}
         new = sorted({ref for ref in own if ref >= before})
         return (
@@ -217,8 +225,10 @@ def test_urgency_ends(lab: Lab) -> None:
 def test_invariants_hold_and_possibilities_are_met(lab: Lab, *, decided: bool) -> None:
     """Every invariant holds in every state within bounds, and every possibility is met in one."""
     assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
-    found = explore(lab.system, BOUNDS, assumed=assumed)
-    assert (found.counterexample, found.unmet) == (None, ())
+    start = lab.start(lab.worlds[0])
+    found = reachable(lab.spec, start, lab.plain, lab.most(start), assumed)
+    assert [(one.name, here) for one in lab.spec.invariants for here in found if not one.holds(here)] == []
+    assert [one.says for one in lab.spec.possibilities if not any(map(one.holds, found))] == []
 
 
 def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
@@ -259,28 +269,29 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
 def lasting(lab: Lab, choice: int, states: list[State]) -> Iterator[tuple[Emission, int]]:
     """What has to be shown under a choice, with how many names there are to show."""
     for here in states:
-        for one in steps(lab.spec, here, lab.plain):
-            step = one.step
+        for step in lab.plain_steps(here):
             if not meet(choice, step.assumes):
                 continue
             if not any(meet(choice, urgent.assumes) for urgent in lab.spec.urgent(step.after)):
-                yield from ((emission, lab.spec.names(step.after)) for emission in step.emits)
-            yield from ((emission, lab.spec.names(step.after)) for new in step.opens for emission in new.owed)
+                owed = (emission for new in step.opens for emission in new.owed)
+                yield from ((emission, lab.spec.names(step.after)) for emission in (*step.emits, *owed))
 
 
 def test_what_is_shown_is_recognised(lab: Lab) -> None:
     """A message made from a view under a choice is accepted for that view, with its names, agreeing with the choice."""
+    if lab.system.naming != Naming():
+        pytest.skip("its names are of several kinds; a run of the reference writes and reads every message instead")
     codec = lab.system.codec
     seen = set()
     for name, choice in choices(lab.system).items():
         for emission, count in lasting(lab, choice, lab.near(choice, lab.worlds[0])):
-            if emission.only is not None and not meet(choice, (emission.only,)):
-                continue
+            if emission.optional or emission.stays or (emission.only and not meet(choice, (emission.only,))):
+                continue  # it need not be shown
             width = count if emission.refs is None else len(emission.refs)
             if (name, emission.view, width) in seen:
                 continue
             seen.add((name, emission.view, width))
-            names = tuple(lab.system.naming.mint(index + 1) for index in range(width))
+            names = tuple(f"name-{index}" for index in range(width))
             ((known, _, rest),) = codec.strip(codec.write_message(emission.view, names, choice, 1, 0.0))
             matches = lab.spec.matches(emission.view, codec.content(rest))
             assert not isinstance(matches, Mismatch), (name, lab.spec.describe(emission.view), matches.says)
@@ -301,16 +312,17 @@ from missionfsm.tools.explore import Labels, reachable, steps
 
 found = system(sys.argv[1])
 bounds = Bounds(1, 2, 1)
-alphabet = found.alphabet({}, bounds)
+(world, *_) = found.alphabet({}, bounds).worlds
+alphabet = found.alphabet(world, bounds)
 plain = Labels.of(found, alphabet.plain, alphabet.plain_drives)
 everything = Labels.of(found, alphabet.prompts, alphabet.drives)
-start = found.spec.initial(found.codec.world({}))
+start = found.spec.initial(found.codec.world(world))
 ledger = hashlib.sha256()
-for here in list(reachable(found.spec, start, plain, max(1, found.spec.names(start)), choose(found.spec.ambiguities)))[:40]:
+for here in list(reachable(found.spec, start, plain, max(1, found.spec.names(start)), choose(found.spec.ambiguities)))[:20]:
     ledger.update(found.spec.describe(here).encode())
     for one in steps(found.spec, here, everything):
         step = one.step
-        told = (one.label, step.label, step.names, step.refs, step.rules, step.applied, str(step.answer))
+        told = (one.words(found.spec), step.label, step.names, step.refs, step.rules, step.applied, str(step.answer))
         shown = [(str(emission.topic), found.spec.describe(emission.view)) for emission in step.emits]
         assumed = [str(one) for one in step.assumes]
         ledger.update(repr((told, shown, assumed, found.spec.describe(step.after))).encode())

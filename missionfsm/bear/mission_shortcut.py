@@ -18,7 +18,7 @@ _Key = tuple[World, Mission | None, bool, bool, bool, bool, object]
 
 
 def shortcut(
-    requests: Iterable[tuple[Request, bool]], events: Iterable[Happening], assumed: int, most: int
+    requests: Iterable[tuple[Request, tuple[bool, ...]]], events: Iterable[Happening], assumed: int, most: int
 ) -> Callable[[Robot], list[Robot]]:
     """A function from a robot to the robots after every step that changes it, within `most` listed missions."""
     calls = tuple(
@@ -26,13 +26,13 @@ def shortcut(
     )
     happenings = tuple(events)
     # What a situation allows: edits by how many missions they add; the plain tuple spares making a Situation.
-    menus: dict[_Key, tuple[tuple[int, Edit], ...]] = {}
+    menus: dict[_Key, tuple[tuple[int, bool, Edit], ...]] = {}
     started: dict[tuple[World, Mission | None, Mission | None, bool], tuple[Edit, ...]] = {}
 
-    def menu(robot: Robot) -> tuple[tuple[int, Edit], ...]:
+    def menu(robot: Robot) -> tuple[tuple[int, bool, Edit], ...]:
         here = situation(robot)
         edits = dict.fromkeys(_edits(here, calls, happenings, assumed))
-        return tuple((_added(edit), edit) for edit in edits if edit)
+        return tuple((_added(edit), _forgets(edit), edit) for edit in edits if edit)
 
     def successors(robot: Robot) -> list[Robot]:
         done, active, pending = robot.done, robot.active, robot.pending
@@ -41,7 +41,11 @@ def shortcut(
         if edits is None:
             edits = menus[key] = menu(robot)
         room = most - len(done) - (active is not None) - len(pending)
-        after = [_apply(edit, robot) for added, edit in edits if added <= room]
+        after = [
+            _apply(edit, robot)
+            for added, forgets, edit in edits
+            if added <= room or (forgets and added <= room + len(done))
+        ]
         head = pending[0] if pending else None
         at_once = (robot.world, active, head, robot.halted)
         starts = started.get(at_once)
@@ -96,7 +100,10 @@ def _possible(robot: Situation, target: Target) -> bool:
 
 
 def _added(edit: Edit) -> int:
-    """How many missions more are listed after an edit; one that forgets others may add as many as it likes."""
-    if any(op in (Op.FORGET_ENDED, Op.CLEAR) for op, _ in edit):
-        return sum(len(what) for op, what in edit if op in (Op.ADD, Op.PUT_FIRST)) and -1
+    """How many missions an edit adds to the list."""
     return sum(len(what) for op, what in edit if op in (Op.ADD, Op.PUT_FIRST))
+
+
+def _forgets(edit: Edit) -> bool:
+    """Whether an edit makes room by taking the ended missions off the list."""
+    return any(op in (Op.FORGET_ENDED, Op.CLEAR) for op, _ in edit)

@@ -231,10 +231,9 @@ def current_index(view: Listing) -> Mapping[int, Assumed]:
     ended = sum(mission.state in ENDED for mission in view.missions)
     if ended == len(view.missions):
         return {-1: (AM_14_ENDED["a"],), ended - 1: (AM_14_ENDED["b"],)} if ended else {-1: ()}
-    found: dict[int, Assumed] = {-1: (AM_14_GAP["c"],), ended: (AM_14_GAP["e"],)}
-    if ended:
-        found[ended - 1] = (AM_14_GAP["d"],)
-    return found
+    if not ended:
+        return {-1: (AM_14_GAP["c", "d"],), 0: (AM_14_GAP["e"],)}
+    return {-1: (AM_14_GAP["c"],), ended - 1: (AM_14_GAP["d"],), ended: (AM_14_GAP["e"],)}
 
 
 def _current(view: Listing, index: int) -> Assumed:

@@ -201,6 +201,7 @@ _DEFECTIVE: tuple[JSON, ...] = (
     _at("nowhere"),
     {"selector": {"robotIds": {"ids": ["r3"]}, "locationId": "L1"}},
     {"selector": {"robotIds": {"ids": ["r1"]}, "locationId": "L3"}},
+    {"selector": {"robotIds": {"ids": ["x1"]}, "locationId": "L1"}},
     {"selector": {"robotIds": {"ids": ["r1"]}}, "mode": "fast"},
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import sys
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -46,7 +47,7 @@ def conform(  # noqa: PLR0913 - options of the command
                     child,
                     examples=examples,
                     steps=steps,
-                    seed=seed,
+                    seed=secrets.randbits(32) if seed is None else seed,
                     readings=readings,
                     progress=progress,
                 )
@@ -90,7 +91,7 @@ def check(
     json: JsonFile = None,
 ) -> None:
     """Judge recorded histories."""
-    from missionfsm.adapters.recorded import check_file  # noqa: PLC0415 - commands load what they need
+    from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - commands load what they need
 
     readings = choice(reading)
     verdicts = []

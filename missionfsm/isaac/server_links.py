@@ -41,7 +41,7 @@ NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
 
 @frozen(cache_hash=True)
 class Heard:
-    """A line that a robot sends: a `NAME`, a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN` type.
+    """A line that a robot sends: a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN` type.
 
     Attributes:
         what: the name's text, or the status.
@@ -96,7 +96,7 @@ def hears(move: Move, link: Link, heard: Heard, named: int | None, header: int |
         if taken is None:
             return
         move = taken
-    if heard.kind == NAME:
+    if heard.kind == NAME and heard.channel == move.state.name_channel:
         yield from _says_name(move, link, heard.what)
     elif heard.kind == STATUS:
         yield from _reports(move, link, Report(heard.what, heard.channel, named, header))
@@ -300,7 +300,7 @@ def _happens(move: Move, index: int, report: Report) -> Moves:
     if mission.status not in UNDER_WAY:
         yield from _late(move, index, mission, report)
     elif report.status == "running":
-        yield acknowledged(move, index).to(acknowledged(move, index).state, rules.RUNNING.id)
+        yield acknowledged(move.to(move.state, rules.RUNNING.id), index)
     else:
         heard, deaf = (move, None) if mission.status is Status.RUNNING else split(move, AI_07, "ac")
         if heard is not None:

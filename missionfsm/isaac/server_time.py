@@ -30,7 +30,7 @@ class _Here:
 
 def passes(state: Server, time: int) -> tuple[Move, ...]:
     """Everything that may have become of a server when so many microseconds have passed."""
-    found: dict[Move, None] = {}
+    found: dict[object, Move] = {}
     seen: set[_Here] = set()
     todo = [_Here(Move(state), ())]
     while todo:
@@ -48,8 +48,8 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
         todo += reversed(later)
         if latest >= time:
             after = _shifted(here.move, time)
-            found[after] = None
-    return tuple(sorted(found, key=lambda one: -_done(state, one.state)))
+            found.setdefault((after.state, after.sent), after)
+    return tuple(sorted(found.values(), key=lambda one: -_done(state, one.state)))
 
 
 def _done(before: Server, after: Server) -> int:
@@ -87,14 +87,14 @@ def _latest(here: _Here) -> float:
 
 def _next(here: _Here, until: float) -> Iterator[_Here]:
     """Everything that may happen next, no later than `until`."""
-    low, high = here.move.at
+    low, _ = here.move.at
     for index, mission in enumerate(here.move.state.missions):
         for clock in mission.clocks:
             if clock.lo <= until:
                 yield from _strike(here, index, clock, until)
     for slot, first, last in here.looks:
         link = here.move.state.link(slot)
-        when = (max(low, first), int(min(max(high, last + LOOK), until)))
+        when = (max(low, first), int(min(last + LOOK, until)))
         if link is None or when[0] > when[1]:
             continue
         for index, chosen in possible(here.move.state, link):
@@ -104,7 +104,7 @@ def _next(here: _Here, until: float) -> Iterator[_Here]:
 
 
 def _strike(here: _Here, index: int, clock: Clock, until: float) -> Iterator[_Here]:
-    low, high = here.move.at
+    low, _ = here.move.at
     last = until if clock.hi is None else min(clock.hi, until)
     when = (max(low, clock.lo), int(max(low, last)))
     if when[0] > when[1]:

@@ -274,6 +274,7 @@ class Oracle:
             yield Sighting(evolve(explanation, calls=(*explanation.calls, InFlight(call, request, args))))
 
     def _returned(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
+        yield from self._failed(explanation, answer, names, call)
         for sighting in self.closure(explanation, besides=call):
             here = sighting.explanation
             position = next((at for at, one in enumerate(here.calls) if one.name == call), None)
@@ -283,6 +284,24 @@ class Oracle:
                 yield Sighting(tidy(after), sighting.rules + rules)
             if here.calls[position].done:
                 return
+
+    def _failed(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
+        """The explanation in which the call has failed without anybody's doing, which any state allows.
+
+        What is silent may as well come after it, so that this explanation is enough.
+        """
+        position = next((at for at, one in enumerate(explanation.calls) if one.name == call), None)
+        if position is None or names or answer.shape is not None:
+            return
+        one = explanation.calls[position]
+        failure = self.spec.failing(one.request, answer.code)
+        if failure is None or (failure.driven and "fault" in self.driven) or (one.done and not failure.open_ended):
+            return
+        assumed = meet(explanation.assumed, failure.assumes)
+        if assumed:
+            calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
+            late = ((one.request, one.args),) if failure.open_ended and not one.done else ()
+            yield Sighting(tidy(evolve(explanation, assumed=assumed, calls=calls, lost=(*explanation.lost, *late))))
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names

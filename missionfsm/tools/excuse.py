@@ -13,31 +13,42 @@ from typing import Any
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import ANYTHING, meet
-from missionfsm.kernel.spec import Mismatch, Spec, Step
+from missionfsm.kernel.spec import Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore import Labels
+from missionfsm.tools.explore import Labels, references
 from missionfsm.tools.model import Model
 
-BOUNDS = Bounds(missions=2, goals=2, batch=2)
+BOUNDS = Bounds(missions=2, goals=1, batch=2)
 
 
 class _GuiltyError(Exception):
     """A step is allowed under no reading that agrees with those assumed before."""
 
 
-def excuse(system: System, model: Model, bend: Callable[[JSON], JSON], worlds: tuple[JSON, ...]) -> str:
+def excuse(  # noqa: PLR0913 - what an implementation is made of
+    system: System,
+    model: Model,
+    honest: Model,
+    operation: str | None,
+    bend: Callable[[JSON], JSON],
+    worlds: tuple[JSON, ...],
+) -> str:
     """The readings under which everything that a model does within bounds is allowed; empty if there are none.
 
     Args:
         model: the implementation.
+        honest: the reference under the same readings, from which it may differ by a twist, and in the rules of one
+            operation.
+        operation: that operation.
         bend: what it does to its messages.
         worlds: those that it is explored in.
     """
     assumed = ANYTHING
     states = 0
+    explorer = _Explorer(system, model, honest, operation, bend)
     try:
         for world in worlds:
-            assumed, seen = _explored(system, model, bend, world, assumed)
+            assumed, seen = explorer.run(world, assumed)
             states += seen
     except _GuiltyError:
         return ""
@@ -48,54 +59,67 @@ def excuse(system: System, model: Model, bend: Callable[[JSON], JSON], worlds: t
     return f"it only does, in the {states} states that it reaches, {why}"
 
 
-def _explored(
-    system: System, model: Model, bend: Callable[[JSON], JSON], world: JSON, assumed: int
-) -> tuple[int, int]:
-    spec = system.spec
-    alphabet = system.alphabet(world, BOUNDS)
-    plain = Labels.of(system, alphabet.plain, alphabet.plain_drives)
-    everything = Labels.of(system, alphabet.prompts, alphabet.drives)
-    start = spec.initial(system.codec.world(world))
-    found, todo, situations = {start}, [start], set()
-    for here in todo:
-        situation = spec.situation(here)
-        labels = plain if situation in situations else everything
-        situations.add(situation)
-        for taken, allowed, leads_on in _taken(spec, model, here, labels):
-            passing = model.urgent(taken.after) is not None
-            assumed = _allowed(taken, allowed, assumed, here, passing=passing)
-            if not passing:
-                assumed = _shown(system, model, bend, taken, assumed)
-            if leads_on and taken.after not in found and spec.names(taken.after) <= BOUNDS.missions:
-                found.add(taken.after)
-                todo.append(taken.after)
-    return assumed, len(found)
+class _Explorer:
+    def __init__(
+        self, system: System, model: Model, honest: Model, operation: str | None, bend: Callable[[JSON], JSON]
+    ) -> None:
+        self.system = system
+        self.spec = system.spec
+        self.model = model
+        self.honest = honest
+        self.operation = operation
+        self.bend = bend
 
+    def run(self, world: JSON, assumed: int) -> tuple[int, int]:
+        """What is assumed once a world has been explored as well, and how many states it has."""
+        alphabet = self.system.alphabet(world, BOUNDS)
+        plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
+        own = [one for one in alphabet.prompts if one.method == self.operation]
+        thorough = Labels.of(self.system, (*alphabet.plain, *own), alphabet.drives)
+        start = self.spec.initial(self.system.codec.world(world))
+        found, todo, situations = {start}, [start], set()
+        for here in todo:
+            situation = self.spec.situation(here)
+            labels = plain if situation in situations else thorough
+            situations.add(situation)
+            for taken, allowed in self._taken(here, labels):
+                passing = self.model.urgent(taken.after) is not None
+                assumed = _allowed(taken, allowed, assumed, here, passing=passing)
+                if not passing:
+                    assumed = _shown(self.system, self.model, self.bend, taken, assumed)
+                if taken.after not in found and self.spec.names(taken.after) <= BOUNDS.missions:
+                    found.add(taken.after)
+                    todo.append(taken.after)
+        return assumed, len(found)
 
-def _taken(spec: Spec, model: Model, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...], bool]]:  # noqa: ANN401
-    """Every step that the model takes in a state, with those that it might take there; the urgent ones come first."""
-    urgent = spec.urgent(here)
-    taken = model.urgent(here)
-    if taken is not None:
-        yield taken, urgent, True
-        return
-    if urgent and not any(meet(model.choice, step.assumes) for step in urgent):
-        urgent = ()
-    if urgent:
-        raise _GuiltyError
-    for request, named in labels.requests:
-        for ref in (None, *range(spec.names(here))) if named else (None,):
-            refs = (ref,) if named else ()
-            try:
-                step = model.outcome(here, request, refs)
-            except (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
-                raise _GuiltyError from None
-            yield step, spec.outcomes(here, request, refs), True
-    for event in labels.events:
-        steps = spec.drives[event.name].steps(here, event, ())
-        happened = model.happening(here, event, ())
-        if happened is not None:
-            yield happened, steps, True
+    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...]]]:  # noqa: ANN401
+        """Every step that the model takes in a state, with those that it might take there; urgent ones come first."""
+        urgent = tuple(step for step in self.spec.urgent(here) if meet(self.model.choice, step.assumes))
+        taken = self.model.urgent(here)
+        if taken is not None:
+            yield taken, self.spec.urgent(here)
+            return
+        if urgent:
+            raise _GuiltyError
+        for request, free in labels.requests:
+            for refs in references(self.spec, here, free):
+                yield self._answer(here, request, refs), self.spec.outcomes(here, request, refs)
+        for event, free in labels.events:
+            for refs in references(self.spec, here, free):
+                happened = self.model.happening(here, event, refs)
+                if happened is not None:
+                    yield happened, self.spec.drives[event.name].steps(here, event, refs)
+
+    def _answer(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> Step:  # noqa: ANN401
+        try:
+            if self.spec.request_operation(request) == self.operation:
+                return self.model.outcome(here, request, refs)
+            step = self.model.twist(here, self.honest.outcome(here, request, refs))
+        except (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+            raise _GuiltyError from None
+        if step is None:
+            raise _GuiltyError
+        return step
 
 
 def _allowed(taken: Step, allowed: tuple[Step, ...], assumed: int, here: Any, *, passing: bool) -> int:  # noqa: ANN401

@@ -2,38 +2,54 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import field, frozen
 
-from missionfsm.kernel.alphabet import Bounds, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import ANYTHING, meet
 from missionfsm.kernel.spec import Invariant, Spec, Step
 from missionfsm.kernel.system import System
+from missionfsm.tools.picking import fill, slots
 
 State = Any
+Free = tuple[bool, ...]
+"""Of each name of a request or an event, whether it may be any that the state has."""
 
 
 @frozen
 class Labels:
-    """What is tried in every state: requests (and whether each has a name) and drives."""
+    """What is tried in every state: requests and events, each with its names.
 
-    requests: tuple[tuple[Any, bool], ...]
-    events: tuple[Any, ...]
+    Of every name it is told whether it may be any of the state's; one that may not is something that is new there.
+    """
+
+    requests: tuple[tuple[Any, Free], ...]
+    events: tuple[tuple[Any, Free], ...]
 
     @classmethod
     def of(cls, system: System, prompts: Iterable[Prompt], drives: Iterable[JSON]) -> Labels:
         """The requests of some prompts, each once, and the events of some drives."""
-        requests = []
+        requests, events = [], []
         for prompt in prompts:
-            names, rest = system.codec.split(prompt.method, prompt.params)
-            requests.append((system.codec.request(prompt.method, rest), bool(names)))
-        return cls(
-            tuple(dict.fromkeys(requests)), tuple(dict.fromkeys(system.codec.drive(drive)[0] for drive in drives))
-        )
+            params, picked = _filled(system, prompt.params)
+            names, rest = system.codec.split(prompt.method, params)
+            requests.append((system.codec.request(prompt.method, rest), tuple(name in picked for name in names)))
+        for drive in drives:
+            params, picked = _filled(system, drive)
+            event, names = system.codec.drive(params)
+            events.append((event, tuple(name in picked for name in names)))
+        return cls(tuple(dict.fromkeys(requests)), tuple(dict.fromkeys(events)))
+
+
+def _filled(system: System, params: JSON) -> tuple[JSON, tuple[Any, ...]]:
+    """Params with made-up names in the place of stand-ins, and those among them that a tester picks."""
+    picked = {slot: system.naming.make(kind, slot + 2) for slot, kind in slots(params).items()}
+    return fill(params, picked, system.naming, 1), (ANY_NAME, *picked.values())
 
 
 @frozen
@@ -126,13 +142,14 @@ class Exploration:
 
 def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
     """Every step from a state: calls with every answer, drives, and what the system does by itself."""
-    for request, named in labels.requests:
-        for refs in _references(spec, state, named=named):
+    for request, free in labels.requests:
+        for refs in references(spec, state, free):
             for step in spec.outcomes(state, request, refs):
                 yield Transition(request, step)
-    for event in labels.events:
-        for step in spec.drives[event.name].steps(state, event, ()):
-            yield Transition(event, step)
+    for event, free in labels.events:
+        for refs in references(spec, state, free):
+            for step in spec.drives[event.name].steps(state, event, refs):
+                yield Transition(event, step)
     for step in (*spec.urgent(state), *spec.spontaneous(state)):
         yield Transition(None, step)
 
@@ -151,7 +168,7 @@ def reachable(
         quotient: state to the state that stands for it, where several are explored as one.
     """
     successors = (
-        spec.shortcut(labels.requests, labels.events, assumed, most)
+        spec.shortcut(labels.requests, [event for event, _ in labels.events], assumed, most)
         if spec.shortcut
         else lambda here: [
             one.step.after
@@ -247,9 +264,9 @@ def firings(
     """For every refusal: whether some call in some of the states meets it, and whether some call does not."""
     found = {rule.id: [False, False] for operation in spec.operations.values() for rule in operation.refusals}
     for here in states:
-        for request, named in labels.requests:
+        for request, free in labels.requests:
             operation = spec.operations[spec.request_operation(request)]
-            for refs in _references(spec, here, named=named):
+            for refs in references(spec, here, free):
                 outcomes = spec.outcomes(here, request, refs)
                 met = {rule for step in outcomes if meet(assumed, step.assumes) for rule in step.rules}
                 for rule in operation.refusals:
@@ -257,8 +274,10 @@ def firings(
     return {rule: (fires, rests) for rule, (fires, rests) in found.items()}
 
 
-def _references(spec: Spec, here: State, *, named: bool) -> Iterable[tuple[int | None, ...]]:
-    return [(position,) for position in (None, *range(spec.names(here)))] if named else [()]
+def references(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None, ...]]:
+    """Every way in which names can be those of a state."""
+    positions = (None, *range(spec.names(here)))
+    return itertools.product(*(positions if one else (None,) for one in free))
 
 
 def _depth(found: Mapping[State, State | None]) -> int:

@@ -105,7 +105,7 @@ class Model:
         self.system = system
         self.choice = choose(system.spec.ambiguities, choice)
         self._mint = mint
-        self._twist = twist
+        self.twist = twist
         self._chosen: dict[Any, Step | None] = {}
 
     def start(self, world: object) -> Snapshot:
@@ -169,7 +169,7 @@ class Model:
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
     def _choose(self, state: Any, steps: tuple[Step, ...]) -> Step | None:  # noqa: ANN401 - of any system
-        return self._twist(state, next((step for step in steps if meet(self.choice, step.assumes)), None))
+        return self.twist(state, next((step for step in steps if meet(self.choice, step.assumes)), None))
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
         """Take everything urgent at once."""

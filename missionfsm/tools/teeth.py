@@ -25,7 +25,7 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import introduce
 from missionfsm.tools.excuse import excuse
 from missionfsm.tools.guide import Guide
-from missionfsm.tools.model import Twist, straight
+from missionfsm.tools.model import Model, Twist, straight
 from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 
@@ -162,10 +162,20 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
     run = Run(system, broken, introduce(system, broken), automaton, Bounds(goals=3), guide=guide.fresh())
     if run.tour(random.Random(seed), TOURS, STEPS, mutant.favour):
-        return Bite(mutant.name, mutant.rule, killed=False, because=excuse(system, broken.model, mutant.bend, run.guide.worlds))
+        return Bite(mutant.name, mutant.rule, killed=False, because=_excuse(system, mutant, broken.model, guide.worlds))
     if run.found is None:
         return Bite(mutant.name, mutant.rule, killed=True)
     return Bite(mutant.name, mutant.rule, killed=True, length=len(run.found.judge.history) - 1)
+
+
+_HONEST: dict[tuple[System, tuple[tuple[str, str], ...]], Model] = {}
+"""References by the readings that they follow; what they remember serves all mutants."""
+
+
+def _excuse(system: System, mutant: Mutant, model: Model, worlds: tuple[JSON, ...]) -> str:
+    key = (system, tuple(sorted(mutant.choice.items())))
+    honest = _HONEST.setdefault(key, Model(system, mutant.choice))
+    return excuse(system, model, honest, mutant.favour, mutant.bend, worlds)
 
 
 # The mutants.

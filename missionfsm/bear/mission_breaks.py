@@ -9,7 +9,7 @@ from attrs import evolve
 
 from missionfsm.bear import mission_status as status
 from missionfsm.bear.messages import State
-from missionfsm.bear.mission import Mission, Op, Robot
+from missionfsm.bear.mission import Mission, Robot
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.spec import Step
@@ -200,4 +200,11 @@ TWISTS = (
     Break(_rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"), "answers no ids", lambda _, step: evolve(step, refs=())),
     Break(_rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"), "leaves out an id", lambda _, step: evolve(step, refs=step.refs[:-1])),
 )
-__all__ = ["BENDS", "TWISTS", "Op"]
+_HALTED = {"AM-09": "b"}
+REACHING = {
+    "another-mission-is-queued": _HALTED,
+    "a-mission-is-queued": _HALTED,
+    "the-queue-is-halted": _HALTED,
+    "a-mission-waits-in-a-halted-queue": _HALTED,
+}
+"""Conditions that no robot meets whose queue never halts."""

@@ -26,7 +26,7 @@ from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outc
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_rules import OPERATIONS
-from missionfsm.bear.mission_shortcut import shortcut
+from missionfsm.bear.mission_shortcut import Shortcut, forget_ended
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
 from missionfsm.kernel.history import Answer
@@ -243,7 +243,8 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         possibilities=POSSIBILITIES,
         situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
         shape=lambda robot: (situation(robot), min(len(robot.pending), 2)),
-        shortcut=shortcut,
+        forget_ended=forget_ended,
+    shortcut=Shortcut,
         rebuilt=specification,
     )
 

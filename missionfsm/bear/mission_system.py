@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.bear.mission_breaks import BENDS, TWISTS
+from missionfsm.bear.mission_breaks import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission_json import CODEC
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
@@ -146,11 +146,12 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
         yield Prompt(method, {"missions": [good[0]]})
     for workflow in (*_workflows(family, bounds.goals), *_DEFECTIVE_WORKFLOWS):
         yield Prompt("CreateMissionWorkflow", {} if workflow is None else {"missionWorkflow": workflow})
+    yield Prompt("CreateMissionWorkflow", {"missionWorkflow": _DEFECTIVE_WORKFLOWS[-1], "urgency": "high"})
     yield from _updates()
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
         yield Prompt(method, {})
         yield Prompt(method, {"x": 1})
-    yield Prompt("ClearMissionStatus", "all")
+        yield Prompt(method, "all")
 
 
 def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
@@ -220,4 +221,4 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING)

@@ -272,9 +272,9 @@ OPERATIONS: Mapping[str, Operation] = {
         SYSTEM,
         STATUS[GET,],
         refusals=(
-            the_request_is_malformed,
+            evolve(the_request_is_malformed, cite=_GET),
             the_robot_id_is_empty,
-            a_field_is_unknown,
+            evolve(a_field_is_unknown, cite=_GET),
             the_robot_is_somebody_elses,
             there_is_no_such_robot,
             the_robot_is_not_found,

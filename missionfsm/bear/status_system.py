@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from missionfsm.bear.status import GET, Endpoint
 from missionfsm.bear.status import SYSTEM as NAME
+from missionfsm.bear.status_breaks import BENDS
 from missionfsm.bear.status_json import CODEC
 from missionfsm.bear.status_spec import SPEC
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
@@ -206,18 +207,20 @@ _DEFECTIVE: tuple[JSON, ...] = (
 )
 
 
+_DEFECTIVE_GETS: tuple[JSON, ...] = (
+    {},
+    {"robotId": ""},
+    {"robotId": "x1"},
+    {"robotId": "nobody"},
+    {"robotId": 7},
+    {"robotId": "r1", "x": 1},
+)
+
+
 def _prompts() -> Iterator[Prompt]:
     for robot in ("r1", "r2", "r3"):
         yield from (Prompt(GET, {"robotId": robot}) for _ in range(3))
-    for params in (
-        {},
-        {"robotId": ""},
-        {"robotId": "x1"},
-        {"robotId": "nobody"},
-        {"robotId": 7},
-        {"robotId": "r1", "x": 1},
-    ):
-        yield Prompt(GET, params)
+    yield from (Prompt(GET, params) for params in _DEFECTIVE_GETS)
     for endpoint in Endpoint:
         # What works is worth more tries than what does not.
         yield from (Prompt(endpoint.value, params) for _ in range(4) for params in _SELECTIONS)
@@ -240,25 +243,38 @@ def _drives(robots: tuple[str, ...]) -> Iterator[JSON]:
 
 
 def _plain_drives() -> Iterator[JSON]:
-    """For exploration: one robot, and of every part two values at most."""
-    for part, values in _REPORTS[:7]:
-        for value in values[:2] if part != "battery" else values[1:4]:
+    """For exploration: one robot, and what takes its lifecycles through all of their states."""
+    for part, values in (
+        ("battery", _BATTERIES[1:4]),
+        ("navigationState", _NAVIGATIONS[:2]),
+        ("connection", _CONNECTIONS),
+        ("wifi", (_NETWORKS[0], None)),
+    ):
+        for value in values:
             yield {"event": "report", "robotId": "r1", "part": part, "value": value}
-    yield {"event": "report", "robotId": "r1", "part": "wifi", "value": None}
     yield {"event": "fault", "status": "INTERNAL"}
+
+
+def _plain() -> Iterator[Prompt]:
+    """For exploration: one of every kind of call; but for an armed fault none changes the fleet."""
+    yield Prompt(GET, {"robotId": "r1"})
+    yield from (Prompt(GET, params) for params in _DEFECTIVE_GETS)
+    for endpoint in Endpoint:
+        yield Prompt(endpoint.value, _ids("r1"))
+        yield from (Prompt(endpoint.value, params) for params in _DEFECTIVE)
 
 
 def alphabet(_: JSON, __: Bounds) -> Alphabet:
     """What is worth trying on a fleet; the same robots are there in every world but the smallest."""
     return Alphabet(
         prompts=tuple(_prompts()),
-        plain=(Prompt(GET, {"robotId": "r1"}), *(Prompt(one.value, _ids("r1")) for one in Endpoint)),
+        plain=tuple(_plain()),
         drives=tuple(_drives(("r1", "r2", "r3"))),
         plain_drives=tuple(_plain_drives()),
         worlds=_WORLDS,
     )
 
 
-SYSTEM = System(NAME, SPEC, CODEC, alphabet)
+SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS)
 
 __all__ = ["SYSTEM"]

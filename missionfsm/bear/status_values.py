@@ -74,7 +74,8 @@ def check(
         says, _, argues = (inspect.getdoc(wrong) or "").partition("\n")
         cite: Citation = STATUS[place]
         name = wrong.__name__.replace("_", "-")
-        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).of(SYSTEM, place[-1].split(" ")[0])
+        topic = of.__name__ if of else "enums"
+        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).of(SYSTEM, topic)
         return Check(registered, wrong, of, robots, lasts)
 
     return register

@@ -18,6 +18,7 @@ for _command in (
     judging.conform,
     judging.check,
     judging.explore,
+    judging.teeth,
     listing.rules,
     listing.readings,
     judging.adapter,

@@ -108,12 +108,15 @@ def check(
     raise typer.Exit(DONE if all(one["verdict"] == "conforms" for one in verdicts) else FAILED)
 
 
-def explore(
+def explore(  # noqa: PLR0913 - options of the command
     system: Annotated[str, typer.Argument(help="Which system.")],
     missions: Annotated[int, typer.Option(min=0, max=8, help="Listed missions, at most.")] = 2,
     goals: Annotated[int, typer.Option(min=1, max=8, help="Goals of a mission, at most.")] = 2,
     batch: Annotated[int, typer.Option(min=1, max=8, help="Missions of a batch, at most.")] = 2,
     reading: Readings = None,
+    forget_ended: Annotated[
+        bool, typer.Option("--forget-ended", help="Only count what has ended: far fewer states, the same steps.")
+    ] = False,
     json: JsonFile = None,
 ) -> None:
     """Visit every state within bounds: invariants, possibilities, which rules fire."""
@@ -126,10 +129,28 @@ def explore(
         assumed = constrain(explored.spec.ambiguities, choice(reading))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
-    found = visit(explored, Bounds(missions, goals, batch), assumed=assumed)
+    found = visit(explored, Bounds(missions, goals, batch), assumed=assumed, forget_ended=forget_ended)
     write_json(json, found.to_json())
     say(str(found), json=json)
     raise typer.Exit(DONE if found.holds else FAILED)
+
+
+def teeth(
+    system: Annotated[str, typer.Argument(help="Which system.")],
+    only: Annotated[str, typer.Option(help="Judge only implementations with this in their name.")] = "",
+    seed: Annotated[int, typer.Option(help="The same seed asks the same.")] = 0,
+    json: JsonFile = None,
+) -> None:
+    """Break every rule, one at a time, and see whether the oracle notices."""
+    from missionfsm.tools.teeth import mutants  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.teeth import teeth as bite  # noqa: PLC0415
+
+    judged = the_system(system)
+    with _progress(sum(only in mutant.name for mutant in mutants(judged))) as progress:
+        found = bite(judged, seed=seed, only=only, progress=lambda _: progress())
+    write_json(json, found.to_json())
+    say(str(found), json=json)
+    raise typer.Exit(FAILED if found.missed or found.untested or not found.bites else DONE)
 
 
 def adapter(

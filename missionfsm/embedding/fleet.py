@@ -21,8 +21,8 @@ from typing import Any, Generic, TypeVar
 import attrs
 from attrs import frozen
 
-from missionfsm.bear.messages import EventMetadata, Int64
-from missionfsm.bear.protojson import camel, write
+from missionfsm.bear.messages import EventMetadata
+from missionfsm.bear.protojson import Int64, camel, write
 from missionfsm.bear.status import GET, Endpoint
 from missionfsm.bear.status_json import EPOCH
 from missionfsm.bear.status_messages import (

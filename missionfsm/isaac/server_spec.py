@@ -338,12 +338,35 @@ POSSIBILITIES = tuple(
 
 
 def _shape(server: Server) -> object:
-    """What a search tells a server apart by: how missions and connections stand, not their times."""
-    missions = tuple(
-        (one.robot, one.status, bool(one.waits), bool(one.doomed), one.link is not None) for one in server.missions[-3:]
+    """What a search tells a server apart by: for each robot how its missions stand and who is connected, not the times."""
+    robots = dict.fromkeys((*(one.robot for one in server.missions), *(one.name for one in server.links)))
+    return tuple(sorted((_robot_shape(server, robot) for robot in robots), key=repr))
+
+
+def _robot_shape(server: Server, robot: str | None) -> object:
+    own = [one for one in server.missions if one.robot == robot]
+    under_way = tuple(
+        (one.status.value, one.run is not None, one.channel, one.link is None) for one in own if one.status in UNDER_WAY
     )
-    counts = tuple(min(2, sum(one.status is status for one in server.missions)) for status in Status)
-    return missions, counts, tuple((one.name, one.serves) for one in server.links)
+    queued = [one for one in own if one.status is Status.QUEUED]
+    ready = min(2, sum(one.ready for one in queued))
+    waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
+    doomed = any(one.doomed for one in queued)
+    ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
+    links = tuple(one.serves for one in server.links if one.name == robot)
+    return under_way, ready, waiting, doomed, ended, links
+
+
+def _idle_shape(server: Server) -> object:
+    """The same for what has no effect: how much is there."""
+    statuses = tuple(sorted({one.status.value for one in server.missions}))
+    return statuses, min(2, len(server.links)), any(one.serves for one in server.links)
+
+
+def _size(server: Server) -> int:
+    """Four missions that have not ended, or four connections, count as two missions elsewhere."""
+    open_ones = sum(one.status not in ENDED for one in server.missions)
+    return max((open_ones + 1) // 2, (len(server.missions) + 3) // 4, (len(server.links) + 1) // 2)
 
 
 def describe(value: object) -> str:
@@ -383,5 +406,7 @@ SPEC = Spec(
     possibilities=POSSIBILITIES,
     answers=_agrees,
     shape=_shape,
+    idle_shape=_idle_shape,
+    size=_size,
 )
 SECONDS = MICROSECONDS

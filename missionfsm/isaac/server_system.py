@@ -133,6 +133,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         drives=tuple(_drives(channel)),
         plain_drives=({"event": "connect"}, {"event": "advance", "seconds": 3}, {"event": "advance", "seconds": 6}),
         worlds=({}, {"nameChannel": "who"}),
+        look=Prompt("statuses", {}),
     )
 
 

@@ -81,6 +81,7 @@ class Alphabet:
         plain_drives: those among them that bring the system on.
         worlds: the worlds to try it in, as JSON, the usual one first.
         wrong_names: names that nothing has.
+        look: a call that shows where things stand and changes nothing; systematic conversations ask it again and again.
     """
 
     prompts: tuple[Prompt, ...]
@@ -89,3 +90,4 @@ class Alphabet:
     plain_drives: tuple[JSON, ...]
     worlds: tuple[JSON, ...]
     wrong_names: tuple[str, ...] = ()
+    look: Prompt | None = None

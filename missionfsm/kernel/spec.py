@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from attrs import field, frozen
 
@@ -192,6 +192,19 @@ class Invariant:
     holds: Callable[[State], bool]
 
 
+class Shortcut(Protocol):
+    """Every step of a system within bounds, on codes that stand for its states and are quick to tell apart."""
+
+    def encode(self, state: State, /) -> Any:
+        """The code of a state."""
+
+    def decode(self, code: Any, /) -> State:
+        """The state with a code."""
+
+    def successors(self, code: Any, /) -> list[Any]:
+        """The codes after every step, in any order and perhaps some twice."""
+
+
 @frozen(eq=False)
 class Spec:
     """A system as a nondeterministic labelled transition system.
@@ -223,8 +236,12 @@ class Spec:
             outcomes, and the same events happen in the same ways.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
-        shortcut: (requests, events, assumed, most names) to a function from a state to the states after every step,
-            in any order and perhaps some twice: what the functions above give, only faster.
+        idle_shape: the same for what changes nothing; None where it is `shape`.
+        size: state to how large it is, against `Bounds.missions`; None where that is the number of its names.
+        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
+            ways, but for what is forgotten.
+        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: what the functions above give,
+            only faster.
     """
 
     system: str
@@ -252,7 +269,10 @@ class Spec:
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state
-    shortcut: Callable[..., Callable[[State], list[State]]] | None = None
+    idle_shape: Callable[[State], Hashable] | None = None
+    size: Callable[[State], int] | None = None
+    forget_ended: Callable[[State], State] | None = None
+    shortcut: Callable[..., Shortcut] | None = None
 
     @property
     def all_rules(self) -> tuple[Rule, ...]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from attrs import frozen
+from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
@@ -40,6 +40,7 @@ class System:
     Attributes:
         naming: how its names are made up and written.
         bends, twists: how an implementation may break its promises, besides the ways that fit any system.
+        reaching: name of a rule to the readings under which its condition can come about at all.
     """
 
     name: str
@@ -49,3 +50,4 @@ class System:
     naming: Naming = Naming()
     bends: tuple[Bend, ...] = ()
     twists: tuple[Break, ...] = ()
+    reaching: Mapping[str, Mapping[str, str]] = field(factory=dict)

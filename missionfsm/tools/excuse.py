@@ -75,7 +75,8 @@ class _Explorer:
         alphabet = self.system.alphabet(world, BOUNDS)
         plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
         own = [one for one in alphabet.prompts if one.method == self.operation]
-        thorough = Labels.of(self.system, (*alphabet.plain, *own), alphabet.drives)
+        # The world stays as it is: the others are explored from their own start.
+        thorough = Labels.of(self.system, (*alphabet.plain, *own), alphabet.plain_drives)
         start = self.spec.initial(self.system.codec.world(world))
         found, todo, situations = {start}, [start], set()
         for here in todo:

@@ -154,35 +154,46 @@ def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
         yield Transition(None, step)
 
 
-def reachable(
+def reachable(  # noqa: PLR0913 - every one but the first four has a default
     spec: Spec,
     start: State,
     labels: Labels,
     most: int,
     assumed: int = ANYTHING,
-    quotient: Callable[[State], State] | None = None,
+    *,
+    forget_ended: bool = False,
 ) -> dict[State, State | None]:
     """Every state within `most` names, nearest first, with the state that it was first reached from.
 
     Args:
-        quotient: state to the state that stands for it, where several are explored as one.
+        forget_ended: what has ended is only counted, where the system can (see `Spec.forget_ended`).
     """
-    successors = (
-        spec.shortcut(labels.requests, [event for event, _ in labels.events], assumed, most)
-        if spec.shortcut
-        else lambda here: [
-            one.step.after
-            for one in steps(spec, here, labels)
-            if meet(assumed, one.step.assumes) and spec.names(one.step.after) <= most
-        ]
-    )
+    if spec.shortcut:
+        events = [event for event, _ in labels.events]
+        short = spec.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
+        codes = _reach(short.encode(start), short.successors)
+        states = dict(zip(codes, map(short.decode, codes), strict=True))
+        return {states[code]: None if before is None else states[before] for code, before in codes.items()}
+    quotient = (spec.forget_ended if forget_ended else None) or _itself
+
+    def successors(here: State) -> Iterator[State]:
+        for one in steps(spec, here, labels):
+            if meet(assumed, one.step.assumes) and spec.names(one.step.after) <= most:
+                yield quotient(one.step.after)
+
+    return _reach(quotient(start), successors)
+
+
+def _itself(state: State) -> State:
+    return state
+
+
+def _reach(start: State, successors: Callable[[State], Iterable[State]]) -> dict[State, State | None]:
     found: dict[State, State | None] = {start: None}
     todo = [start]
     add = todo.append
     for here in todo:  # grows while it is walked: a queue without a queue's cost
         for after in successors(here):
-            if quotient is not None:
-                after = quotient(after)  # noqa: PLW2901 - what stands for it
             if after not in found:
                 found[after] = here
                 add(after)
@@ -196,6 +207,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     world: JSON = None,
     assumed: int = ANYTHING,
     invariants: tuple[Invariant, ...] | None = None,
+    forget_ended: bool = False,
 ) -> Exploration:
     """Every state that a system can reach within bounds, with every step tried in each.
 
@@ -206,17 +218,22 @@ def explore(  # noqa: PLR0913 - every one has a default
         world: the world that it starts in; the usual one by default.
         assumed: the readings that are possible (see `missionfsm.kernel.readings`); by default all, at every step.
         invariants: what has to hold; the spec's own by default.
+        forget_ended: only count what has ended, where the system can: far fewer states, in which the same can be done.
+            Possibilities are not looked at then, since some of them are about what is forgotten.
     """
     bounds = bounds or Bounds()
     spec = system.spec
-    alphabet = system.alphabet(world or {}, bounds)
+    usual = system.alphabet({}, bounds).worlds[0] if world is None else world
+    alphabet = system.alphabet(usual, bounds)
     labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
-    start = spec.initial(system.codec.world(world or {}))
-    found = reachable(spec, start, labels, bounds.missions, assumed)
+    start = spec.initial(system.codec.world(usual))
+    quotient = spec.forget_ended if forget_ended else None
+    found = reachable(spec, start, labels, bounds.missions, assumed, forget_ended=forget_ended)
     checked = spec.invariants if invariants is None else invariants
     broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
-    counterexample = _counterexample(spec, labels, found, *broken) if broken else None
-    unmet = tuple(one.says for one in spec.possibilities if not any(map(one.holds, found)))
+    counterexample = _counterexample(spec, labels, found, quotient or _itself, *broken) if broken else None
+    possible = () if quotient else spec.possibilities
+    unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
     groups = Counter(map(spec.situation, found))
     representatives = {spec.situation(here): here for here in found}
     everything = Labels.of(system, alphabet.prompts, alphabet.drives)
@@ -287,12 +304,18 @@ def _depth(found: Mapping[State, State | None]) -> int:
     return max(depth.values())
 
 
-def _counterexample(
-    spec: Spec, labels: Labels, found: Mapping[State, State | None], invariant: Invariant, state: State
+def _counterexample(  # noqa: PLR0913 - what a way through the graph is made of
+    spec: Spec,
+    labels: Labels,
+    found: Mapping[State, State | None],
+    quotient: Callable[[State], State],
+    invariant: Invariant,
+    state: State,
 ) -> Counterexample:
     path: list[str] = []
     here = state
     while (before := found[here]) is not None:
-        path.append(next(one.words(spec) for one in steps(spec, before, labels) if one.step.after == here))
+        taken = next(one for one in steps(spec, before, labels) if quotient(one.step.after) == here)
+        path.append(taken.words(spec))
         here = before
     return Counterexample(invariant.name, invariant.says, tuple(reversed(path)), spec.describe(state))

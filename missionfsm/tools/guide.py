@@ -18,6 +18,7 @@ from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.explanation import Explanation
 from missionfsm.kernel.readings import meet
+from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import Conversation, Given, Picks
 from missionfsm.tools.picking import fill, is_template, slots, ways
@@ -26,6 +27,9 @@ Edge = tuple[Hashable, ...]
 
 ENOUGH = 6
 """How many edges that were never walked are enough to choose from."""
+
+_MADE_UP = 1_000_003
+"""Serial numbers of names that templates are read with."""
 
 MOST = 120
 """How many proposals are enough in any case."""
@@ -41,6 +45,17 @@ class Proposal:
     edge: Edge
     leads_to: Hashable
     picks: Picks = ()
+
+
+@frozen(eq=False)
+class Template:
+    """Params with stand-ins: what they say, the kind of name in each slot, and for each name the slot that it is in."""
+
+    method: str
+    params: JSON
+    what: Any
+    wants: dict[int, str]
+    slots: tuple[int | None, ...]
 
 
 @frozen(eq=False)
@@ -67,7 +82,7 @@ class Guide:
         self.alphabets = [system.alphabet(world, bounds) for world in worlds]
         self._calls = [self._prepared(alphabet) for alphabet in self.alphabets]
         self._events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
-        self._templates = [_prepared_templates(alphabet, drives) for alphabet in self.alphabets]
+        self._templates = [_prepared_templates(system, alphabet, drives) for alphabet in self.alphabets]
         self._labels = [
             list(dict.fromkeys((*calls, *events, *templates)))
             for calls, events, templates in zip(self._calls, self._events, self._templates, strict=True)
@@ -130,26 +145,22 @@ class Guide:
         return found
 
     def _filled(
-        self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[tuple[str, JSON]]
+        self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[Template]
     ) -> Iterator[Proposal]:
         """Proposals from templates, with some of the names that were given in their slots."""
-        belief, codec, naming = conversation.judge.belief, self.system.codec, self.system.naming
+        belief = conversation.judge.belief
         positions = {belief.name(number): position for position, number in enumerate(here.names)}
         given = {name: one for one, name in conversation.given.items()}
-        for method, template in templates:
-            for picked in ways(slots(template), given, naming):
-                params = fill(template, picked, naming, len(conversation.actions) + 1)
-                if method == "drive":
-                    event, names = codec.drive(params)
-                    refs = tuple(positions.get(name) for name in names)
-                    edge = self._drive_edge(here, shape, event, refs)
+        for template in templates:
+            for picked in ways(template.wants, given, self.system.naming):
+                refs = tuple(positions.get(picked.get(slot)) for slot in template.slots)
+                if template.method == "drive":
+                    edge = self._drive_edge(here, shape, template.what, refs, exact=True)
                 else:
-                    names, rest = codec.split(method, params)
-                    refs = tuple(positions.get(name) for name in names)
-                    edge = self._edge(conversation, here, shape, codec.request(method, rest), refs)
+                    edge = self._edge(conversation, here, shape, template.what, refs, exact=True)
                 if edge:
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
-                    yield Proposal(method, template, None, *edge, picks)
+                    yield Proposal(template.method, template.params, None, *edge, picks)
 
     def fresh(self) -> Guide:
         """A guide to the same system that has not been anywhere yet."""
@@ -170,8 +181,10 @@ class Guide:
         shape: Hashable,
         request: Any,  # noqa: ANN401 - of any system
         refs: tuple[int | None, ...],
+        *,
+        exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        key = (shape, request, refs)
+        key = (here.state if exact else shape, request, refs)
         if key not in self._edges:
             oracle = conversation.judge.automaton.oracle
             steps = [
@@ -183,8 +196,10 @@ class Guide:
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)
             leads_to = self.system.spec.shape(after)
-            within = self.system.spec.names(after) <= max(self.bounds.missions, self.system.spec.names(here.state))
-            self._edges[key] = ((shape, operation, says), leads_to) if steps and within else None
+            size = self.system.spec.size or self.system.spec.names
+            within = size(after) <= max(self.bounds.missions, size(here.state))
+            where = self._where(here, shape, steps)
+            self._edges[key] = ((where, operation, says), leads_to) if steps and within else None
         return self._edges[key]
 
     def _drive_edge(
@@ -193,25 +208,45 @@ class Guide:
         shape: Hashable,
         event: Any,  # noqa: ANN401 - of any system
         refs: tuple[int | None, ...] = (),
+        *,
+        exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        key = (shape, "drive", event, refs)
+        key = (here.state if exact else shape, "drive", event, refs)
         if key not in self._edges:
             steps = [
                 step
                 for step in self.system.spec.drives[event.name].steps(here.state, event, refs)
                 if meet(here.assumed, step.assumes)
             ]
-            self._edges[key] = ((shape, event, *refs), self.system.spec.shape(steps[0].after)) if steps else None
+            says: Hashable = event
+            if exact:
+                says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
+            where = self._where(here, shape, steps)
+            self._edges[key] = ((where, says), self.system.spec.shape(steps[0].after)) if steps else None
         return self._edges[key]
 
+    def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:
+        """Where an edge begins; where nothing changes that may be said more coarsely."""
+        idle = self.system.spec.idle_shape
+        return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
 
-def _prepared_templates(alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[str, JSON]]]:
-    """The prompts and drives with slots, by the name of the operation or the drive."""
-    found: dict[str, dict[str, tuple[str, JSON]]] = {}
-    for prompt in alphabet.prompts:
-        if is_template(prompt.params):
-            found.setdefault(prompt.method, {})[repr(prompt.params)] = (prompt.method, prompt.params)
-    for drive in alphabet.drives:
-        if drive["event"] in drives and is_template(drive):
-            found.setdefault(drive["event"], {})[repr(drive)] = ("drive", drive)
-    return {name: list(templates.values()) for name, templates in found.items()}
+
+def _prepared_templates(system: System, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[Template]]:
+    """The prompts and drives with stand-ins, by the name of the operation or the drive."""
+    asked = {repr(one.params): (one.method, one.params) for one in alphabet.prompts if is_template(one.params)}
+    driven = {repr(one): ("drive", one) for one in alphabet.drives if one["event"] in drives and is_template(one)}
+    found: dict[str, list[Template]] = {}
+    for method, params in (*asked.values(), *driven.values()):
+        wants = slots(params)
+        # What is said does not depend on which names are picked, so it is read once, with made up ones.
+        made = {slot: system.naming.make(kind, _MADE_UP + slot) for slot, kind in wants.items()}
+        filled = fill(params, made, system.naming, _MADE_UP - 1)
+        if method == "drive":
+            what, names = system.codec.drive(filled)
+        else:
+            names, rest = system.codec.split(method, filled)
+            what = system.codec.request(method, rest)
+        of = {name: slot for slot, name in made.items()}
+        label = params["event"] if method == "drive" else method
+        found.setdefault(label, []).append(Template(method, params, what, wants, tuple(of.get(one) for one in names)))
+    return found

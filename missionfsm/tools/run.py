@@ -123,11 +123,16 @@ class Run:
                     break
                 if not self.take_up(proposal):
                     return False
-                if draw.random() < SETTLED and not self.act("settle"):
+                if draw.random() < SETTLED and not self._look(world):
                     return False
             if not self.act("settle") or not self.gather():
                 return False
         return True
+
+    def _look(self, world: int) -> bool:
+        """Wait for everything to settle and see where things stand."""
+        look = self.guide.alphabets[world].look
+        return self.act("settle") and (look is None or self.act(look.method, look.params))
 
     def _next(self, draw: random.Random, world: int, favour: str | None) -> Proposal | None:
         assert self.last is not None, "a conversation has begun"  # noqa: S101 - tour has begun one
@@ -137,6 +142,10 @@ class Run:
             return None
         least = self.guide.walked[proposals[0].edge]
         equal = [one for one in proposals if self.guide.walked[one.edge] == least]
+        if self.guide.system.spec.idle_shape is not None and draw.random() < FAVOURED:
+            # Where most of what can be said has no effect, what leads elsewhere comes first.
+            rare = self.guide.visited[equal[0].leads_to]
+            equal = [one for one in equal if self.guide.visited[one.leads_to] == rare]
         return equal[draw.randrange(len(equal))]
 
     def attempt(self, world: JSON, actions: tuple[Action, ...]) -> Conversation:

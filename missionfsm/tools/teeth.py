@@ -186,7 +186,7 @@ def mutants(system: System) -> Iterator[Mutant]:
     spec = system.spec
     for operation in spec.operations.values():
         for rule in operation.refusals:
-            yield from _of_refusal(spec, operation, rule)
+            yield from _of_refusal(spec, operation, rule, system.reaching.get(rule.name, {}))
         for promised in operation.promises:
             yield from _of_promise(spec, promised, operation.name)
     own = {bend.rule for bend in system.bends}
@@ -212,8 +212,10 @@ def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
     return {rule.under.of.id: rule.under.letters[0]}
 
 
-def _of_refusal(spec: Spec, operation: Operation, rule: Rule) -> Iterator[Mutant]:
-    choice = _in_force(spec, rule.id)
+def _of_refusal(
+    spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]
+) -> Iterator[Mutant]:
+    choice = {**_in_force(spec, rule.id), **reaching}
     code = next(code for code in _OTHER_CODES if code != rule.code)
     if spec.rebuilt is None or rule.holds is None:
         # Its condition is in the effect: what can be broken is what is answered.

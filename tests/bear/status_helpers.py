@@ -172,7 +172,8 @@ def robot_message(stream: int, robot: str, number: int, state: Any) -> Any:
 
 def online_message(stream: int, **robots: tuple[int, str]) -> Any:
     states = {
-        robot: {"metadata": metadata(number), "connection": {"state": state}} for robot, (number, state) in robots.items()
+        robot: {"metadata": metadata(number), "connection": {"state": state}}
+        for robot, (number, state) in robots.items()
     }
     return {"stream": stream, "message": {"onlineStates": states}}
 

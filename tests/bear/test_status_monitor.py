@@ -112,7 +112,10 @@ def test_every_check_has_a_case() -> None:
         (NETWORK, [entry("networkStates", "a", 1), entry("networkStates", "a", 1), {"networkStates": {}}, {}]),
         (ERRORS, [entry("errorCodes", "a", 4, codes=[]), entry("errorCodes", "b", 4, codes=[])]),
         (ONLINE, [entry("onlineStates", "a", 0, connection={"state": "STATE_CONNECTED"}) for _ in range(3)]),
-        (ROBOT, [of("a", n, robotState={"twist": MOVING, "navigationState": stuck("STATE_NOT_STUCK")}) for n in (1, 2)]),
+        (
+            ROBOT,
+            [of("a", n, robotState={"twist": MOVING, "navigationState": stuck("STATE_NOT_STUCK")}) for n in (1, 2)],
+        ),
         (ROBOT, [of("a", n, robotState={"twist": MOVING}) for n in (1, 2)]),
     ],
 )
@@ -121,7 +124,9 @@ def test_nothing_is_wrong_with_what_the_page_allows(endpoint: str, messages: lis
     assert rules(endpoint, *messages) == []
 
 
-@pytest.mark.parametrize("message", [None, 7, [], "x", {"robotId": 3}, {"metadata": 3, "robotId": "a"}, {"robotId": ""}])
+@pytest.mark.parametrize(
+    "message", [None, 7, [], "x", {"robotId": 3}, {"metadata": 3, "robotId": "a"}, {"robotId": ""}]
+)
 def test_any_json_gets_a_verdict(message: Any) -> None:
     """A message of no documented form is a problem, never an exception."""
     for endpoint in (BATTERY, ROBOT):
@@ -131,7 +136,20 @@ def test_any_json_gets_a_verdict(message: Any) -> None:
 def test_random_json_never_raises() -> None:
     """Whatever is put in the place of a part of a message, the monitor answers."""
     chance = random.Random(7)
-    junk: list[Any] = [None, True, -1, 2.5, "x", [], {}, [1], {"state": []}, {"a": {"metadata": {}}}, float("nan"), 2**70]
+    junk: list[Any] = [
+        None,
+        True,
+        -1,
+        2.5,
+        "x",
+        [],
+        {},
+        [1],
+        {"state": []},
+        {"a": {"metadata": {}}},
+        float("nan"),
+        2**70,
+    ]
     usual = [
         of("a", 1, batteryState=battery()),
         of("a", 2, robotState=WORLDS[0]["robots"][0]["state"]),
@@ -189,7 +207,9 @@ def test_repeats_are_counted() -> None:
 def test_what_is_tolerated_is_flagged() -> None:
     """AS-18, AS-19: an unknown stuck state at the start, and a reserved reason, are problems of lesser weight."""
     early = list(watch(NAVIGATION, [of("a", 1, navigationState=stuck("STATE_UNKNOWN"))]))
-    reserved = list(watch(NAVIGATION, [of("a", 1, navigationState=stuck("STATE_STUCK", "REASON_DESTINATION_OBSTRUCTED"))]))
+    reserved = list(
+        watch(NAVIGATION, [of("a", 1, navigationState=stuck("STATE_STUCK", "REASON_DESTINATION_OBSTRUCTED"))])
+    )
     assert [one.flagged for one in (*early, *reserved)] == [True, True]
 
 

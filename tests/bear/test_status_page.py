@@ -61,7 +61,12 @@ def _navigation(state: str, reason: str) -> Any:
     return {"stuckState": {"state": state, "reason": reason}}
 
 
-WIFI = {"ssid": "BearRobotics-Office", "signalLevelDbm": -45, "linkQuality": 65, "security": "SECURITY_PASSWORD_SECURED"}
+WIFI = {
+    "ssid": "BearRobotics-Office",
+    "signalLevelDbm": -45,
+    "linkQuality": 65,
+    "security": "SECURITY_PASSWORD_SECURED",
+}
 EXAMPLES: dict[str, list[Any]] = {
     "SubscribeBatteryStatus": [
         {"metadata": _metadata("16:45:00", 112), "robotId": "pennybot-123abc", "batteryState": CHARGING},
@@ -167,7 +172,7 @@ def test_the_examples_of_the_streams_with_one_topic_conform(method: str) -> None
 
 
 def test_the_example_of_get_robot_status_conforms() -> None:
-    """The answer with a mission without goals, and HIGH severity beside a running mission, is the robot's own affair."""
+    """A mission without goals, and HIGH severity beside a running mission, are the robot's own affair."""
     world = world_of(("pennybot-123abc", GET, None))
     lines = [
         {"call": 1, "method": "GetRobotStatus", "params": {"robotId": "pennybot-123abc"}},

@@ -463,7 +463,9 @@ def test_names_and_numbers_may_be_written_in_every_way_of_protobuf_json() -> Non
                 "battery_state": {"charge_percent": 78, "state": 1, "charge_method": 3},
             },
         },
-        report("r1", "battery", {"chargePercent": 0, "state": "STATE_UNKNOWN", "chargeMethod": "CHARGE_METHOD_UNKNOWN"}),
+        report(
+            "r1", "battery", {"chargePercent": 0, "state": "STATE_UNKNOWN", "chargeMethod": "CHARGE_METHOD_UNKNOWN"}
+        ),
         {"stream": 1, "message": {"metadata": {"sequenceNumber": 6}, "robotId": "r1"}},
         SETTLED,
     ]
@@ -474,7 +476,11 @@ def test_floats_are_compared_as_they_travel() -> None:
     """A pose in 32 bits is the pose that was reported."""
     state = {**R1["state"], "pose": {"xMeters": 0.1, "yMeters": 2.8, "headingRadians": 0.78}}
     shown = {**state, "pose": {"xMeters": 0.10000000149011612, "yMeters": 2.799999952316284, "headingRadians": 0.78}}
-    lines = [*opened(1, ROBOT, by_ids("r1")), robot_message(1, "r1", 1, R1["state"]), report("r1", "pose", state["pose"])]
+    lines = [
+        *opened(1, ROBOT, by_ids("r1")),
+        robot_message(1, "r1", 1, R1["state"]),
+        report("r1", "pose", state["pose"]),
+    ]
     assert conforms(*lines, robot_message(1, "r1", 2, shown), SETTLED)
     wrong = {**shown, "pose": {**shown["pose"], "xMeters": 0.1001}}
     assert broken(*lines, robot_message(1, "r1", 2, wrong))[0] == "values-are-those-reported"

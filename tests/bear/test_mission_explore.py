@@ -1,0 +1,127 @@
+"""The graph of the mission API: how many states it has, what can be forgotten of them, which rules fire."""
+
+from __future__ import annotations
+
+import pytest
+from attrs import evolve
+
+from missionfsm.bear.mission import Robot
+from missionfsm.bear.mission_shortcut import forget_ended
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.readings import ANYTHING, choose
+from missionfsm.kernel.spec import Invariant
+from missionfsm.systems import system
+from missionfsm.tools.explore import Labels, explore, firings, reachable, steps
+
+MISSION = system("bear.mission")
+SPEC = MISSION.spec
+DEFAULT = choose(SPEC.ambiguities)
+WORLDS = MISSION.alphabet({}, Bounds()).worlds
+READINGS = pytest.mark.parametrize("assumed", [DEFAULT, ANYTHING], ids=["default readings", "all readings"])
+
+
+def labels(bounds: Bounds, world: object = None) -> Labels:
+    alphabet = MISSION.alphabet(world or {}, bounds)
+    return Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
+
+
+def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> dict[Robot, Robot | None]:
+    start = SPEC.initial(MISSION.codec.world({}))
+    return reachable(SPEC, start, labels(bounds), bounds.missions, assumed, forget_ended=forgetting)
+
+
+@pytest.mark.parametrize(
+    ("assumed", "states", "situations", "depth"),
+    [(DEFAULT, 12_720, 83, 9), (ANYTHING, 92_181, 293, 7)],
+    ids=["default readings", "all readings"],
+)
+def test_three_missions_and_two_goals(assumed: int, states: int, situations: int, depth: int) -> None:
+    """Three missions of two goals make so many states; every invariant holds and every possibility is met."""
+    found = explore(MISSION, Bounds(3, 2, 2), assumed=assumed)
+    assert (found.states, found.situations, found.depth) == (states, situations, depth)
+    assert (found.counterexample, found.unmet) == (None, ())
+
+
+def test_the_steps_of_two_missions_are_counted() -> None:
+    """Under the default readings two missions of one goal make so many states, and so many answers of each kind."""
+    found = explore(MISSION, Bounds(2, 1, 2), assumed=DEFAULT)
+    assert (found.states, found.transitions) == (350, 10_214)
+    assert found.by_operation == {}
+
+
+@READINGS
+def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
+    """The graph in which ended missions are only counted is the full one with each robot in its counted place.
+
+    Its states are the counted full ones; and a full robot goes where its counted one goes, and nowhere else.
+    """
+    bounds = Bounds(2, 2, 2)
+    full, counted = graph(bounds, assumed), graph(bounds, assumed, forgetting=True)
+    assert {forget_ended(here) for here in full} == set(counted)
+    short = SPEC.shortcut
+    assert short is not None
+    tried = labels(bounds)
+    events = [event for event, _ in tried.events]
+    plain = short(tried.requests, events, assumed, bounds.missions)
+    forgetting = short(tried.requests, events, assumed, bounds.missions, forget_ended=True)
+
+    def after(shortcut: object, here: Robot) -> set[Robot]:
+        return {forget_ended(shortcut.decode(one)) for one in shortcut.successors(shortcut.encode(here))}  # type: ignore[attr-defined]
+
+    assert [here for here in full if after(plain, here) != after(forgetting, forget_ended(here))] == []
+
+
+@READINGS
+def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
+    """Without the shortcut, counting what has ended reaches the same states."""
+    bounds = Bounds(2, 1, 2)
+    slow = evolve(SPEC, shortcut=None)
+    start = SPEC.initial(MISSION.codec.world({}))
+    found = reachable(slow, start, labels(bounds), bounds.missions, assumed, forget_ended=True)
+    assert found.keys() == graph(bounds, assumed, forgetting=True).keys()
+
+
+def test_six_missions_and_two_goals() -> None:
+    """Under the default readings six missions of two goals, the ended ones counted, make 8,696 states."""
+    found = explore(MISSION, Bounds(6, 2, 2), assumed=DEFAULT, forget_ended=True)
+    assert (found.states, found.counterexample) == (8_696, None)
+
+
+def test_a_robot_is_nearest_to_the_first_state_through_its_parent() -> None:
+    """What is reached knows a state before it from which a step leads there."""
+    bounds = Bounds(2, 1, 1)
+    tried = labels(bounds)
+    for here, before in graph(bounds, DEFAULT).items():
+        if before is not None:
+            assert here in {one.step.after for one in steps(SPEC, before, tried)}
+
+
+@pytest.mark.parametrize("forgetting", [False, True], ids=["in full", "counted"])
+def test_a_broken_invariant_has_a_shortest_counterexample(*, forgetting: bool) -> None:
+    """An invariant that does not hold is shown with a shortest way to a state in which it does not."""
+    never = Invariant("never-two", "Two missions have ended.", lambda robot: len(robot.done) < 2)
+    found = explore(MISSION, Bounds(2, 1, 2), assumed=DEFAULT, invariants=(never,), forget_ended=forgetting)
+    assert found.counterexample is not None
+    assert not found.holds
+    # A batch of two, a start, an end, a start, an end.
+    assert len(found.counterexample.path) == 5
+    assert "does not hold in [" in str(found.counterexample)
+
+
+def test_every_rule_fires_and_rests() -> None:
+    """Every refusal is met by some call in some state of some world, and not met by another."""
+    bounds = Bounds(2, 2, 2)
+    fires: set[str] = set()
+    rests: set[str] = set()
+    for world in WORLDS:
+        alphabet = MISSION.alphabet(world, bounds)
+        start = SPEC.initial(MISSION.codec.world(world))
+        found = reachable(SPEC, start, labels(bounds, world), bounds.missions)
+        situations = {SPEC.situation(here): here for here in found}
+        everything = Labels.of(MISSION, alphabet.prompts, alphabet.drives)
+        for rule, (fired, rested) in firings(SPEC, situations.values(), everything).items():
+            fires |= {rule} if fired else set()
+            rests |= {rule} if rested else set()
+    refusals = {rule.id for operation in SPEC.operations.values() for rule in operation.refusals}
+    assert refusals - fires == set()
+    assert refusals - rests == set()

@@ -1,0 +1,67 @@
+"""An implementation that others wrote in another language, from the page alone: the oracle and it agree."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from status_helpers import walk
+
+from missionfsm.adapters.stdio import Child
+from missionfsm.tools.verdict import Outcome
+
+SUBJECT = Path(__file__).parent.parent / "subjects" / "bear_status.mjs"
+NODE = shutil.which("node")
+needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed")
+DRIVES = ("report", "restart", "fault")
+
+
+def breaks() -> list[str]:
+    """The ways in which the subject can be told to deviate."""
+    if NODE is None:
+        return []
+    listed = subprocess.run([NODE, SUBJECT, "--list-breaks"], capture_output=True, check=True).stdout
+    return list(json.loads(listed))
+
+
+class Subject(Child):
+    """The subject behind its protocol."""
+
+    def __init__(self, *options: str) -> None:
+        super().__init__([str(NODE), str(SUBJECT), *options])
+        about = self.exchange("initialize", {"protocolVersion": 1, "system": "bear.status"})
+        assert tuple(about.result["drives"]) == DRIVES
+
+
+@pytest.fixture
+def subject() -> Iterator[Any]:
+    made: list[Subject] = []
+
+    def make(*options: str) -> Subject:
+        made.append(Subject(*options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+@needs_node
+def test_the_subject_conforms(subject: Any) -> None:
+    """Two readers of the page agree: nothing that it does is a violation."""
+    found = walk(subject(), walks=60, drives=DRIVES)
+    assert (found.verdict().outcome, found.verdict().flagged) == (Outcome.CONFORMS, ())
+
+
+@needs_node
+@pytest.mark.slow
+@pytest.mark.parametrize("name", breaks())
+def test_every_break_is_caught(subject: Any, name: str) -> None:
+    """Whatever it is told to do wrong is found on random walks."""
+    found = walk(subject("--break", name), walks=300, steps=30, drives=DRIVES)
+    assert found.verdict().outcome is Outcome.VIOLATES

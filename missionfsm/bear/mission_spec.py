@@ -8,12 +8,15 @@ from collections.abc import Iterator, Mapping
 from missionfsm.bear.messages import Goal, State
 from missionfsm.bear.mission import (
     ENDED,
+    AUTOMATIC,
     GOALLESS,
     LIFECYCLE,
     MISSION,
     NOT_CHOSEN,
+    PATROLS,
     SYSTEM,
     Edit,
+    Kind,
     Mission,
     Op,
     Robot,
@@ -209,6 +212,21 @@ def _describe(value: object) -> str:
     return describe(value)
 
 
+def _shape(robot: Robot) -> tuple[object, ...]:
+    """What a search tells robots apart by: what they are at, not where they are to go."""
+    active = robot.active
+    at = active and (
+        active.kind in PATROLS,
+        active.kind in AUTOMATIC,
+        active.kind is Kind.CHARGE,
+        active.state,
+        min(active.goal, 1),
+        len(active.goals) - active.goal,
+        active.finishing,
+    )
+    return (at, min(len(robot.pending), 2), bool(robot.done), robot.halted, robot.fresh, robot.fault, robot.world)
+
+
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
     """The system, with other operations if some rule is to be tried without or with another condition."""
     return Spec(
@@ -242,7 +260,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
-        shape=lambda robot: (situation(robot), min(len(robot.pending), 2)),
+        shape=_shape,
         forget_ended=forget_ended,
     shortcut=Shortcut,
         rebuilt=specification,

@@ -109,9 +109,7 @@ BENDS = (
         "shows no errors",
         _of(Endpoint.ERRORS, lambda entry: entry.update(codes=[])),
     ),
-    Bend(
-        VALUES["SubscribeNavigationStatus"].id, "is never stuck", _stuck("STATE_NOT_STUCK", "REASON_UNKNOWN")
-    ),
+    Bend(VALUES["SubscribeNavigationStatus"].id, "is never stuck", _stuck("STATE_NOT_STUCK", "REASON_UNKNOWN")),
     Bend(VALUES["SubscribeNetworkStatus"].id, "shows no network", _of(Endpoint.NETWORK, _unnetworked)),
     Bend(
         VALUES["SubscribeOnlineStatus"].id,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -33,7 +33,6 @@ from missionfsm.bear.status_messages import (
     Wifi,
 )
 from missionfsm.bear.status_readings import (
-    AS_01,
     AS_07,
     AS_09_OFFLINE,
     AS_09_STATE,
@@ -64,6 +63,7 @@ from missionfsm.kernel.rules import (
     UNAUTHENTICATED,
     UNAVAILABLE,
     UNIMPLEMENTED,
+    Operation,
     decide,
 )
 from missionfsm.kernel.spec import Emission, Failure, Opening, Step
@@ -75,9 +75,14 @@ TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CA
 # Calls.
 
 
-def outcomes(fleet: Fleet, request: Request, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+def outcomes(
+    fleet: Fleet,
+    request: Request,
+    _: tuple[int | None, ...],
+    operations: Mapping[str, Operation] = OPERATIONS,
+) -> tuple[Step, ...]:
     """Every answer that the page allows to a call, success first."""
-    operation = OPERATIONS[request.operation]
+    operation = operations[request.operation]
     found: list[Step] = []
     for decision in decide(operation.blocking(fleet, request), ranking):
         if decision.code is None:
@@ -142,8 +147,7 @@ def _opened(fleet: Fleet, request: Request) -> Iterator[Step]:
         topics = [Topic(endpoint, "", request.location)]
     for owed, assumes in _firsts(fleet, endpoint, selected):
         opens = tuple(Opening(topic, 0, owed.get(topic.robot, ())) for topic in topics)
-        where = (AS_01["b", "c"],) if partly else ()
-        yield Step(fleet, opens=opens, answer=Answer(OK), refs=(0,), assumes=(*where, *assumes))
+        yield Step(fleet, opens=opens, answer=Answer(OK), refs=(0,), assumes=assumes)
     for ambiguity in (AS_09_UNKNOWN, AS_09_STATE, AS_09_OFFLINE):
         if any(ambiguity in _open_questions(fleet, endpoint, robot) for robot in selected):
             yield Step(fleet, answer=Answer(INTERNAL), assumes=(ambiguity["d"],))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 
 from missionfsm.bear.status import (
     CHARTS,
@@ -22,7 +23,7 @@ from missionfsm.bear.status_rules import OPERATIONS
 from missionfsm.bear.status_stream import RULES, SEQUENCE, Topic, answers, concerns, matches
 from missionfsm.bear.status_values import faults
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE
+from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE, Operation
 from missionfsm.kernel.spec import Delivery, Drive, Invariant, Mismatch, Spec
 
 
@@ -142,39 +143,45 @@ def _shape(fleet: Fleet) -> tuple[object, ...]:
     return (reported, fleet.fault, fleet.unheard, fleet.moves)
 
 
-SPEC = Spec(
-    system=SYSTEM,
-    title="the status of an account's fleet",
-    initial=initial,
-    operations=OPERATIONS,
-    outcomes=outcomes,
-    failing=failing,
-    drives={
-        one.name: one
-        for one in (
-            Drive("report", reported, (FORGET,)),
-            # Numbers that start over are recognised by their 0; nothing else tells of a restart that nobody drove.
-            Drive("restart", restarted, renumbers=_renumbered),
-            Drive("move", moved),
-            # Failures that nobody arms are outcomes of their own.
-            Drive("fault", armed),
-        )
-    },
-    urgent=lambda _: (),
-    matches=matches,
-    delivery=_delivery,
-    sequence=sequence,
-    names=_names,
-    request_operation=lambda request: request.operation,
-    ambiguities=AMBIGUITIES,
-    concerns=concerns,
-    describe=_describe,
-    rules=RULES,
-    charts=CHARTS,
-    invariants=INVARIANTS,
-    possibilities=POSSIBILITIES,
-    answers=answers,
-    shape=_shape,
-)
+def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
+    """The page as a specification, perhaps with other rules of refusal."""
+    return Spec(
+        system=SYSTEM,
+        title="the status of an account's fleet",
+        initial=initial,
+        operations=operations,
+        outcomes=functools.partial(outcomes, operations=operations),
+        failing=failing,
+        drives={
+            one.name: one
+            for one in (
+                Drive("report", reported, (FORGET,)),
+                # Numbers that start over are recognised by their 0; nothing else tells of a restart that nobody drove.
+                Drive("restart", restarted, renumbers=_renumbered),
+                Drive("move", moved),
+                # Failures that nobody arms are outcomes of their own.
+                Drive("fault", armed),
+            )
+        },
+        urgent=lambda _: (),
+        matches=matches,
+        delivery=_delivery,
+        sequence=sequence,
+        names=_names,
+        request_operation=lambda request: request.operation,
+        ambiguities=AMBIGUITIES,
+        concerns=concerns,
+        describe=_describe,
+        rules=RULES,
+        charts=CHARTS,
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        answers=answers,
+        shape=_shape,
+        rebuilt=specification,
+    )
+
+
+SPEC = specification()
 
 __all__ = ["SPEC"]

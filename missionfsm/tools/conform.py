@@ -71,7 +71,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     """
     about = introduce(system, subject)
     automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
-    run = Run(system, subject, about, automaton, bounds or Bounds(goals=3), progress)
+    run = Run(system, subject, about, automaton, bounds or Bounds(missions=4, goals=3), progress)
     machine = with_seed(seed)(_machine(run))
     options = settings(
         max_examples=examples,

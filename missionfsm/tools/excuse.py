@@ -21,6 +21,11 @@ from missionfsm.tools.model import Model
 BOUNDS = Bounds(missions=2, goals=1, batch=2)
 
 
+def straight(message: JSON) -> JSON:
+    """The message itself."""
+    return message
+
+
 class _GuiltyError(Exception):
     """A step is allowed under no reading that agrees with those assumed before."""
 
@@ -84,8 +89,15 @@ class _Explorer:
             labels = plain if situation in situations else thorough
             situations.add(situation)
             for taken, allowed in self._taken(here, labels):
-                passing = self.model.urgent(taken.after) is not None
-                assumed = _allowed(taken, allowed, assumed, here, passing=passing)
+                if allowed is None:
+                    # The reference's own step: allowed, and under what is known.
+                    assumed = meet(assumed, taken.assumes)
+                    if not assumed:
+                        raise _GuiltyError
+                    passing = self.bend is straight
+                else:
+                    passing = self.model.urgent(taken.after) is not None
+                    assumed = _allowed(taken, allowed, assumed, here, passing=passing)
                 if not passing:
                     assumed = _shown(self.system, self.model, self.bend, taken, assumed)
                 if taken.after not in found and self.spec.names(taken.after) <= BOUNDS.missions:
@@ -93,7 +105,7 @@ class _Explorer:
                     todo.append(taken.after)
         return assumed, len(found)
 
-    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...]]]:  # noqa: ANN401
+    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...] | None]]:  # noqa: ANN401
         """Every step that the model takes in a state, with those that it might take there; urgent ones come first."""
         urgent = tuple(step for step in self.spec.urgent(here) if meet(self.model.choice, step.assumes))
         taken = self.model.urgent(here)
@@ -104,7 +116,9 @@ class _Explorer:
             raise _GuiltyError
         for request, free in labels.requests:
             for refs in references(self.spec, here, free):
-                yield self._answer(here, request, refs), self.spec.outcomes(here, request, refs)
+                taken = self._answer(here, request, refs)
+                own = taken is self.honest.outcome(here, request, refs)
+                yield taken, None if own else self.spec.outcomes(here, request, refs)
         for event, free in labels.events:
             for refs in references(self.spec, here, free):
                 happened = self.model.happening(here, event, refs)

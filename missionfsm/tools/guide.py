@@ -89,6 +89,7 @@ class Guide:
         ]
         self.walked: Counter[Edge] = Counter()
         self.tried: Counter[tuple[Hashable, str]] = Counter()
+        self.taken: Counter[str] = Counter()
         self.visited: Counter[Hashable] = Counter()
         self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
 
@@ -127,7 +128,7 @@ class Guide:
                 names.append((position, known[name]))
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
-        for label in sorted(labels, key=lambda one: self.tried[shape, one]):
+        for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
             for call in self._calls[world].get(label, ()):
                 for position, name in names if call.named else [(None, None)]:
                     refs = (position,) if call.named else ()
@@ -165,12 +166,14 @@ class Guide:
     def fresh(self) -> Guide:
         """A guide to the same system that has not been anywhere yet."""
         other = copy.copy(self)
-        other.walked, other.tried, other.visited = Counter(), Counter(), Counter()
+        other.walked, other.tried, other.taken, other.visited = Counter(), Counter(), Counter(), Counter()
         return other
 
     def note(self, proposal: Proposal) -> None:
         """A proposal was taken up."""
-        self.tried[proposal.edge[0], proposal.method if proposal.method != "drive" else proposal.params["event"]] += 1
+        label = proposal.method if proposal.method != "drive" else proposal.params["event"]
+        self.tried[proposal.edge[0], label] += 1
+        self.taken[label] += 1
         self.walked[proposal.edge] += 1
         self.visited[proposal.leads_to] += 1
 

@@ -118,7 +118,7 @@ class Run:
             if len(streams) == 1 and number % 4 != 3 and not self.act(streams[0], {}):  # noqa: PLR2004 - every fourth
                 return False
             for _ in range(steps):
-                proposal = self._next(draw, world, favour)
+                proposal = self._next(draw, world, favour if number % 2 else None)
                 if proposal is None:
                     break
                 if not self.take_up(proposal):

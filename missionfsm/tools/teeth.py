@@ -24,6 +24,7 @@ from missionfsm.kernel.subject import Exchange
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import introduce
 from missionfsm.tools.excuse import excuse
+from missionfsm.tools.excuse import straight as as_it_is
 from missionfsm.tools.guide import Guide
 from missionfsm.tools.model import Model, Twist, straight
 from missionfsm.tools.run import Run
@@ -51,7 +52,7 @@ class Mutant:
     favour: str | None
     spec: Spec
     twist: Twist = straight
-    bend: Callable[[JSON], JSON] = lambda message: message
+    bend: Callable[[JSON], JSON] = as_it_is
 
     @property
     def name(self) -> str:
@@ -136,7 +137,7 @@ def teeth(
         progress: told of every mutant when it has been judged.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
-    bounds = Bounds(goals=3)
+    bounds = Bounds(missions=4, goals=3)
     guide = Guide(system, system.alphabet({}, bounds).worlds, bounds, tuple(system.spec.drives))
     bites, tested = [], set()
     for mutant in mutants(system):
@@ -160,7 +161,7 @@ class _Broken(Reference):
 
 def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
-    run = Run(system, broken, introduce(system, broken), automaton, Bounds(goals=3), guide=guide.fresh())
+    run = Run(system, broken, introduce(system, broken), automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
     if run.tour(random.Random(seed), TOURS, STEPS, mutant.favour):
         return Bite(mutant.name, mutant.rule, killed=False, because=_excuse(system, mutant, broken.model, guide.worlds))
     if run.found is None:

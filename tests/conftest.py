@@ -6,8 +6,8 @@ import io
 import sys
 
 import pytest
-
 from commandline import CommandLine, Ended
+
 from missionfsm.cli import main
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import orjson
 import pytest
-
 from commandline import CommandLine
+
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.transcript import Ids
 
@@ -34,7 +34,11 @@ MALFORMED = {
     "two values in a line": ([FIRST, CLEAR + CLEARED], 2, "not JSON"),
     "NaN": ([FIRST, '{"call": 1, "method": "CreateMission", "params": {"x": NaN}}'], 2, "not JSON"),
     "half a surrogate": ([FIRST, '{"call": 1, "method": "\\ud800"}'], 2, "not JSON"),
-    "too deep": ([FIRST, '{"call": 1, "method": "SkipGoal", "params": ' + "[" * 5000 + "]" * 5000 + "}"], 2, "not JSON"),
+    "too deep": (
+        [FIRST, '{"call": 1, "method": "SkipGoal", "params": ' + "[" * 5000 + "]" * 5000 + "}"],
+        2,
+        "not JSON",
+    ),
     "a list": ([FIRST, "[1]"], 2, "[1] is not an object"),
     "null": ([FIRST, "null"], 2, "None is not an object"),
     "no first line": ([CLEAR], 1, "the first line has to be"),
@@ -60,7 +64,11 @@ MALFORMED = {
     "an id that is no number": ([FIRST, clear(call="1")], 2, "call: '1' is not a whole number"),
     "an id that is true": ([FIRST, clear(call=True)], 2, "call: True is not a whole number"),
     "an id that is no whole number": ([FIRST, clear(call=1.5)], 2, "call: 1.5 is not a whole number"),
-    "an id that is too long": ([FIRST, '{"call": 1' + 40 * "0" + ', "method": "SkipGoal"}'], 2, "is not a whole number"),
+    "an id that is too long": (
+        [FIRST, '{"call": 1' + 40 * "0" + ', "method": "SkipGoal"}'],
+        2,
+        "is not a whole number",
+    ),
     "an id of a call in flight": ([FIRST, CLEAR, CLEAR], 3, "call 1 was sent before"),
     "an id of an answered call": ([FIRST, CLEAR, CLEARED, CLEAR], 4, "call 1 was sent before"),
     "an answer to nothing": ([FIRST, CLEARED], 2, "return 1: no call with this id is waiting"),

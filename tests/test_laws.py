@@ -189,7 +189,9 @@ def test_names_are_kept_apart(lab: Lab) -> None:
         opened = tuple(one.ref for one in step.opens)
         given = range(-len(taken.refs), 0) if step.answer is None else ()
         own = {*given, *range(before), *names, *opened}
-        shown = {ref for one in (*step.emits, *(owed for new in step.opens for owed in new.owed)) for ref in one.refs or ()}
+        shown = {
+            ref for one in (*step.emits, *(owed for new in step.opens for owed in new.owed)) for ref in one.refs or ()
+        }
         new = sorted({ref for ref in own if ref >= before})
         return (
             len(names) != lab.spec.names(step.after)
@@ -239,7 +241,10 @@ def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
 
     def answers(here: State) -> list[Any]:
         return [
-            [(step.answer, step.refs, step.assumes, step.rules, step.label) for step in lab.outcomes(here, request, refs)]
+            [
+                (step.answer, step.refs, step.assumes, step.rules, step.label)
+                for step in lab.outcomes(here, request, refs)
+            ]
             for request, refs in lab.calls(here)
         ]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import orjson
 import pytest
-
 from commandline import CommandLine
+
 from missionfsm.adapters import stdio
 from missionfsm.adapters.stdio import Child, serve
 from missionfsm.kernel.codec import JSON
@@ -20,7 +20,7 @@ from missionfsm.systems import system
 from missionfsm.tools.subject import Reference
 
 # A child answers as the reference does, through `reference`, until it is asked for METHOD; then it does WRONG.
-CHILD = '''
+CHILD = """
 import json, os, signal, sys, time
 from missionfsm.systems import system
 from missionfsm.adapters.stdio import _respond
@@ -40,7 +40,7 @@ for line in sys.stdin.buffer:
         WRONG
     for answer in _respond(reference, line):
         send(answer)
-'''
+"""
 
 Adapter = Callable[..., list[str]]
 
@@ -83,7 +83,7 @@ FAILURES = {
         "wrote a line that is not JSON: '" + 56 * "\ufffd" + "...",
     ),
     "writes an empty line": ("send('')", "wrote a line that is not JSON: ''"),
-    "writes NaN": ("send('{\"id\": %d, \"result\": NaN}' % id)", "wrote a line that is not JSON: '{\"id\": "),
+    "writes NaN": ('send(\'{"id": %d, "result": NaN}\' % id)', 'wrote a line that is not JSON: \'{"id": '),
     "writes a list": ("send([])", "wrote a line that is not a JSON object: []"),
     "answers another request": (
         "send({'id': id + 1, 'result': {}})",
@@ -157,7 +157,11 @@ def test_a_failing_adapter_is_told_in_a_line(adapter: Adapter, case: str) -> Non
         ("sys.exit(7)", "initialize", "exited with status 7 before answering initialize"),
         ("sys.exit(7)", "UpdateMission", "exited with status 7 before answering UpdateMission"),
         ("send('hello')", "reset", "wrote a line that is not JSON: 'hello'"),
-        ("send({'id': id, 'result': {}}); continue", "initialize", "answered initialize without an implementation name"),
+        (
+            "send({'id': id, 'result': {}}); continue",
+            "initialize",
+            "answered initialize without an implementation name",
+        ),
         (
             "send({'id': id, 'result': {'implementation': {'name': 'x'}, 'drives': 'all'}}); continue",
             "initialize",
@@ -168,7 +172,11 @@ def test_a_failing_adapter_is_told_in_a_line(adapter: Adapter, case: str) -> Non
             "reset",
             "answered reset with INTERNAL",
         ),
-        ("send({'id': id, 'result': {}}); continue", "drive", "answered drive with {}, not with happened true or false"),
+        (
+            "send({'id': id, 'result': {}}); continue",
+            "drive",
+            "answered drive with {}, not with happened true or false",
+        ),
         ("time.sleep(60)", "settle", "did not answer settle within 1 s"),
     ],
 )
@@ -210,7 +218,7 @@ def test_a_child_that_never_reads_is_given_up(adapter: Adapter) -> None:
 
 def test_a_child_that_floods_is_given_up(adapter: Adapter, monkeypatch: pytest.MonkeyPatch) -> None:
     """Notifications without end, and a line without end, are a failure long before the memory is full."""
-    flood = "sys.stdout.write('{\"method\":\"message\",\"params\":{\"stream\":1,\"message\":{}}}\\n' * 1000)"
+    flood = 'sys.stdout.write(\'{"method":"message","params":{"stream":1,"message":{}}}\\n\' * 1000)'
     endless = "sys.stdout.write('x' * 100000)"
     monkeypatch.setattr(stdio, "MOST_NOTIFICATIONS", 20_000)
     monkeypatch.setattr(stdio, "LONGEST_LINE", 2_000_000)

@@ -313,14 +313,23 @@ def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
     wrapped = []
     for mission in missions:
         feedback = mission.get("missionFeedback") if isinstance(mission, dict) else None
-        naked = {
-            name: {"status": value}
-            for name, value in (feedback or {}).items()
-            if isinstance(feedback, dict) and isinstance(value, str | int) and name in ("serviFeedback", "cartiFeedback")
-        } if isinstance(feedback, dict) else {}
+        naked = (
+            {
+                name: {"status": value}
+                for name, value in (feedback or {}).items()
+                if isinstance(feedback, dict)
+                and isinstance(value, str | int)
+                and name in ("serviFeedback", "cartiFeedback")
+            }
+            if isinstance(feedback, dict)
+            else {}
+        )
         bare.append(bool(naked))
         wrapped.append({**mission, "missionFeedback": {**feedback, **naked}} if naked else mission)
-    return {"missionStates": {**states, "missions": wrapped}, **({"metadata": rest["metadata"]} if "metadata" in rest else {})}
+    return {
+        "missionStates": {**states, "missions": wrapped},
+        **({"metadata": rest["metadata"]} if "metadata" in rest else {}),
+    }
 
 
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)

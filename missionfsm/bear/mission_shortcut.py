@@ -197,9 +197,7 @@ def forget_ended(robot: Robot) -> Robot:
     return Robot(robot.world, done, robot.active, robot.pending, robot.halted, robot.fresh, robot.fault)
 
 
-def _edits(
-    robot: Situation, calls: Iterable[Call], happenings: Iterable[Happening], assumed: int
-) -> Iterator[Edit]:
+def _edits(robot: Situation, calls: Iterable[Call], happenings: Iterable[Happening], assumed: int) -> Iterator[Edit]:
     for call in calls:
         if call.target is not None and not _possible(robot, call.target):
             continue

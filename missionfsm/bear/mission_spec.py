@@ -25,7 +25,7 @@ from missionfsm.bear.mission import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, failing, happens, outcomes
+from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, failing, happens, outcomes, target
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_rules import OPERATIONS
@@ -60,7 +60,7 @@ def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules:
         return Step(robot, assumes=assumes, rules=rules)
     names, _ = renumber(edit, robot)
     shown = listing(after)
-    emits = () if shown == listing(robot) else (Emission(TOPIC, shown, names),)
+    emits = () if shown.looks_like(listing(robot)) else (Emission(TOPIC, shown, names),)
     return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
 
 
@@ -261,6 +261,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         possibilities=POSSIBILITIES,
         situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
         shape=_shape,
+        place=target,
         forget_ended=forget_ended,
     shortcut=Shortcut,
         rebuilt=specification,

@@ -60,13 +60,18 @@ TOPIC = "mission status"
 class Listing:
     """What a status message shows: the listed missions in order, which of them is active, and on what robot.
 
-    `fresh`: no mission was ever assigned.
+    `fresh`: no mission was ever assigned. `held`: the first mission waits since it cannot start, which nobody sees.
     """
 
     missions: tuple[Mission, ...]
     active: int | None
     family: Family
     fresh: bool = False
+    held: bool = False
+
+    def looks_like(self, other: Listing) -> bool:
+        """Whether a subscriber could not tell it from the other."""
+        return (self.missions, self.active, self.fresh) == (other.missions, other.active, other.fresh)
 
 
 def listing(robot: Robot) -> Listing:
@@ -76,6 +81,7 @@ def listing(robot: Robot) -> Listing:
         len(robot.done) if robot.active else None,
         robot.world.family,
         robot.fresh,
+        not robot.done and robot.active is None and bool(robot.pending) and (robot.halted or robot.world.blocked),
     )
 
 
@@ -218,7 +224,7 @@ def _listed(view: Listing, content: Seen) -> Assumed:
 
 def _first_start(view: Listing) -> Assumed:
     """AM-63: a first mission that is seen waiting did not run at once."""
-    waiting = view.active is None and view.missions
+    waiting = view.active is None and view.missions and not view.held
     return (AM_63["b"],) if waiting and all(one.state is State.STATE_DEFAULT for one in view.missions) else ()
 
 

@@ -249,7 +249,7 @@ _SELECTION = (
 def _subscription(endpoint: Endpoint) -> Operation:
     first = promise(
         "the-latest-state-comes-first",
-        "Upon subscription the latest known state of every selected robot is sent at once.",
+        "A new stream begins with what is known last of every selected robot.",
         cite=STATUS[endpoint.value,],
     )
     return Operation.of(

@@ -40,6 +40,7 @@ from missionfsm.isaac.server_state import (
     Status,
     assumed,
     emissions,
+    merged,
     split,
     topic,
 )
@@ -206,7 +207,7 @@ def _line(server: Server, heard: Heard, refs: tuple[int | None, ...]) -> tuple[S
         return ()
     named = _meant(server, refs[1]) if heard.named else None
     header = _meant(server, refs[-1]) if heard.header else None
-    moves = dict.fromkeys(hears(Move(server), server.links[position], heard, named, header))
+    moves = merged(hears(Move(server), server.links[position], heard, named, header))
     return tuple(_step(server, move) for move in moves)
 
 
@@ -218,16 +219,16 @@ def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
-    return tuple(_step(server, move) for move in drops(Move(server), server.links[position]))
+    return tuple(_step(server, move) for move in merged(drops(Move(server), server.links[position])))
 
 
 @functools.lru_cache(maxsize=20_000)
 def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for move in passes(server, event.time))
+    return tuple(_step(server, move) for move in merged(passes(server, event.time)))
 
 
 def _urgent(server: Server) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server))))
+    return tuple(_step(server, move) for move in merged(urgent(Move(server))))
 
 
 def _spontaneous(server: Server) -> tuple[Step, ...]:
@@ -358,15 +359,14 @@ def _robot_shape(server: Server, robot: str | None) -> object:
 
 
 def _idle_shape(server: Server) -> object:
-    """The same for what has no effect: how much is there."""
-    statuses = tuple(sorted({one.status.value for one in server.missions}))
-    return statuses, min(2, len(server.links)), any(one.serves for one in server.links)
+    """The same for what has no effect: whether something is under way, and whether a robot is there."""
+    return any(one.status in UNDER_WAY for one in server.missions), any(one.serves for one in server.links)
 
 
 def _size(server: Server) -> int:
-    """Four missions that have not ended, or four connections, count as two missions elsewhere."""
+    """How many missions have not ended; or connections, or half of all missions, if that is more."""
     open_ones = sum(one.status not in ENDED for one in server.missions)
-    return max((open_ones + 1) // 2, (len(server.missions) + 3) // 4, (len(server.links) + 1) // 2)
+    return max(open_ones, (len(server.missions) + 1) // 2, len(server.links))
 
 
 def describe(value: object) -> str:

@@ -9,7 +9,8 @@ nothing says when (AI-31 a).
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from attrs import evolve, frozen
@@ -211,13 +212,15 @@ class Move:
 
     def to(self, state: Server, *rules: str) -> Move:
         """The same with another state."""
-        return evolve(self, state=state, rules=(*self.rules, *rules))
+        return Move(state, self.sent, (*self.rules, *rules), self.at)
 
     def mission(self, index: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a mission
         """The same with a mission changed."""
-        missions = self.state.missions
-        changed = evolve(missions[index], **changes)
-        return evolve(self, state=evolve(self.state, missions=(*missions[:index], changed, *missions[index + 1 :])))
+        server = self.state
+        missions = list(server.missions)
+        missions[index] = evolve(missions[index], **changes)
+        after = Server(server.name_channel, tuple(missions), server.links, server.left)
+        return Move(after, self.sent, self.rules, self.at)
 
     def link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
         """The same with a connection changed."""
@@ -242,7 +245,9 @@ def split(move: Move, question: Ambiguity, letters: str) -> tuple[Move | None, M
 def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
     left = dict(move.state.left)
     left[question.id] = letters
-    return evolve(move, state=evolve(move.state, left=tuple(sorted(left.items()))))
+    server = move.state
+    after = Server(server.name_channel, server.missions, server.links, tuple(sorted(left.items())))
+    return Move(after, move.sent, move.rules, move.at)
 
 
 def ways(move: Move, question: Ambiguity, *groups: str) -> Iterator[tuple[str, Move]]:
@@ -251,6 +256,52 @@ def ways(move: Move, question: Ambiguity, *groups: str) -> Iterator[tuple[str, M
         yes, _ = split(move, question, letters)
         if yes is not None:
             yield letters, yes
+
+
+def merged(moves: Iterable[Move]) -> tuple[Move, ...]:
+    """The same moves, with those that come to the same under several readings of one question made one."""
+    same: dict[object, list[Move]] = {}
+    for move in moves:
+        key = (move.state.missions, move.state.links, move.sent, move.at)
+        same.setdefault(key, []).append(move)
+    found: list[Move] = []
+    for group in same.values():
+        while len(group) > 1:
+            pair = next(
+                (
+                    (one, other, left)
+                    for one, other in itertools.combinations(group, 2)
+                    if (left := _union(one.state.left, other.state.left)) is not None
+                ),
+                None,
+            )
+            if pair is None:
+                break
+            one, other, left = pair
+            both = tuple(dict.fromkeys((*one.rules, *other.rules)))
+            joined = evolve(one, state=evolve(one.state, left=left), rules=both)
+            group = [joined if here is one else here for here in group if here is not other]
+        found += group
+    return tuple(found)
+
+
+def _union(one: Left, other: Left) -> Left | None:
+    """What is left under either of two choices, if they differ in one question at most."""
+    if one == other:
+        return one
+    first, second = dict(one), dict(other)
+    differing = [name for name in {**first, **second} if first.get(name) != second.get(name)]
+    if len(differing) > 1:
+        return None
+    (name,) = differing
+    if name not in first or name not in second:
+        return one if name not in first else other
+    everything = "".join(_QUESTIONS[name].readings)
+    joined = "".join(letter for letter in everything if letter in first[name] or letter in second[name])
+    rest = {**first, name: joined}
+    if joined == everything:
+        del rest[name]
+    return tuple(sorted(rest.items()))
 
 
 _QUESTIONS = {one.id: one for one in AMBIGUITIES}

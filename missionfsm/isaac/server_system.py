@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from missionfsm.isaac.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
 from missionfsm.isaac.robot_system import NAMING
 from missionfsm.isaac.server_json import CODEC
+from missionfsm.isaac.server_scripts import SCRIPTS
 from missionfsm.isaac.server_spec import SPEC
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -46,8 +47,9 @@ def _odd() -> Iterator[Prompt]:
     yield _submit(robot=7)
     yield _submit(robot=robot, upstream=[-1])
     yield _submit(robot=robot, upstream=[999])
-    # Handles usually count on, so one of these is the mission's own.
-    yield from (_submit(robot=robot, upstream=[handle]) for handle in (1, 2, 3, 4))
+    # Handles usually count on, so this is the mission's own.
+    yield _submit(robot=robot, upstream=[upcoming("mission")])
+    yield _submit(robot=robot, upstream=[_MISSION, upcoming("mission")])
     yield _submit(robot=robot, upstream=[0.5])
     yield _submit(robot=robot, upstream=[True])
     yield _submit(robot=robot, upstream="1")
@@ -134,6 +136,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         plain_drives=({"event": "connect"}, {"event": "advance", "seconds": 3}, {"event": "advance", "seconds": 6}),
         worlds=({}, {"nameChannel": "who"}),
         look=Prompt("statuses", {}),
+        scripts=SCRIPTS,
     )
 
 

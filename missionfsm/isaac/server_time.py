@@ -7,6 +7,7 @@ one order but for what falls on the same moment.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 
@@ -38,7 +39,7 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
         if here in seen:
             continue
         seen.add(here)
-        follows = urgent(here.move)
+        follows = _follows(here.move)
         if follows:
             todo += [evolve(here, move=_tidy(one)) for one in reversed(follows)]
             continue
@@ -50,6 +51,17 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
             after = _shifted(here.move, time)
             found.setdefault((after.state, after.sent), after)
     return tuple(sorted(found.values(), key=lambda one: -_done(state, one.state)))
+
+
+@functools.lru_cache(maxsize=50_000)
+def _urgent(state: Server, at: tuple[int, int]) -> tuple[Move, ...]:
+    return urgent(Move(state, at=at))
+
+
+def _follows(move: Move) -> tuple[Move, ...]:
+    return tuple(
+        Move(one.state, move.sent + one.sent, move.rules + one.rules, one.at) for one in _urgent(move.state, move.at)
+    )
 
 
 def _done(before: Server, after: Server) -> int:

@@ -26,6 +26,11 @@ def new(kind: str) -> JSON:
     return {"$new": kind}
 
 
+def upcoming(kind: str) -> JSON:
+    """Stands in params for the name that an implementation that counts would give next."""
+    return {"$next": kind}
+
+
 def as_text(value: JSON) -> JSON:
     """Stands in params for the JSON text of a value that may hold such stand-ins."""
     return {"$text": value}
@@ -71,6 +76,18 @@ class Prompt:
 
 
 @frozen
+class Line:
+    """One thing that is done in a script.
+
+    `picks` says for each slot of the params which name goes there: the how-many-th of its kind that came up, from 0.
+    """
+
+    method: str
+    params: JSON = None
+    picks: tuple[tuple[int, int], ...] = ()
+
+
+@frozen
 class Alphabet:
     """What is worth trying.
 
@@ -81,6 +98,7 @@ class Alphabet:
         plain_drives: those among them that bring the system on.
         worlds: the worlds to try it in, as JSON, the usual one first.
         wrong_names: names that nothing has.
+        scripts: conversations worth having in the usual world, whole.
         look: a call that shows where things stand and changes nothing; systematic conversations ask it again and again.
     """
 
@@ -91,3 +109,4 @@ class Alphabet:
     worlds: tuple[JSON, ...]
     wrong_names: tuple[str, ...] = ()
     look: Prompt | None = None
+    scripts: tuple[tuple[Line, ...], ...] = ()

@@ -240,6 +240,7 @@ class Spec:
         size: state to how large it is, against `Bounds.missions`; None where that is the number of its names.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
+        place: (state, position of a name) to where it stands, as far as a search tells places apart.
         shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: what the functions above give,
             only faster.
     """
@@ -269,6 +270,7 @@ class Spec:
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state
+    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
     idle_shape: Callable[[State], Hashable] | None = None
     size: Callable[[State], int] | None = None
     forget_ended: Callable[[State], State] | None = None

@@ -85,7 +85,7 @@ def conform(  # noqa: PLR0913 - every one has a default
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    if run.tour(random.Random(seed), tours, steps):
+    if run.play() and run.tour(random.Random(seed), tours, steps):
         try:
             with with_reporter(lambda _: None), contextlib.suppress(_Found):
                 run_state_machine_as_test(machine, settings=options)
@@ -96,7 +96,7 @@ def conform(  # noqa: PLR0913 - every one has a default
 
 def _verdict(run: Run, seed: int) -> Verdict:
     outcome, because, violation, followed = Outcome.CONFORMS, "", None, run.readings
-    exercised = run.automaton.exercised
+    exercised = run.exercised()
     if not _does_anything(run):
         outcome, because = Outcome.INCONCLUSIVE, "it refuses every call"
     elif run.found is not None and run.found.judge.exhausted:

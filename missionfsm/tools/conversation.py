@@ -121,7 +121,7 @@ class Conversation:
         params = action.params if action.name is None else filled(action.params, name)
         if is_template(params):
             picked = {slot: self.given[given] for slot, given in action.picks if given in self.given}
-            params = fill(params, picked, self.system.naming, action.serial)
+            params = fill(params, picked, self.system.naming, action.serial, self.given.values())
         self._acting, self._learnt = action.serial, 0
         if action.method == "settle":
             self._settle()

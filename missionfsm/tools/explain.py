@@ -174,19 +174,28 @@ def _against_message(
                     else:
                         notes.append("the content is right, the names in it or the readings that it follows are not")
                 if not channel.owed:
+                    rules += _following(spec)
                     notes.append("the stream has nothing to show: nothing changed since its last message")
             if len(options) > MOST:
                 break
         if not found:
+            rules += _following(spec)
             notes.append(f"{name_words(event.channel)} is not open")
     return options, rules, tuple(notes)
+
+
+FOLLOWS = "updates-follow-the-state"
+"""What every system calls its promise that messages come when something changes, and not otherwise."""
+
+
+def _following(spec: Spec) -> list[str]:
+    return [rule.id for rule in spec.rules if rule.id.endswith(FOLLOWS)]
 
 
 def _still_due(belief: Belief, oracle: Oracle) -> tuple[list[_Option], list[str], tuple[str, ...]]:
     spec = belief.automaton.spec
     options: list[_Option] = []
     notes: list[str] = []
-    rules: list[str] = []
     for explanation in belief.node.explanations:
         for here in _reachable(oracle, explanation):
             for channel in here.channels:
@@ -198,5 +207,4 @@ def _still_due(belief: Belief, oracle: Oracle) -> tuple[list[_Option], list[str]
                     notes.append(f"{where} did not show {spec.describe(due[-1].view)}")
             if len(options) > MOST:
                 break
-    rules += [rule.id for rule in spec.rules if rule.id.endswith("updates-follow-the-state")]
-    return options, rules, tuple(notes[:3])
+    return options, _following(spec), tuple(notes[:3])

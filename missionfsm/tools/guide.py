@@ -90,8 +90,10 @@ class Guide:
         self.walked: Counter[Edge] = Counter()
         self.tried: Counter[tuple[Hashable, str]] = Counter()
         self.taken: Counter[str] = Counter()
+        self.said: Counter[tuple[Hashable, ...]] = Counter()
         self.visited: Counter[Hashable] = Counter()
         self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
+        self._growth: dict[Any, int] = {}
 
     def _prepared(self, alphabet: Alphabet) -> dict[str, list[_Call]]:
         """The calls of each operation; those that are the same request in other words only once."""
@@ -111,11 +113,14 @@ class Guide:
                 found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
         return found
 
-    def proposals(self, conversation: Conversation, world: int, only: str | None = None) -> list[Proposal]:
+    def proposals(
+        self, conversation: Conversation, world: int, only: str | None = None, *, rare: bool = False
+    ) -> list[Proposal]:
         """What could be done now, least walked first: of the operations that were tried least, some edges each.
 
         Args:
             only: an operation or drive to look at alone.
+            rare: look at all of them, and put first what the rules have said least often in the whole run.
         """
         belief = conversation.judge.belief
         here = belief.node.explanations[0]
@@ -140,9 +145,13 @@ class Guide:
                 if edge:
                     found.append(Proposal("drive", drive, None, *edge))
             found += self._filled(conversation, here, shape, self._templates[world].get(label, ()))
-            if sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST:
+            enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
+            if enough and not rare:
                 break
-        found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
+        if rare:
+            found.sort(key=lambda one: (self.said[one.edge[1:]], self.walked[one.edge]))
+        else:
+            found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
         return found
 
     def _filled(
@@ -167,6 +176,7 @@ class Guide:
         """A guide to the same system that has not been anywhere yet."""
         other = copy.copy(self)
         other.walked, other.tried, other.taken, other.visited = Counter(), Counter(), Counter(), Counter()
+        other.said = Counter()
         return other
 
     def note(self, proposal: Proposal) -> None:
@@ -175,6 +185,7 @@ class Guide:
         self.tried[proposal.edge[0], label] += 1
         self.taken[label] += 1
         self.walked[proposal.edge] += 1
+        self.said[proposal.edge[1:]] += 1
         self.visited[proposal.leads_to] += 1
 
     def _edge(
@@ -187,7 +198,8 @@ class Guide:
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        key = (here.state if exact else shape, request, refs)
+        size = self.system.spec.size or self.system.spec.names
+        key = (here.state if exact else shape, request, self._places(here, refs))
         if key not in self._edges:
             oracle = conversation.judge.automaton.oracle
             steps = [
@@ -199,11 +211,15 @@ class Guide:
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)
             leads_to = self.system.spec.shape(after)
-            size = self.system.spec.size or self.system.spec.names
-            within = size(after) <= max(self.bounds.missions, size(here.state))
             where = self._where(here, shape, steps)
-            self._edges[key] = ((where, operation, says), leads_to) if steps and within else None
-        return self._edges[key]
+            self._edges[key] = ((where, operation, says), leads_to) if steps else None
+            self._growth[key] = size(after) - size(here.state)
+        grows = self._growth[key]
+        return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.missions else None
+
+    def _places(self, here: Explanation, refs: tuple[int | None, ...]) -> tuple[Hashable, ...]:
+        """Where the named things stand: a shape does not tell their positions apart."""
+        return tuple(self.system.spec.place(here.state, ref) for ref in refs)
 
     def _drive_edge(
         self,
@@ -214,7 +230,7 @@ class Guide:
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        key = (here.state if exact else shape, "drive", event, refs)
+        key = (here.state if exact else shape, "drive", event, self._places(here, refs))
         if key not in self._edges:
             steps = [
                 step
@@ -222,7 +238,7 @@ class Guide:
                 if meet(here.assumed, step.assumes)
             ]
             says: Hashable = event
-            if exact:
+            if exact or self.system.spec.idle_shape is not None:
                 says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
             where = self._where(here, shape, steps)
             self._edges[key] = ((where, says), self.system.spec.shape(steps[0].after)) if steps else None

@@ -1,13 +1,13 @@
 """Stand-ins in the params of prompts and drives: where names go that a tester picks or makes up, and how they get there.
 
-See `pick`, `new` and `as_text` in `missionfsm.kernel.alphabet`.
+See `pick`, `new`, `upcoming` and `as_text` in `missionfsm.kernel.alphabet`.
 """
 
 from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from missionfsm.kernel.alphabet import Naming
@@ -34,16 +34,19 @@ def _slots(params: JSON) -> Iterator[tuple[int, str]]:
 
 def is_template(params: JSON) -> bool:
     """Whether params hold any stand-in."""
-    return any(mark in repr(params) for mark in ("'$pick'", "'$new'", "'$text'"))
+    return any(mark in repr(params) for mark in ("'$pick'", "'$new'", "'$next'", "'$text'"))
 
 
-def fill(params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int) -> JSON:
+def fill(
+    params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int, known: Collection[Any] = ()
+) -> JSON:
     """Params with names in the place of all stand-ins.
 
     Args:
         picked: a name for each slot; one that is missing gets a name that is never anything's.
         naming: how names are written and made up.
         serial: what new names are made from.
+        known: the names that were given, for the one that would be next.
     """
     if isinstance(params, dict):
         if "$pick" in params:
@@ -51,10 +54,13 @@ def fill(params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int) -
             return naming.write(naming.make(params["$pick"], 0) if name is None else name)
         if "$new" in params:
             return naming.write(naming.make(params["$new"], serial))
+        if "$next" in params:
+            taken = [name[1] for name in known if kind_of(name) == params["$next"]]
+            return naming.write((params["$next"], max(taken, default=0) + 1))
         if "$text" in params:
-            return json.dumps(fill(params["$text"], picked, naming, serial), separators=(",", ":"))
-        return {key: fill(value, picked, naming, serial) for key, value in params.items()}
-    return [fill(value, picked, naming, serial) for value in params] if isinstance(params, list) else params
+            return json.dumps(fill(params["$text"], picked, naming, serial, known), separators=(",", ":"))
+        return {key: fill(value, picked, naming, serial, known) for key, value in params.items()}
+    return [fill(value, picked, naming, serial, known) for value in params] if isinstance(params, list) else params
 
 
 def kind_of(name: Any) -> str | None:  # noqa: ANN401 - a name

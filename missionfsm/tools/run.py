@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from attrs import define, field
 
@@ -11,13 +12,21 @@ from missionfsm.kernel.alphabet import Bounds, Prompt
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Subject
+from missionfsm.kernel.readings import meet
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks
 from missionfsm.tools.guide import Guide, Proposal
+from missionfsm.tools.picking import kind_of, slots
 from missionfsm.tools.shrink import shrink
 
 SETTLED = 0.6
 """How often a tour waits for everything to settle after a step."""
+
+WIDE = 48
+"""How many explanations of a conversation are so many that the next one assumes what is known."""
+
+RARE, RAREST = 0.4, 3
+"""How often a tour turns to what the rules have said least in the whole run, and among how many such things it draws."""
 
 FAVOURED = 0.5
 """How often a tour that has a favourite turns to it."""
@@ -32,6 +41,8 @@ class Run:
         readings: the readings that every conversation so far can be explained by.
         settled_by: ambiguity and letter to the number of the first conversation that ruled it out.
         contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
+        narrowed: where explanations became many, the automaton of what was found out so far; conversations walk it from
+            then on, and one that cannot be explained there is had again without.
     """
 
     system: System
@@ -49,6 +60,9 @@ class Run:
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     settled_by: dict[tuple[str, str], Conversation] = field(factory=dict)
     contradiction: str | None = None
+    narrowed: Automaton | None = None
+    _widest: int = 0
+    _before: dict[str, int] = field(factory=dict)
 
     def __attrs_post_init__(self) -> None:
         if self.guide is not None:
@@ -58,8 +72,34 @@ class Run:
 
     def start(self, world: JSON) -> Conversation:
         """Begin a new conversation in a world."""
-        self.last = Conversation(self.system, self.subject, self.about, world, self.automaton)
+        self._narrow()
+        automaton = self.narrowed or self.automaton
+        self.last = Conversation(self.system, self.subject, self.about, world, automaton)
         return self.last
+
+    def _narrow(self) -> None:
+        """If the last conversation had many explanations, assume from now on what the run has found out."""
+        if self._widest <= WIDE:
+            return
+        self._widest = 0
+        assumed = meet(
+            self.automaton.assumed,
+            (one[self.readings[one.id]] for one in self.system.spec.ambiguities if self.readings.get(one.id)),
+        )
+        current = self.narrowed or self.automaton
+        if assumed and assumed != current.assumed:
+            if self.narrowed is not None:
+                self._before = self.exercised(besides=self.automaton)
+            self.narrowed = Automaton(self.system.spec, self.about.drives, assumed)
+
+    def exercised(self, besides: Automaton | None = None) -> dict[str, int]:
+        """How often each rule was exercised, in all automata that were walked."""
+        times = dict(self._before)
+        for automaton in (self.automaton, self.narrowed):
+            if automaton is not None and automaton is not besides:
+                for rule, count in automaton.exercised.items():
+                    times[rule] = times.get(rule, 0) + count
+        return times
 
     def act(
         self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()
@@ -68,7 +108,18 @@ class Run:
         last = self.last
         assert last is not None, "a conversation has begun"  # noqa: S101 - whoever acts has begun one
         if last.perform(Action(len(last.actions) + 1, method, params, name, picks)):
+            self._widest = max(self._widest, len(last.judge.belief.node.explanations))
             return True
+        if self.narrowed is not None and not last.judge.exhausted:
+            again = self.attempt(last.world, tuple(last.actions))
+            if again.right:
+                # Explained by itself, but not together with those before: a contradiction, if one question shows it.
+                self.last = again
+                if self.gather():
+                    self.found = last
+                return False
+            if not again.judge.exhausted:
+                last = self.last = again
         self.found = last
         self.gather()
         return False
@@ -101,6 +152,28 @@ class Run:
                 self.contradiction = name
                 return False
         return True
+
+    def play(self) -> bool:
+        """Have the conversations that the system's alphabet has written down; whether all could be explained."""
+        world = self.guide.worlds[0]
+        for script in self.guide.alphabets[0].scripts:
+            self.start(world)
+            for line in script:
+                if line.method == "drive" and line.params["event"] not in self.about.drives:
+                    break
+                picks = tuple(self._found(slots(line.params), line.picks))
+                if not self.act(line.method, line.params, None, picks):
+                    return False
+            if not self.act("settle") or not self.gather():
+                return False
+        return True
+
+    def _found(self, wanted: dict[int, str], picks: tuple[tuple[int, int], ...]) -> Iterator[tuple[int, Given]]:
+        assert self.last is not None, "a conversation has begun"  # noqa: S101 - play has begun one
+        for slot, position in picks:
+            known = [given for given, name in self.last.given.items() if kind_of(name) == wanted.get(slot)]
+            if position < len(known):
+                yield slot, known[position]
 
     def tour(self, draw: random.Random, conversations: int, steps: int, favour: str | None = None) -> bool:
         """Systematic conversations: every step walks the edge that was walked least, mostly with a stream watched.
@@ -136,6 +209,9 @@ class Run:
 
     def _next(self, draw: random.Random, world: int, favour: str | None) -> Proposal | None:
         assert self.last is not None, "a conversation has begun"  # noqa: S101 - tour has begun one
+        if draw.random() < RARE:
+            proposals = self.guide.proposals(self.last, world, rare=True)[:RAREST]
+            return proposals[draw.randrange(len(proposals))] if proposals else None
         wanted = favour if favour and draw.random() < FAVOURED else None
         proposals = self.guide.proposals(self.last, world, wanted) or self.guide.proposals(self.last, world)
         if not proposals:
@@ -148,9 +224,11 @@ class Run:
             equal = [one for one in equal if self.guide.visited[one.leads_to] == rare]
         return equal[draw.randrange(len(equal))]
 
-    def attempt(self, world: JSON, actions: tuple[Action, ...]) -> Conversation:
+    def attempt(
+        self, world: JSON, actions: tuple[Action, ...], automaton: Automaton | None = None
+    ) -> Conversation:
         """These actions in a new conversation, until it cannot be explained any more."""
-        conversation = Conversation(self.system, self.subject, self.about, world, self.automaton)
+        conversation = Conversation(self.system, self.subject, self.about, world, automaton or self.automaton)
         for action in actions:
             if not conversation.perform(action):
                 break
@@ -159,7 +237,8 @@ class Run:
     def shorten(self) -> None:
         """Make what was found as short as can be, asking the implementation again each time."""
         if self.found is not None and not self.found.judge.exhausted:
-            self.found = shrink(self.found, self.attempt, self._simpler)
+            same = functools.partial(self.attempt, automaton=self.found.judge.automaton)
+            self.found = shrink(self.found, same, self._simpler, self.guide.worlds[0])
 
     def _simpler(self, world: JSON, method: str) -> tuple[Prompt, ...]:
         return tuple(one for one in self.system.alphabet(world, self.bounds).plain if one.method == method)

@@ -16,24 +16,28 @@ Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 MOST_ATTEMPTS = 2_000
 
 
-def shrink(found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]]) -> Conversation:
+def shrink(
+    found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]], usual: JSON
+) -> Conversation:
     """A conversation that cannot be explained either, from which nothing can be left out.
 
     Args:
         found: one that cannot be explained.
         attempt: has one anew.
         simpler: (world, method) to prompts that may stand in for a call of that method.
+        usual: the world to have it in, if that will do.
     """
-    return _Shrinker(found, attempt, simpler).run()
+    return _Shrinker(found, attempt, simpler, usual).run()
 
 
 class _Shrinker:
     def __init__(
-        self, found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]]
+        self, found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]], usual: JSON
     ) -> None:
         self.best = found
         self.attempt = attempt
         self.simpler = simpler
+        self.usual = usual
         self.left = MOST_ATTEMPTS
 
     def run(self) -> Conversation:
@@ -71,7 +75,7 @@ class _Shrinker:
 
     def _say_simply(self) -> bool:
         """Put simpler things in place of what was done; whether that changed anything."""
-        changed = self.best.world != {} and self._try({}, self.actions)
+        changed = self.best.world != self.usual and self._try(self.usual, self.actions)
         for at in range(len(self.actions)):
             for action in self._simpler_actions(self.actions[at]):
                 actions = self.actions

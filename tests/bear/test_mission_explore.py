@@ -46,16 +46,18 @@ def test_the_steps_of_two_missions_are_counted() -> None:
     """Under the default readings two missions of one goal make so many states, and so many answers of each kind."""
     found = explore(MISSION, Bounds(2, 1, 2), assumed=DEFAULT)
     assert (found.states, found.transitions) == (350, 8_942)
-    assert found.by_operation == {"AppendMission": {"FAILED_PRECONDITION": 6, "OK": 1044},
- "AppendMissionBatch": {"FAILED_PRECONDITION": 2, "OK": 348},
- "ChargeRobot": {"FAILED_PRECONDITION": 192, "OK": 158},
- "ClearMissionStatus": {"FAILED_PRECONDITION": 192, "OK": 158},
- "CreateMission": {"FAILED_PRECONDITION": 576, "OK": 474},
- "CreateMissionBatch": {"FAILED_PRECONDITION": 192, "OK": 158},
- "CreateMissionWorkflow": {"FAILED_PRECONDITION": 192, "OK": 158},
- "SkipGoal": {"FAILED_PRECONDITION": 302, "OK": 48},
- "SubscribeMissionStatus": {"OK": 350},
- "UpdateMission": {"FAILED_PRECONDITION": 1912, "INVALID_ARGUMENT": 1392, "NOT_FOUND": 400, "OK": 384}}
+    assert found.by_operation == {
+        "AppendMission": {"FAILED_PRECONDITION": 6, "OK": 1044},
+        "AppendMissionBatch": {"FAILED_PRECONDITION": 2, "OK": 348},
+        "ChargeRobot": {"FAILED_PRECONDITION": 192, "OK": 158},
+        "ClearMissionStatus": {"FAILED_PRECONDITION": 192, "OK": 158},
+        "CreateMission": {"FAILED_PRECONDITION": 576, "OK": 474},
+        "CreateMissionBatch": {"FAILED_PRECONDITION": 192, "OK": 158},
+        "CreateMissionWorkflow": {"FAILED_PRECONDITION": 192, "OK": 158},
+        "SkipGoal": {"FAILED_PRECONDITION": 302, "OK": 48},
+        "SubscribeMissionStatus": {"OK": 350},
+        "UpdateMission": {"FAILED_PRECONDITION": 1912, "INVALID_ARGUMENT": 1392, "NOT_FOUND": 400, "OK": 384},
+    }
 
 
 @READINGS

@@ -26,7 +26,7 @@ def status_line(mission: Uuid, status: WireStatus) -> bytes:
 
 def run_fleet(seed: int) -> tuple[MissionServerCore, list[Uuid]]:
     """1,000 robots do 10,000 missions with random upstreams, over encoded lines; every send in order."""
-    numbers = random.Random(seed)  # noqa: S311 - no secret
+    numbers = random.Random(seed)
     core = MissionServerCore()
     sent: list[Uuid] = []
     robots: deque[tuple[int, Uuid]] = deque()
@@ -64,12 +64,12 @@ def run_fleet(seed: int) -> tuple[MissionServerCore, list[Uuid]]:
     return core, sent
 
 
-def test_bench_isaac_a_fleet(benchmark: Any) -> None:  # noqa: ANN401 - the fixture has no type
+def test_bench_isaac_a_fleet(benchmark: Any) -> None:
     """1,000 robots, 10,000 missions with random dependencies: none lost, none twice."""
     core, sent = benchmark.pedantic(run_fleet, args=(1,), rounds=3)
     assert len(sent) == len(set(sent)) == MISSIONS
     assert {status for _, status in core.statuses()} == {Status.SUCCESS}
-    print(f"\n{MISSIONS / benchmark.stats.stats.mean:,.0f} missions/s, submitted, sent, acknowledged and completed")  # noqa: T201 - the result
+    print(f"\n{MISSIONS / benchmark.stats.stats.mean:,.0f} missions/s, submitted, sent, acknowledged and completed")
 
 
 def waiting_server(waiting: int) -> MissionServerCore:
@@ -86,7 +86,7 @@ def waiting_server(waiting: int) -> MissionServerCore:
 
 
 @pytest.mark.parametrize("waiting", [1_000, 10_000, 100_000])
-def test_bench_isaac_one_event(benchmark: Any, waiting: int) -> None:  # noqa: ANN401 - the fixture has no type
+def test_bench_isaac_one_event(benchmark: Any, waiting: int) -> None:
     """One mission ends and the next is sent, with 1,000 to 100,000 missions waiting."""
     core = waiting_server(waiting)
     done = iter(range(0, waiting, 2))
@@ -98,7 +98,7 @@ def test_bench_isaac_one_event(benchmark: Any, waiting: int) -> None:  # noqa: A
     benchmark.pedantic(event, rounds=min(400, waiting // 2 - 1))
 
 
-def test_bench_isaac_the_cost_of_an_event_does_not_grow(benchmark: Any) -> None:  # noqa: ANN401 - as above
+def test_bench_isaac_the_cost_of_an_event_does_not_grow(benchmark: Any) -> None:
     """The median event with 100,000 missions waiting costs no more than thrice the one with 1,000."""
 
     def medians() -> dict[int, float]:
@@ -116,5 +116,5 @@ def test_bench_isaac_the_cost_of_an_event_does_not_grow(benchmark: Any) -> None:
         return result
 
     found = benchmark.pedantic(medians, rounds=1)
-    print("\n" + ", ".join(f"{waiting:,} waiting: {cost * 1e6:.1f} µs an event" for waiting, cost in found.items()))  # noqa: T201
+    print("\n" + ", ".join(f"{waiting:,} waiting: {cost * 1e6:.1f} µs an event" for waiting, cost in found.items()))
     assert found[100_000] < 3 * found[1_000]

@@ -1,0 +1,102 @@
+"""The oracle against a second implementation, in another language: it conforms, and every fault put into it is found."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from missionfsm.adapters.stdio import Child
+from missionfsm.systems import system
+from missionfsm.tools.conform import conform
+from missionfsm.tools.verdict import Verdict
+
+NODE = shutil.which("node")
+SUBJECT = Path(__file__).parent / "subjects" / "bear_mission.mjs"
+MISSION = system("bear.mission")
+
+pytestmark = [
+    pytest.mark.skipif(NODE is None, reason="the subject is written for Node.js, which is not installed"),
+    pytest.mark.slow,
+]
+
+# Faults of every operation, of the order of missions, of their goals, of what subscribers are told.
+BREAKS = (
+    "create-while-running",
+    "create-refused-when-finished",
+    "create-busy-invalid-argument",
+    "create-malformed-failed-precondition",
+    "create-empty-accepted",
+    "create-refused-but-listed",
+    "create-answers-other-id",
+    "mission-id-constant",
+    "batch-while-running",
+    "batch-empty-accepted",
+    "batch-keeps-valid-prefix",
+    "batch-reversed",
+    "batch-loses-last",
+    "workflow-empty-accepted",
+    "workflow-creates-nothing",
+    "append-to-empty-accepted",
+    "append-refused-while-running",
+    "append-twice",
+    "append-starts-at-once",
+    "append-preempts",
+    "charge-while-running",
+    "charge-not-listed",
+    "clear-while-running",
+    "clear-refused-when-finished",
+    "clear-omits-id",
+    "clear-removes-nothing",
+    "skip-on-idle-accepted",
+    "skip-refused-while-running",
+    "skip-ignored",
+    "update-unknown-command-pauses",
+    "update-unknown-id-accepted",
+    "update-queued-failed-precondition",
+    "queue-never-advances",
+    "pause-ignored",
+    "cancel-ignored",
+    "cancel-reported-succeeded",
+    "finish-reported-failed",
+    "failure-reported-succeeded",
+    "goals-end-after-first",
+    "goals-start-over",
+    "first-message-missing",
+    "updates-missing",
+    "update-one-behind",
+    "sequence-constant",
+    "sequence-decreasing",
+    "current-index-too-high",
+    "list-reversed",
+    "list-omits-queued",
+    "goals-reversed",
+    "goal-index-stuck",
+)
+LONGEST = 22
+"""Lines of the longest history that is needed to show one of them, the first line included."""
+
+
+def judge(*options: str, examples: int = 30) -> Verdict:
+    child = Child([str(NODE), str(SUBJECT), *options])
+    try:
+        return conform(MISSION, child, examples=examples, steps=30, seed=1)
+    finally:
+        child.close()
+
+
+def test_the_subject_conforms() -> None:
+    """A second implementation, written from the pages alone, conforms."""
+    verdict = judge()
+    assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("name", BREAKS)
+def test_a_fault_is_found(name: str) -> None:
+    """Each fault is found, with a short history that shows it and a rule that it breaks."""
+    verdict = judge("--break", name)
+    assert verdict.outcome.value == "violates", str(verdict)
+    assert verdict.violation is not None
+    assert verdict.violation.rules, str(verdict)
+    assert len(verdict.violation.history) <= LONGEST, str(verdict)

@@ -1,4 +1,4 @@
-"""The oracle against a second implementation, in another language: it conforms, and every fault put into it is found."""
+"""The oracle against a second implementation, in another language: it conforms; faults put into it are found."""
 
 from __future__ import annotations
 

@@ -323,7 +323,8 @@ plain = Labels.of(found, alphabet.plain, alphabet.plain_drives)
 everything = Labels.of(found, alphabet.prompts, alphabet.drives)
 start = found.spec.initial(found.codec.world(world))
 ledger = hashlib.sha256()
-for here in list(reachable(found.spec, start, plain, max(1, found.spec.names(start)), choose(found.spec.ambiguities)))[:20]:
+most = max(1, found.spec.names(start))
+for here in list(reachable(found.spec, start, plain, most, choose(found.spec.ambiguities)))[:20]:
     ledger.update(found.spec.describe(here).encode())
     for one in steps(found.spec, here, everything):
         step = one.step

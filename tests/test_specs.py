@@ -190,7 +190,6 @@ MADE = (CREATE, "A", "r0")
 """One mission was created, and a subscriber has seen it run."""
 
 
-
 def history(*steps: Any) -> list[Any]:
     """A history of calls (each followed by its ids or its status), messages and other lines."""
     lines: list[Any] = [

@@ -107,6 +107,10 @@ FAILURES = {
         "send({'id': id, 'error': {'code': 9, 'data': {'status': 'INTERNAL'}}})",
         "answered SkipGoal with error 9, status 'INTERNAL': not a gRPC error",
     ),
+    "answers with an error that is a list": (
+        "send({'id': id, 'error': {'code': 9, 'data': {'status': []}}})",
+        "answered SkipGoal with error 9, status []: not a gRPC error",
+    ),
     "answers with an error without a code": (
         "send({'id': id, 'error': {'message': 'no'}})",
         "answered SkipGoal with an error without a code: {'message': 'no'}",

@@ -186,7 +186,13 @@ class ServerSubject(_InProcess):
         entry = read.missions[0]
         positions = tuple(dict.fromkeys(handle - 1 for handle in upstream))
         return MissionEntry(
-            entry.robot, entry.channel, entry.status_channel, entry.config, entry.start_timeout, entry.timeout, positions
+            entry.robot,
+            entry.channel,
+            entry.status_channel,
+            entry.config,
+            entry.start_timeout,
+            entry.timeout,
+            positions,
         )
 
     def drive(self, event: str, params: JSON) -> Exchange:

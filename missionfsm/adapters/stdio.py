@@ -6,6 +6,7 @@ says what it was: it cannot be started, it exits, it hangs, it writes rubbish, i
 
 from __future__ import annotations
 
+import contextlib
 import os
 import selectors
 import subprocess
@@ -116,10 +117,8 @@ class Child:
         """End its input, give it a moment, then end it."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
-                try:
+                with contextlib.suppress(OSError):
                     pipe.close()
-                except OSError:
-                    pass
         try:
             self._process.wait(0.5)
         except subprocess.TimeoutExpired:
@@ -140,7 +139,9 @@ class Child:
             if "id" not in message:
                 before.append(self._notification(message))
                 if len(before) > MOST_NOTIFICATIONS:
-                    raise self._failed(f"flooded: more than {MOST_NOTIFICATIONS} notifications before answering {method}")
+                    raise self._failed(
+                        f"flooded: more than {MOST_NOTIFICATIONS} notifications before answering {method}"
+                    )
                 continue
             return self._answer(message, tuple(before), method)
 
@@ -162,7 +163,7 @@ class Child:
         status = data.get("status") if isinstance(data, dict) else None
         if status is None:
             status = next((name for name, number in STATUS_NUMBERS.items() if number == code), None)
-        if status not in STATUS_NUMBERS or status == "OK" or STATUS_NUMBERS[status] != code:
+        if not isinstance(status, str) or status == "OK" or STATUS_NUMBERS.get(status) != code:
             raise self._failed(f"answered {method} with error {code}, status {brief(status)}: not a gRPC error")
         said = error.get("message", "")
         return Exchange(None, {"status": status, "message": said if isinstance(said, str) else ""}, before, after)

@@ -282,7 +282,5 @@ def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]
 
 def free_goal(goals: tuple[Goal, ...], world: World, after: int = -1) -> int:
     """The lowest index above `after` of a goal that no other robot holds or claims; `NOT_CHOSEN` if there is none."""
-    free = (
-        index for index, goal in enumerate(goals) if index > after and goal.destination_id not in world.occupied
-    )
+    free = (index for index, goal in enumerate(goals) if index > after and goal.destination_id not in world.occupied)
     return next(free, NOT_CHOSEN)

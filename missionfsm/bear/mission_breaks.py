@@ -1,4 +1,4 @@
-"""How an implementation of the mission API may break its promises: one wrong thing at a time, for the oracle's teeth."""
+"""How an implementation of the mission API may break its promises: one wrong thing at a time, to test the oracle."""
 
 from __future__ import annotations
 
@@ -71,14 +71,32 @@ def _twice(message: JSON) -> None:
 
 BENDS = (
     Bend(status.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))),
-    Bend(status.WELL_FORMED.id, "has a text for an index", _whole(lambda one: one["missionStates"].update(currentMissionIndex="first"))),
+    Bend(
+        status.WELL_FORMED.id,
+        "has a text for an index",
+        _whole(lambda one: one["missionStates"].update(currentMissionIndex="first")),
+    ),
     Bend(status.SEQUENCE.id, "never changes", _whole(lambda one: one["metadata"].update(sequenceNumber=7))),
-    Bend(status.SEQUENCE.id, "goes down", _whole(lambda one: one["metadata"].update(sequenceNumber=10**6 - one["metadata"]["sequenceNumber"]))),
+    Bend(
+        status.SEQUENCE.id,
+        "goes down",
+        _whole(lambda one: one["metadata"].update(sequenceNumber=10**6 - one["metadata"]["sequenceNumber"])),
+    ),
     Bend(status.SEQUENCE.id, "is negative", _whole(lambda one: one["metadata"].update(sequenceNumber=-1))),
-    Bend(status.ALL_LISTED.id, "leaves out the last", _whole(lambda one: one["missionStates"].update(missions=one["missionStates"]["missions"][:-1]))),
+    Bend(
+        status.ALL_LISTED.id,
+        "leaves out the last",
+        _whole(lambda one: one["missionStates"].update(missions=one["missionStates"]["missions"][:-1])),
+    ),
     Bend(status.ALL_LISTED.id, "lists in reverse", _whole(lambda one: one["missionStates"]["missions"].reverse())),
     Bend(status.ALL_LISTED.id, "lists twice", _whole(_twice)),
-    Bend(status.CURRENT.id, "is one too high", _whole(lambda one: one["missionStates"].update(currentMissionIndex=one["missionStates"]["currentMissionIndex"] + 1))),
+    Bend(
+        status.CURRENT.id,
+        "is one too high",
+        _whole(
+            lambda one: one["missionStates"].update(currentMissionIndex=one["missionStates"]["currentMissionIndex"] + 1)
+        ),
+    ),
     Bend(status.CURRENT.id, "is always 0", _whole(lambda one: one["missionStates"].update(currentMissionIndex=0))),
     Bend(status.STATE.id, "shows running as paused", _each(_running_as_paused)),
     Bend(status.STATE.id, "shows failed as succeeded", _each(_failed_as_succeeded)),
@@ -95,7 +113,7 @@ BENDS = (
 def _last_added_left_out(_: Robot, step: Step) -> Step:
     """The last of several new missions is not listed, though its id is answered."""
     robot: Robot = step.after
-    if len(step.refs) < 2 or not robot.pending:  # noqa: PLR2004 - several
+    if len(step.refs) < 2 or not robot.pending:
         return step
     return evolve(step, after=evolve(robot, pending=robot.pending[:-1]), names=(step.names or ())[:-1], emits=())
 
@@ -179,7 +197,11 @@ def _rule(*place: str) -> str:
 
 TWISTS = (
     *(
-        Break(_rule(operation, "the-answer-names-the-new-missions-in-order"), "leaves out the last", _shown(_last_added_left_out))
+        Break(
+            _rule(operation, "the-answer-names-the-new-missions-in-order"),
+            "leaves out the last",
+            _shown(_last_added_left_out),
+        )
         for operation in ("CreateMissionBatch", "AppendMissionBatch")
     ),
     *(
@@ -197,8 +219,16 @@ TWISTS = (
     Break(_rule("lifecycle", "succeed"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
     Break(_rule("lifecycle", "fail"), "ends it as succeeded", _shown(_ended(State.STATE_SUCCEEDED))),
     Break(_rule("lifecycle", "start"), "starts the last", _shown(_start_last)),
-    Break(_rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"), "answers no ids", lambda _, step: evolve(step, refs=())),
-    Break(_rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"), "leaves out an id", lambda _, step: evolve(step, refs=step.refs[:-1])),
+    Break(
+        _rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"),
+        "answers no ids",
+        lambda _, step: evolve(step, refs=()),
+    ),
+    Break(
+        _rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"),
+        "leaves out an id",
+        lambda _, step: evolve(step, refs=step.refs[:-1]),
+    ),
 )
 _HALTED = {"AM-09": "b"}
 REACHING = {

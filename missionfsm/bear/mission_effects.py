@@ -471,7 +471,7 @@ def mission_failed(robot: Situation) -> Iterable[Way]:
 
 def world_changes(robot: Situation, changed: tuple[tuple[str, Hashable], ...]) -> Iterable[Way]:
     """The world becomes another; a NavigateAuto mission on its way may select again (AM-45)."""
-    world = evolve(robot.world, **dict(changed))
+    world = evolve(robot.world, **dict(changed))  # type: ignore[arg-type]  # fields of a world
     edit: Edit = ((Op.WORLD, world),)
     active = robot.active
     if active is not None and active.kind in AUTOMATIC and active.state is State.STATE_RUNNING:

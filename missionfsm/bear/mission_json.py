@@ -220,7 +220,7 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
         if kind is None:
             read(wire.Empty, result)
             return _NAMED, ()
-        found = read(kind, result)
+        found: wire.MissionId | wire.MissionIds = read(kind, result)
     except MalformedError as error:
         return Answer(OK, codec.Garbled(str(error)), unordered), ()
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
@@ -308,24 +308,19 @@ def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
     """AM-50: feedback that came as a bare enum put into a message; `bare` notes where."""
     states = rest.get("missionStates", rest.get("mission_states")) if isinstance(rest, dict) else None
     missions = states.get("missions") if isinstance(states, dict) else None
-    if not isinstance(missions, list):
+    if not isinstance(states, dict) or not isinstance(missions, list):
         return rest
     wrapped = []
     for mission in missions:
         feedback = mission.get("missionFeedback") if isinstance(mission, dict) else None
-        naked = (
-            {
-                name: {"status": value}
-                for name, value in (feedback or {}).items()
-                if isinstance(feedback, dict)
-                and isinstance(value, str | int)
-                and name in ("serviFeedback", "cartiFeedback")
-            }
-            if isinstance(feedback, dict)
-            else {}
-        )
+        members = feedback if isinstance(feedback, dict) else {}
+        naked = {
+            name: {"status": value}
+            for name, value in members.items()
+            if isinstance(value, str | int) and name in ("serviFeedback", "cartiFeedback")
+        }
         bare.append(bool(naked))
-        wrapped.append({**mission, "missionFeedback": {**feedback, **naked}} if naked else mission)
+        wrapped.append({**mission, "missionFeedback": {**members, **naked}} if naked else mission)
     return {
         "missionStates": {**states, "missions": wrapped},
         **({"metadata": rest["metadata"]} if "metadata" in rest else {}),
@@ -409,7 +404,8 @@ def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
     if event == "fault":
         status, applied = fields.get("status"), fields.get("applied", False)
         if status not in (INTERNAL, DEADLINE_EXCEEDED) or not isinstance(applied, bool):
-            message = f"drive: a fault has status INTERNAL or DEADLINE_EXCEEDED and applied true or false, not {brief(fields)}"
+            wanted = "status INTERNAL or DEADLINE_EXCEEDED and applied true or false"
+            message = f"drive: a fault has {wanted}, not {brief(fields)}"
             raise UnreadableError(message)
         return Happening("fault", Fault(status, applied)), ()
     if event not in ("goalReached", "missionSucceeded", "missionFailed"):

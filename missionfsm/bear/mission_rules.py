@@ -109,9 +109,7 @@ def a_goal_occurs_twice(_: Situation, call: Call) -> bool:
 
 
 def _destination_is_missing(robot: Situation, wanted: Wanted) -> bool:
-    return any(
-        goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals
-    )
+    return any(goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals)
 
 
 @rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_43["a"], kind=GOALS)
@@ -399,9 +397,7 @@ def _no_mission(robot: Situation, call: Call) -> bool:
 
 
 _WRONG_ID = (
-    _id_rule(
-        FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c"], _ended
-    ),
+    _id_rule(FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c"], _ended),
     _id_rule(NOT_FOUND, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["b"], _ended),
     _id_rule(INVALID_ARGUMENT, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["d"], _ended),
     _id_rule(
@@ -425,9 +421,7 @@ _WRONG_ID = (
         AM_02_ENDED["d"],
         _ended_while_another_is_active,
     ),
-    _id_rule(
-        INVALID_ARGUMENT, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["a"], _unknown
-    ),
+    _id_rule(INVALID_ARGUMENT, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["a"], _unknown),
     _id_rule(NOT_FOUND, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["b"], _unknown),
     _id_rule(
         FAILED_PRECONDITION,

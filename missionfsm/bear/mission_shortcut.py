@@ -1,7 +1,7 @@
 """The steps of a robot for the explorer: what a situation allows is found once, as edits, and then only applied.
 
-Most steps of a robot depend on its situation alone, and there are few of those; robots are told apart as numbers. ``tests/bear/test_mission_explore.py``
-holds this to what `missionfsm.bear.mission_spec` says step by step.
+Most steps of a robot depend on its situation alone, and there are few of those; robots are told apart as numbers.
+``tests/bear/test_mission_explore.py`` holds this to what `missionfsm.bear.mission_spec` says step by step.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from collections.abc import Iterable, Iterator
 
 from missionfsm.bear.messages import State
 from missionfsm.bear.mission import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
-from missionfsm.bear.mission_effects import Call, Happening, due, happens, outcomes
-from missionfsm.bear.mission_requests import Request, Target
+from missionfsm.bear.mission_effects import Happening, due, happens, outcomes
+from missionfsm.bear.mission_requests import Call, Request, Target
 from missionfsm.bear.mission_rules import OPERATIONS
 from missionfsm.kernel.readings import meet
 
 Code = tuple[int, tuple[int, ...], tuple[int, ...]]
-"""A robot as numbers: its frame, its ended missions, those that wait. Tuples of small numbers are quick to tell apart."""
+"""A robot as numbers: its frame, its ended missions, those that wait."""
 
 _Frame = tuple[World, Mission | None, bool, bool, Fault | None]
 """What of a robot is not a list: its world, its active mission, whether it is halted and fresh, its fault."""

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from missionfsm.bear.messages import Goal, State
 from missionfsm.bear.mission import (
-    ENDED,
     AUTOMATIC,
+    ENDED,
     GOALLESS,
     LIFECYCLE,
     MISSION,
@@ -25,7 +25,19 @@ from missionfsm.bear.mission import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission_effects import ACTIVE, ADDED, GONE, Happening, Outcome, call_of, due, failing, happens, outcomes, target
+from missionfsm.bear.mission_effects import (
+    ACTIVE,
+    ADDED,
+    GONE,
+    Happening,
+    Outcome,
+    call_of,
+    due,
+    failing,
+    happens,
+    outcomes,
+    target,
+)
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_rules import OPERATIONS
@@ -154,9 +166,7 @@ def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
 @functools.cache
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
-    return Delivery(
-        skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends={INTERNAL: (), UNAVAILABLE: (AM_61["b"],)}
-    )
+    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends={INTERNAL: (), UNAVAILABLE: (AM_61["b"],)})
 
 
 # What holds of every robot, and what some robot can come to.
@@ -190,7 +200,11 @@ INVARIANTS = (
         "A queue without missions is not halted.",
         lambda robot: bool(robot.pending) or not robot.halted,
     ),
-    Invariant("a-used-robot-is-not-fresh", "A robot that lists a mission was used.", lambda robot: not (robot.fresh and robot.listed)),
+    Invariant(
+        "a-used-robot-is-not-fresh",
+        "A robot that lists a mission was used.",
+        lambda robot: not (robot.fresh and robot.listed),
+    ),
 )
 POSSIBILITIES = (
     *(
@@ -201,7 +215,11 @@ POSSIBILITIES = (
         )
     ),
     Invariant("a-queue-forms", "Missions wait behind another.", lambda robot: bool(robot.active and robot.pending)),
-    Invariant("a-goal-is-left-behind", "A mission is past its first goal.", lambda robot: bool(robot.active and robot.active.goal > 0)),
+    Invariant(
+        "a-goal-is-left-behind",
+        "A mission is past its first goal.",
+        lambda robot: bool(robot.active and robot.active.goal > 0),
+    ),
     Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.listed),
 )
 
@@ -232,7 +250,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
     return Spec(
         system=SYSTEM,
         title="one robot's missions",
-        initial=lambda world: Robot(world),
+        initial=Robot,
         operations=operations,
         outcomes=lambda robot, request, refs: _outcomes(operations[request.operation], robot, request, refs),
         failing=failing,
@@ -262,8 +280,9 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
         shape=_shape,
         place=target,
+        phase=lambda robot: robot.active and robot.active.state,
         forget_ended=forget_ended,
-    shortcut=Shortcut,
+        shortcut=Shortcut,
         rebuilt=specification,
     )
 

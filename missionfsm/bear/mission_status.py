@@ -121,7 +121,9 @@ CURRENT = _promise(
     "MissionStates",
 )
 STATE = _promise("the-state-is-reported", "A mission is reported in the state that it is in.", "State enum")
-GOALS = _promise("the-goals-are-those-requested", "A mission lists its goals in the order of the request.", "MissionState")
+GOALS = _promise(
+    "the-goals-are-those-requested", "A mission lists its goals in the order of the request.", "MissionState"
+)
 GOAL_INDEX = _promise(
     "the-current-goal-index-is-the-active-goal", "current_goal_index is that of the active goal.", "MissionState"
 )
@@ -376,13 +378,11 @@ def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
     """The message that an implementation with these readings sends; `choice` leaves one of each (see `choose`)."""
     if not view.missions:
         unnamed = meet(choice, (AM_36["b"] if view.fresh else AM_35["c"],))
-        missions = (MissionState(state=State.STATE_DEFAULT),) if unnamed else ()
-        return MissionStates(missions, -1)
+        return MissionStates((MissionState(state=State.STATE_DEFAULT),) if unnamed else (), -1)
     indices = current_index(view)
     index = next(value for value, assumes in indices.items() if meet(choice, assumes))
     missions = tuple(
-        _shown(view, mission, mission_id, choice)
-        for mission, mission_id in zip(view.missions, ids, strict=True)
+        _shown(view, mission, mission_id, choice) for mission, mission_id in zip(view.missions, ids, strict=True)
     )
     return MissionStates(missions, index)
 

@@ -157,7 +157,9 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
 def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
     goals = _tables(bounds.goals)
     kind = {"base": _auto, "servi": None, "carti": None}[family]
-    several = kind(*goals) if kind else _of(family, "deliveryMission" if family == "servi" else "traverseMission", *goals)
+    several = (
+        kind(*goals) if kind else _of(family, "deliveryMission" if family == "servi" else "traverseMission", *goals)
+    )
     patrol = (
         [_of(family, "deliveryPatrolMission" if family == "servi" else "traversePatrolMission", *goals)]
         if family != "base"
@@ -167,12 +169,17 @@ def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
         yield Prompt("CreateMission", {"mission": mission})
         yield Prompt("AppendMission", {"mission": mission})
     if bounds.batch > 1:
-        batch = [{"mission": several}, *({"mission": _base({"destinationId": _TABLES[0]})} for _ in range(bounds.batch - 1))]
+        batch = [
+            {"mission": several},
+            *({"mission": _base({"destinationId": _TABLES[0]})} for _ in range(bounds.batch - 1)),
+        ]
         yield Prompt("CreateMissionBatch", {"missions": batch})
         yield Prompt("AppendMissionBatch", {"missions": batch})
     if family != "base":
         name = "delivery" if family == "servi" else "traverse"
-        yield Prompt("CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": _goals(*goals)}}}})
+        yield Prompt(
+            "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": _goals(*goals)}}}}
+        )
     for command in _COMMANDS:
         yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):

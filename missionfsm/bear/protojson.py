@@ -112,7 +112,7 @@ def _fields(kind: type) -> dict[str, attrs.Attribute[Any]]:
 
 
 def _message_hook(kind: type[T]) -> Callable[[object, object], T]:
-    fields = _fields(kind)
+    fields = _fields(kind)  # type: ignore[arg-type]  # a class can be hashed
     hooks: dict[str, Callable[..., Any]] = {}
 
     def structure(value: object, _: object = None) -> T:

@@ -75,7 +75,7 @@ def dispatch(
     raise typer.Exit(0 if view.succeeded == len(missions.missions) else 1)
 
 
-async def _serve(  # noqa: PLR0913, PLR0917 - the options
+async def _serve(  # noqa: PLR0913 - the options
     missions: "MissionFile", host: str, port: int, name_channel: str, profile: "Profile", view: "View"
 ) -> None:
     import asyncio  # noqa: PLC0415
@@ -106,7 +106,7 @@ async def _serve(  # noqa: PLR0913, PLR0917 - the options
     view.summarize()
 
 
-def robot(  # noqa: PLR0913, PLR0917 - the options
+def robot(  # noqa: PLR0913 - the options
     name: Annotated[str, typer.Option(help="The robot's name, as missions call it.")],
     host: Annotated[str, typer.Option(help="Where the mission server is.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="The mission server's port.")] = 9998,

@@ -20,7 +20,7 @@ def _specs(name: str | None) -> list[Spec]:
     return [the_system(one).spec for one in ([name] if name else names())]
 
 
-def rules(system: Which = None, json: AsJson = False) -> None:  # noqa: FBT001, FBT002 - a flag of the command
+def rules(system: Which = None, json: AsJson = False) -> None:
     """List every rule: its id, what it says, and its place in the document."""
     found: list[JSON] = []
     for spec in _specs(system):
@@ -33,7 +33,7 @@ def rules(system: Which = None, json: AsJson = False) -> None:  # noqa: FBT001, 
         write_json("-", found)
 
 
-def readings(system: Which = None, json: AsJson = False) -> None:  # noqa: FBT001, FBT002 - a flag of the command
+def readings(system: Which = None, json: AsJson = False) -> None:
     """List every ambiguity with its readings; a star marks the reference's, a dagger a departure from the text."""
     found: list[JSON] = []
     for spec in _specs(system):

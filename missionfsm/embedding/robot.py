@@ -370,9 +370,7 @@ class Robot:
             self._delivering = False
 
     def _update(self, sent: Sent) -> MissionStatus:
-        message = SYSTEM.codec.write_message(
-            sent.view, sent.names, self._model.choice, sent.number, float(sent.number)
-        )
+        message = SYSTEM.codec.write_message(sent.view, sent.names, self._model.choice, sent.number, float(sent.number))
         return MissionStatus(read(EventMetadata, message["metadata"]), self._shown(sent.view, sent.names))
 
     def _give_up(self) -> None:

@@ -10,6 +10,8 @@ from missionfsm.isaac.mission import MissionRequest, Status
 
 @attrs.define(eq=False)
 class MissionRecord:
+    """A mission and all that the server keeps about it."""
+
     uuid: Uuid
     request: MissionRequest
     key: str  # of its robot; empty without one, which no robot can be called
@@ -39,6 +41,8 @@ class LaneRecord:
 
 @attrs.define(eq=False)
 class RobotRecord:
+    """A robot and all that the server keeps about it."""
+
     key: str
     name: str
     connection: "ConnectionRecord | None" = None
@@ -48,6 +52,8 @@ class RobotRecord:
 
 @attrs.define(eq=False)
 class ConnectionRecord:
+    """A connection and all that the server keeps about it."""
+
     id: int
     number: int  # in the order of arrival
     open: bool = True

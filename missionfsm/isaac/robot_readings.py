@@ -55,8 +55,8 @@ AI_33_UNUSABLE = Ambiguity(
 AMBIGUITIES = (AI_10, AI_25_TAKEN, AI_25_HEADER, AI_27_TYPE, AI_28_STATUS, AI_33_NULL, AI_33_UNUSABLE)
 
 WAIVED: Mapping[str, str] = {
-    "AI-26": "lines are framed by the adapter protocol; a line that is no message is skipped, since nothing can close or "
-    "reopen the one connection here",
+    "AI-26": "lines are framed by the adapter protocol; a line that is no message is skipped, since nothing can close "
+    "or reopen the one connection here",
     "AI-27": "only the channel is needed to route a message, so other header fields may be missing; what a message's "
     "type is worth is asked apart",
     "AI-31": "no period is documented; RUNNING has to come within the stated bound, however often it does",

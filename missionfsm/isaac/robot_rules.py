@@ -15,7 +15,9 @@ def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "")
     return promise(name, says, cite=cite, argues=argues).of(SYSTEM, topic)
 
 
-STARTS = _promise("codelet", "a-mission-starts-the-behavior-tree", "A MissionProto that arrives starts a mission.", CODELET)
+STARTS = _promise(
+    "codelet", "a-mission-starts-the-behavior-tree", "A MissionProto that arrives starts a mission.", CODELET
+)
 LISTENS = _promise(
     "codelet",
     "a-mission-can-follow-another",
@@ -88,7 +90,18 @@ INTEGERS = _promise(
     "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
 )
 RULES = (
-    STARTS, LISTENS, PREEMPTS, UNUSABLE, IGNORES, RUNNING, SUCCESS, FAILURE, ABOUT, CHANNEL, ENVELOPE, INTEGERS,
+    STARTS,
+    LISTENS,
+    PREEMPTS,
+    UNUSABLE,
+    IGNORES,
+    RUNNING,
+    SUCCESS,
+    FAILURE,
+    ABOUT,
+    CHANNEL,
+    ENVELOPE,
+    INTEGERS,
 )
 
 LIFECYCLE: Chart[str] = Chart(

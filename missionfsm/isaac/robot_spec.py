@@ -70,7 +70,7 @@ USABLE, NULL, UNUSABLE = "usable", "null", "unusable"
 
 @frozen(cache_hash=True)
 class Arrives:
-    """A line arrives: a mission (its configuration `USABLE`, `NULL` or `UNUSABLE`), or something that has no effect (None).
+    """A line arrives: a mission (its configuration `USABLE`, `NULL` or `UNUSABLE`), or something without effect (None).
 
     `numeric` says that 64-bit integers in it are numbers, `foreign` that it is another message on the mission channel.
     """
@@ -101,9 +101,7 @@ _RULE = {"running": rules.RUNNING, "success": rules.SUCCESS, "failure": rules.FA
 
 
 def _report(here: Codelet, status: str, *, ref: int = 0, offer: bool = False) -> Emission:
-    return Emission(
-        _TOPIC, Report(status, here.named), (ref,) if here.named else (), stays=offer, certain=not offer
-    )
+    return Emission(_TOPIC, Report(status, here.named), (ref,) if here.named else (), stays=offer, certain=not offer)
 
 
 def _moved(here: Codelet, trigger: str) -> Codelet:
@@ -223,7 +221,11 @@ def describe(value: object) -> str:
     if isinstance(value, Garbled):
         return f"a malformed line: {value.says}"
     if isinstance(value, Arrives):
-        return "a line without effect" if value.mission is None else f"a mission with a configuration that is {value.mission}"
+        return (
+            "a line without effect"
+            if value.mission is None
+            else f"a mission with a configuration that is {value.mission}"
+        )
     if isinstance(value, Passes):
         return f"{value.time / MICROSECONDS:g} s pass"
     return {"behaviorSucceeded": "the tree reports success", "behaviorFailed": "the tree reports failure"}[
@@ -261,7 +263,9 @@ SPEC = Spec(
     rules=RULES,
     charts=(LIFECYCLE,),
     invariants=(
-        Invariant("only-missions-are-named", "An idle codelet has no mission.", lambda here: here.running or not here.named),
+        Invariant(
+            "only-missions-are-named", "An idle codelet has no mission.", lambda here: here.running or not here.named
+        ),
     ),
     possibilities=(
         *map(_SAYS, LIFECYCLE.states),

@@ -91,6 +91,8 @@ NAMING = Naming(_write, _make)
 
 _PLAIN: JSON = {
     "event": "line",
-    "line": '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"{}"}}}',
+    "line": (
+        '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"{}"}}}'
+    ),
 }
 SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING)

@@ -259,7 +259,11 @@ def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - 
     if event.named:
         payload["uuid"] = uuids[0]
     body = {"header": header, "payload": payload}
-    line = strictjson.compact(body) if event.kind in (NAME, STATUS) else {NOISE: "", BAD: "no message"}.get(event.kind, "{}")
+    line = (
+        strictjson.compact(body)
+        if event.kind in (NAME, STATUS)
+        else {NOISE: "", BAD: "no message"}.get(event.kind, "{}")
+    )
     return {"event": "line", **number, "line": line}
 
 

@@ -1,4 +1,4 @@
-"""What connections bring: names and statuses, and lines that mean nothing. ``MissionSubmission › Robot Identification``."""
+"""What connections bring: names, statuses, lines that mean nothing. ``MissionSubmission › Robot Identification``."""
 
 from __future__ import annotations
 
@@ -41,7 +41,9 @@ NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
 
 @frozen(cache_hash=True)
 class Heard:
-    """A line that a robot sends: a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN` type.
+    """A line that a robot sends.
+
+    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN` type.
 
     Attributes:
         what: the name's text, or the status.
@@ -218,7 +220,11 @@ def _served(move: Move, link: Link) -> Moves:
 
 
 def _reports(move: Move, link: Link, report: Report) -> Moves:
-    if not link.serves and (link.name is None or "q" in move.state.letters(AI_16_BACK)) and _could_matter(move.state, report):
+    if (
+        not link.serves
+        and (link.name is None or "q" in move.state.letters(AI_16_BACK))
+        and _could_matter(move.state, report)
+    ):
         ignored, kept = split(move, AI_18_EARLY, "a")
         if kept is not None:
             early = (*link.early, report) if report not in link.early else link.early

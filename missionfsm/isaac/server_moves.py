@@ -58,7 +58,9 @@ def slack(state: Server) -> int:
 def looks(move: Move) -> Move:
     """AI-39 b has been decided: clocks that run may strike later than was thought."""
     missions = tuple(
-        evolve(one, clocks=tuple(evolve(clock, hi=None if clock.hi is None else clock.hi + LOOK) for clock in one.clocks))
+        evolve(
+            one, clocks=tuple(evolve(clock, hi=None if clock.hi is None else clock.hi + LOOK) for clock in one.clocks)
+        )
         if one.clocks
         else one
         for one in move.state.missions

@@ -184,9 +184,7 @@ AI_22_STARTED = Ambiguity(
     default="a",
     flagged=_flags("i"),
 )
-AI_24 = Ambiguity(
-    "AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a"
-)
+AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a")
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a message understood whose 64-bit integers are numbers instead of strings?",
@@ -291,13 +289,13 @@ WAIVED: Mapping[str, str] = {
     "AI-08": "b, a stop message, is not offered: no such message is documented, so none could be told from a mistake",
     "AI-14": "missions on several channels of one robot are the same question as AI-11 c; its other half is AI-14.status",
     "AI-16": "c, both connections get the mission, is a violation and not offered",
-    "AI-18": "whether a connection without a name is closed after a time (c, d) cannot be seen: nothing is owed to it, and "
-    "a drive on a connection that is closed does not happen",
-    "AI-20": "the mission file is read by the program around the server; of a submission, defects other than the three "
-    "that are asked apart are always refused",
+    "AI-18": "whether a connection without a name is closed after a time (c, d) cannot be seen: nothing is owed to it, "
+    "and a drive on a connection that is closed does not happen",
+    "AI-20": "the mission file is read by the program around the server; of a submission, defects other than the "
+    "three that are asked apart are always refused",
     "AI-21": "an upstream is named by a handle, which exists once that mission was submitted: no reference is forward",
-    "AI-22": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor a second "
-    "submission can be said; an upstream that has ended counts at once (g), and h is a violation",
+    "AI-22": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor a "
+    "second submission can be said; an upstream that has ended counts at once (g), and h is a violation",
     "AI-23": "not observable: slips in the sample",
     "AI-27": "only the channel is needed to route a message; other header fields may be missing",
     "AI-29": "about the program around the server",

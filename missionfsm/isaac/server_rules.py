@@ -249,8 +249,23 @@ INTEGERS = _promise(
     "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
 )
 RULES = (
-    SENT, CHANNEL, CONFIG, UNNAMED, UPSTREAM, CANCELED, NAMED, OTHER, DROPPED, RUNNING, FINAL, LATE, ABORTED, OVERRUN,
-    SILENCE, ENVELOPE, INTEGERS,
+    SENT,
+    CHANNEL,
+    CONFIG,
+    UNNAMED,
+    UPSTREAM,
+    CANCELED,
+    NAMED,
+    OTHER,
+    DROPPED,
+    RUNNING,
+    FINAL,
+    LATE,
+    ABORTED,
+    OVERRUN,
+    SILENCE,
+    ENVELOPE,
+    INTEGERS,
 )
 
 OPERATIONS = {

@@ -15,7 +15,7 @@ MISSION, OTHER, LINK, UUID = 0, 1, 2, 3
 """The slots: two missions that are named as upstreams, a connection, and the mission that a status is about."""
 
 
-def header(kind: type[TextProto] | type[MissionStatusProto], channel: str, **more: JSON) -> JSON:
+def header(kind: type[TextProto | MissionStatusProto], channel: str, **more: JSON) -> JSON:
     """A header as robots send it."""
     times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
     return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
@@ -27,7 +27,7 @@ def _line(head: JSON, payload: JSON) -> JSON:
 
 
 class _Script:
-    """Writes a script down. Missions, connections and identifiers are numbered from 0 in the order in which they come."""
+    """Writes a script down. Missions, connections and identifiers are numbered from 0 in the order of coming."""
 
     def __init__(self) -> None:
         self.lines: list[Line] = []
@@ -148,6 +148,8 @@ _SCRIPTS = (
     .report(0, 0, "failure")
     .report(0, 1, "success"),
     # Half of a timeout is not enough.
+    _Script().submit(A, timeout=8).robot(0, A).report(0, 0, "running").wait(5).report(0, 0, "running").wait(5),
+    # How long an acknowledgement takes shows from when timeout counts.
     _Script()
     .submit(A, start_timeout=8, timeout=8)
     .robot(0, A)
@@ -239,9 +241,13 @@ _SCRIPTS = (
     .report(0, 0, "success")
     .report(1, 1, "success"),
     # Upstreams that do not exist.
-    _Script().refused(upcoming("mission")).submit(B).refused(-1).refused(upcoming("mission")).refused(
-        pick("mission", MISSION), 999
-    ).robot(0, A),
+    _Script()
+    .refused(upcoming("mission"))
+    .submit(B)
+    .refused(-1)
+    .refused(upcoming("mission"))
+    .refused(pick("mission", MISSION), 999)
+    .robot(0, A),
 )
 
 SCRIPTS = tuple(tuple(script.lines) for script in _SCRIPTS)

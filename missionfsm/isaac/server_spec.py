@@ -89,7 +89,7 @@ def _step(
     new: tuple[int, ...] = (),
     assumes: tuple[Assumption, ...] = (),
 ) -> Step:
-    """A move as a step; `new` are references to the names that missions and connections of `after` have beyond `before`."""
+    """A move as a step; `new` are references to the names that `after` has beyond `before`."""
     after = move.state
     if after is before and not move.sent:
         return Step(before, rules=move.rules, assumes=assumes)
@@ -339,7 +339,7 @@ POSSIBILITIES = tuple(
 
 
 def _shape(server: Server) -> object:
-    """What a search tells a server apart by: for each robot how its missions stand and who is connected, not the times."""
+    """What a search tells a server apart by: how each robot's missions stand and who is connected, not the times."""
     robots = dict.fromkeys((*(one.robot for one in server.missions), *(one.name for one in server.links)))
     return tuple(sorted((_robot_shape(server, robot) for robot in robots), key=repr))
 
@@ -379,7 +379,7 @@ def describe(value: object) -> str:
 SPEC = Spec(
     system=SYSTEM,
     title="a mission server",
-    initial=lambda world: Server(world),
+    initial=Server,
     operations=OPERATIONS,
     outcomes=_outcomes,
     drives={

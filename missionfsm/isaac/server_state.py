@@ -280,7 +280,7 @@ def merged(moves: Iterable[Move]) -> tuple[Move, ...]:
             one, other, left = pair
             both = tuple(dict.fromkeys((*one.rules, *other.rules)))
             joined = evolve(one, state=evolve(one.state, left=left), rules=both)
-            group = [joined if here is one else here for here in group if here is not other]
+            group = [joined if here is one else here for here in group if here is not other]  # noqa: PLW2901 - grows less
         found += group
     return tuple(found)
 

@@ -70,7 +70,9 @@ def _odd() -> Iterator[Prompt]:
     yield Prompt("submit", {})
 
 
-def _line(kind: type[TextProto] | type[MissionStatusProto] | type[MissionProto], channel: str, payload: JSON, **header: JSON) -> JSON:
+def _line(
+    kind: type[TextProto | MissionStatusProto | MissionProto], channel: str, payload: JSON, **header: JSON
+) -> JSON:
     head = {
         "channel": channel,
         "pubtime": "1700000000000000000",
@@ -115,7 +117,9 @@ def _lines(name_channel: str) -> Iterator[JSON]:
     yield {"event": "line", "connection": pick("connection", 0), "line": tensor}
 
 
-_TIMES: tuple[JSON, ...] = tuple({"event": "advance", "seconds": seconds} for seconds in (0.5, 1, 1.5, 2, 2.5, 3, 4, 6, 60))
+_TIMES: tuple[JSON, ...] = tuple(
+    {"event": "advance", "seconds": seconds} for seconds in (0.5, 1, 1.5, 2, 2.5, 3, 4, 6, 60)
+)
 
 
 def _drives(name_channel: str) -> Iterator[JSON]:

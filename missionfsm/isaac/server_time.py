@@ -45,7 +45,7 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
             continue
         here = _looking(here)
         latest = _latest(here)
-        later = [one for one in _next(here, min(latest, time))]
+        later = list(_next(here, min(latest, time)))
         todo += reversed(later)
         if latest >= time:
             after = _shifted(here.move, time)
@@ -71,9 +71,7 @@ def _done(before: Server, after: Server) -> int:
 
 def _tidy(move: Move) -> Move:
     """The same with rules once each, and lines by connection: their order across connections means nothing."""
-    return evolve(
-        move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0]))
-    )
+    return evolve(move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0])))
 
 
 def _looking(here: _Here) -> _Here:

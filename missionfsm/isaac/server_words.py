@@ -29,7 +29,9 @@ def describe(value: object) -> str:
         return f"{value.time / MICROSECONDS:g} s pass"
     if isinstance(value, tuple):
         return ", ".join(map(str, value)) or "no mission"
-    return {Connects: "a robot connects", Drops: "a connection drops", Statuses: "statuses()"}.get(type(value), str(value))
+    return {Connects: "a robot connects", Drops: "a connection drops", Statuses: "statuses()"}.get(
+        type(value), str(value)
+    )
 
 
 def _mission(mission: Mission) -> str:

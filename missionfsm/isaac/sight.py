@@ -34,7 +34,7 @@ class Said:
         kind: ``mission``, ``status`` or ``text``.
         channel: the header's.
         what: the configuration as canonical JSON, the status in lower case, or the text.
-        form: how it was written: ``object`` or ``text`` (a configuration), ``upper``, ``lower`` or ``number`` (a status).
+        form: how it was written: ``object`` or ``text`` (a configuration), ``upper``, ``lower`` or ``number`` (status).
         named: whether it carries a mission's identifier.
         header_named: whether the header carries an identifier that counts (only where the caller asked for it).
         bare: paths of 64-bit integers that came as numbers.
@@ -144,7 +144,13 @@ def to_json(said: Said | Garbled) -> JSON:
     if isinstance(said, Garbled):
         return {"garbled": said.says}
     return [
-        said.kind, said.channel, said.what, said.form, said.named, said.header_named, list(said.bare),
+        said.kind,
+        said.channel,
+        said.what,
+        said.form,
+        said.named,
+        said.header_named,
+        list(said.bare),
     ]
 
 

@@ -256,7 +256,7 @@ class Belief:
                 self._number_anew(name, new) if number is None else number
                 for name, number in zip(names, numbers, strict=True)
             )
-        return numbers  # type: ignore[return-value] - none is None
+        return numbers  # type: ignore[return-value]  # none is None
 
     def _number_anew(self, name: Name, new: list[Name]) -> int:
         if name in self._retired:

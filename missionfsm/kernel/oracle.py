@@ -151,9 +151,7 @@ class Oracle:
             if step.answer is not None and step.applied and not changes(explanation, step):
                 yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
 
-    def _late_answers(
-        self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]
-    ) -> Iterator[Ready]:
+    def _late_answers(self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]) -> Iterator[Ready]:
         """What a call may be answered that is given up although it takes effect, now or later."""
         for step in self.outcomes(explanation.state, call.request, refs):
             if step.answer is not None and not step.applied:
@@ -267,7 +265,14 @@ class Oracle:
         found = [sighting for explanation in explanations for sighting in observe(self, explanation, *what)]
         return self._sift(found)
 
-    def _called(self, explanation: Explanation, request: Hashable, args: Names, lost: bool, call: int) -> Iterator[Sighting]:  # noqa: E501, FBT001
+    def _called(
+        self,
+        explanation: Explanation,
+        request: Hashable,
+        args: Names,
+        lost: bool,  # noqa: FBT001 - a field of the event
+        call: int,
+    ) -> Iterator[Sighting]:
         if lost:
             yield Sighting(evolve(explanation, lost=(*explanation.lost, (request, args))))
         else:
@@ -613,8 +618,11 @@ def _bindings(explanation: Explanation, answer: Answer, own: Names, observed: Na
         told = [name for name in left if name in set(mentioned(explanation))] if len(left) > 1 else []
         rest = [name for name in left if name not in told]
         ways = (
-            [*zip(shared, shared, strict=True), *zip(told, some, strict=True)]
-            + list(zip(rest, (name for name in free if name not in some), strict=False))
+            [
+                *zip(shared, shared, strict=True),
+                *zip(told, some, strict=True),
+                *zip(rest, (name for name in free if name not in some), strict=False),
+            ]
             for some in (itertools.permutations(free, len(told)) if max(left, default=-2) < GONE else ())
         )
     else:

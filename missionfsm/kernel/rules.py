@@ -116,9 +116,7 @@ def _words(function: Callable[..., Any]) -> tuple[str, str, str]:
     return function.__name__.strip("_").replace("_", "-"), says.strip(), " ".join(argues.split())
 
 
-def rule(
-    code: str, *, cite: Citation, under: Assumption | None = None, kind: str = ""
-) -> Callable[[Condition], Rule]:
+def rule(code: str, *, cite: Citation, under: Assumption | None = None, kind: str = "") -> Callable[[Condition], Rule]:
     """Make a refusal of a condition: its name is the name, its docstring the message and the argument.
 
     Args:

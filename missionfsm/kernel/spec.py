@@ -192,16 +192,20 @@ class Invariant:
     holds: Callable[[State], bool]
 
 
-class Shortcut(Protocol):
-    """Every step of a system within bounds, on codes that stand for its states and are quick to tell apart."""
+Code = Any
+"""What stands for a state in a `Shortcut`: hashable, and quick to tell apart."""
 
-    def encode(self, state: State, /) -> Any:
+
+class Shortcut(Protocol):
+    """Every step of a system within bounds, on codes that stand for its states."""
+
+    def encode(self, state: State, /) -> Code:
         """The code of a state."""
 
-    def decode(self, code: Any, /) -> State:
+    def decode(self, code: Code, /) -> State:
         """The state with a code."""
 
-    def successors(self, code: Any, /) -> list[Any]:
+    def successors(self, code: Code, /) -> list[Code]:
         """The codes after every step, in any order and perhaps some twice."""
 
 
@@ -240,6 +244,7 @@ class Spec:
         size: state to how large it is, against `Bounds.missions`; None where that is the number of its names.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
+        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
         place: (state, position of a name) to where it stands, as far as a search tells places apart.
         shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: what the functions above give,
             only faster.
@@ -263,13 +268,14 @@ class Spec:
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr
     rules: tuple[Rule, ...] = ()
-    charts: tuple[Chart, ...] = ()
+    charts: tuple[Chart[Any], ...] = ()
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state
+    phase: Callable[[State], Hashable] = lambda _: None
     place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
     idle_shape: Callable[[State], Hashable] | None = None
     size: Callable[[State], int] | None = None

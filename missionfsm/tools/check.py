@@ -75,7 +75,7 @@ class Judge:
         events = self.transcript.read(line)
         self.lines.append(line)
         self.read += 1
-        for event in events:
+        for event in events:  # noqa: SIM110 - called for every line, and faster so
             if not self._take(event):
                 return False
         return True
@@ -148,9 +148,7 @@ class Judge:
         return self.automaton.exercised
 
 
-def uncovered(
-    spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]
-) -> tuple[str, ...]:
+def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
     """The ids of the rules that were not exercised, though the readings that are followed have them."""
     return tuple(
         rule.id

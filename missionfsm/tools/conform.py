@@ -7,7 +7,8 @@ import random
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from hypothesis import HealthCheck, Phase, Verbosity, seed as with_seed, settings
+from hypothesis import HealthCheck, Phase, Verbosity, settings
+from hypothesis import seed as with_seed
 from hypothesis import strategies as st
 from hypothesis.reporting import with_reporter
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
@@ -32,11 +33,11 @@ CHOICES = 12
 """Among how many of the least walked edges a guided step draws."""
 
 
-class _Found(BaseException):  # noqa: N818 - no error of the run: it passes through Hypothesis as an interrupt does
+class _Found(BaseException):
     """Something that cannot be explained: the search is over."""
 
 
-class _Broke(BaseException):  # noqa: N818 - no error of the run: it passes through Hypothesis as an interrupt does
+class _Broke(BaseException):
     """The adapter failed: the run is over."""
 
     def __init__(self, error: SubjectError) -> None:
@@ -85,7 +86,7 @@ def conform(  # noqa: PLR0913 - every one has a default
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    if run.play() and run.tour(random.Random(seed), tours, steps):
+    if run.play() and run.tour(random.Random(seed), tours, steps):  # noqa: S311 - no secret
         try:
             with with_reporter(lambda _: None), contextlib.suppress(_Found):
                 run_state_machine_as_test(machine, settings=options)
@@ -161,9 +162,7 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
             if watched and len(streams) == 1:
                 self.act(streams[0], {})
 
-        def act(
-            self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()
-        ) -> None:
+        def act(self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()) -> None:
             with _stopping():
                 if not run.act(method, params, name, picks):
                     raise _Found

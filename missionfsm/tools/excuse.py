@@ -174,4 +174,3 @@ def _shown(system: System, model: Model, bend: Callable[[JSON], JSON], step: Ste
                 continue
             assumed = agreed
     return assumed
-

@@ -48,6 +48,7 @@ def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
 
 
 def name_words(name: Any) -> str:  # noqa: ANN401 - a name
+    """A name as a person reads it."""
     return " ".join(map(str, name)) if isinstance(name, tuple) else str(name)
 
 
@@ -125,7 +126,10 @@ def _known(belief: Belief, answer: Answer, names: tuple[int, ...]) -> str:
 
 
 def _against_answer(
-    spec: Spec, event: Returned, options: list[_Option], request: Any  # noqa: ANN401 - of any system
+    spec: Spec,
+    event: Returned,
+    options: list[_Option],
+    request: Any,  # noqa: ANN401 - of any system
 ) -> tuple[list[str], tuple[str, ...]]:
     codes = {option.what.split(" ")[0] for option in options}
     code = event.answer.code

@@ -127,9 +127,8 @@ class Exploration:
 
     def __str__(self) -> str:
         bounds = f"{self.bounds.missions} missions, {self.bounds.goals} goals, batches of {self.bounds.batch}"
-        lines = [
-            f"{self.system} within {bounds}: {self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"
-        ]
+        counts = f"{self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"
+        lines = [f"{self.system} within {bounds}: {counts}"]
         if self.counterexample:
             lines.append(f"broken invariant: {self.counterexample}")
         else:

@@ -44,6 +44,7 @@ class Proposal:
     name: Given | str | None
     edge: Edge
     leads_to: Hashable
+    phase: Hashable = None
     picks: Picks = ()
 
 
@@ -124,7 +125,7 @@ class Guide:
         """
         belief = conversation.judge.belief
         here = belief.node.explanations[0]
-        shape = self.system.spec.shape(here.state)
+        shape, phase = self.system.spec.shape(here.state), self.system.spec.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
         names: list[tuple[int | None, Given | str]] = [(None, wrong) for wrong in self.alphabets[world].wrong_names[:1]]
         for position, number in enumerate(here.names):
@@ -139,17 +140,17 @@ class Guide:
                     refs = (position,) if call.named else ()
                     edge = self._edge(conversation, here, shape, call.request, refs)
                     if edge:
-                        found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge))
+                        found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
             for drive, event in self._events[world].get(label, ()):
                 edge = self._drive_edge(here, shape, event)
                 if edge:
-                    found.append(Proposal("drive", drive, None, *edge))
+                    found.append(Proposal("drive", drive, None, *edge, phase))
             found += self._filled(conversation, here, shape, self._templates[world].get(label, ()))
             enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
             if enough and not rare:
                 break
         if rare:
-            found.sort(key=lambda one: (self.said[one.edge[1:]], self.walked[one.edge]))
+            found.sort(key=lambda one: (self.said[phase, one.edge[1:]], one.leads_to == shape, self.walked[one.edge]))
         else:
             found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
         return found
@@ -159,6 +160,7 @@ class Guide:
     ) -> Iterator[Proposal]:
         """Proposals from templates, with some of the names that were given in their slots."""
         belief = conversation.judge.belief
+        phase = self.system.spec.phase(here.state)
         positions = {belief.name(number): position for position, number in enumerate(here.names)}
         given = {name: one for one, name in conversation.given.items()}
         for template in templates:
@@ -170,7 +172,7 @@ class Guide:
                     edge = self._edge(conversation, here, shape, template.what, refs, exact=True)
                 if edge:
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
-                    yield Proposal(template.method, template.params, None, *edge, picks)
+                    yield Proposal(template.method, template.params, None, *edge, phase, picks)
 
     def fresh(self) -> Guide:
         """A guide to the same system that has not been anywhere yet."""
@@ -185,7 +187,7 @@ class Guide:
         self.tried[proposal.edge[0], label] += 1
         self.taken[label] += 1
         self.walked[proposal.edge] += 1
-        self.said[proposal.edge[1:]] += 1
+        self.said[proposal.phase, proposal.edge[1:]] += 1
         self.visited[proposal.leads_to] += 1
 
     def _edge(
@@ -202,11 +204,7 @@ class Guide:
         key = (here.state if exact else shape, request, self._places(here, refs))
         if key not in self._edges:
             oracle = conversation.judge.automaton.oracle
-            steps = [
-                step
-                for step in oracle.outcomes(here.state, request, refs)
-                if meet(here.assumed, step.assumes)
-            ]
+            steps = [step for step in oracle.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)]
             operation = self.system.spec.request_operation(request)
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)

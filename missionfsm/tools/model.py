@@ -187,7 +187,9 @@ class Model:
         highest = max((*(step.names or ()), *step.refs, *channels, len(here.names) - 1))
         pool = list(here.names)
         minted = here.minted
-        for ref, kind in zip(range(len(pool), highest + 1), itertools.chain(step.kinds, itertools.repeat("")), strict=False):
+        for ref, kind in zip(
+            range(len(pool), highest + 1), itertools.chain(step.kinds, itertools.repeat("")), strict=False
+        ):
             minted += 1
             if ref in channels:
                 pool.append((channels[ref], minted))

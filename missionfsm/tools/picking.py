@@ -1,4 +1,4 @@
-"""Stand-ins in the params of prompts and drives: where names go that a tester picks or makes up, and how they get there.
+"""Stand-ins in the params of prompts and drives: where names go that a tester picks or makes up.
 
 See `pick`, `new`, `upcoming` and `as_text` in `missionfsm.kernel.alphabet`.
 """
@@ -37,9 +37,7 @@ def is_template(params: JSON) -> bool:
     return any(mark in repr(params) for mark in ("'$pick'", "'$new'", "'$next'", "'$text'"))
 
 
-def fill(
-    params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int, known: Collection[Any] = ()
-) -> JSON:
+def fill(params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int, known: Collection[Any] = ()) -> JSON:
     """Params with names in the place of all stand-ins.
 
     Args:
@@ -71,9 +69,7 @@ def kind_of(name: Any) -> str | None:  # noqa: ANN401 - a name
 def ways(wanted: Mapping[int, str], known: Iterable[Any], naming: Naming) -> Iterator[dict[int, Any]]:
     """Some ways to fill slots with known names, the latest first, and at last with ones that are never anything's."""
     latest = list(known)[::-1]
-    choices: list[list[Any]] = []
-    for kind in wanted.values():
-        choices.append([*(name for name in latest if kind_of(name) == kind), naming.make(kind, 0)])
+    choices = [[*(name for name in latest if kind_of(name) == kind), naming.make(kind, 0)] for kind in wanted.values()]
     combined: Callable[..., Iterable[tuple[Any, ...]]] = itertools.product
     for names in itertools.islice(combined(*choices), MOST):
         yield dict(zip(wanted, names, strict=True))

@@ -11,8 +11,8 @@ from attrs import define, field
 from missionfsm.kernel.alphabet import Bounds, Prompt
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.readings import meet
+from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks
 from missionfsm.tools.guide import Guide, Proposal
@@ -26,7 +26,7 @@ WIDE = 48
 """How many explanations of a conversation are so many that the next one assumes what is known."""
 
 RARE, RAREST = 0.4, 3
-"""How often a tour turns to what the rules have said least in the whole run, and among how many such things it draws."""
+"""How often a tour turns to what the rules have said least in the whole run, and among how many things it draws."""
 
 FAVOURED = 0.5
 """How often a tour that has a favourite turns to it."""
@@ -51,7 +51,7 @@ class Run:
     automaton: Automaton
     bounds: Bounds
     progress: Callable[[], None] = lambda: None
-    guide: Guide = field(default=None)  # type: ignore[assignment] - made below where none is given
+    guide: Guide = field(default=None)  # type: ignore[assignment]  # made below where none is given
     last: Conversation | None = None
     found: Conversation | None = None
     events: int = 0
@@ -101,9 +101,7 @@ class Run:
                     times[rule] = times.get(rule, 0) + count
         return times
 
-    def act(
-        self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()
-    ) -> bool:
+    def act(self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()) -> bool:
         """Do something in the conversation that was begun last; False once it cannot be explained."""
         last = self.last
         assert last is not None, "a conversation has begun"  # noqa: S101 - whoever acts has begun one
@@ -188,7 +186,7 @@ class Run:
         for number in range(conversations):
             world = number % len(self.guide.worlds)
             self.start(self.guide.worlds[world])
-            if len(streams) == 1 and number % 4 != 3 and not self.act(streams[0], {}):  # noqa: PLR2004 - every fourth
+            if len(streams) == 1 and number % 4 != 3 and not self.act(streams[0], {}):
                 return False
             for _ in range(steps):
                 proposal = self._next(draw, world, favour if number % 2 else None)
@@ -224,9 +222,7 @@ class Run:
             equal = [one for one in equal if self.guide.visited[one.leads_to] == rare]
         return equal[draw.randrange(len(equal))]
 
-    def attempt(
-        self, world: JSON, actions: tuple[Action, ...], automaton: Automaton | None = None
-    ) -> Conversation:
+    def attempt(self, world: JSON, actions: tuple[Action, ...], automaton: Automaton | None = None) -> Conversation:
         """These actions in a new conversation, until it cannot be explained any more."""
         conversation = Conversation(self.system, self.subject, self.about, world, automaton or self.automaton)
         for action in actions:

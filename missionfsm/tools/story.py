@@ -71,7 +71,9 @@ def suspects(system: System, history: tuple[JSON, ...], readings: dict[str, str]
         if all(judge.feed(one) for one in rest):
             call = next(one for one in lines if one.get("call") == line["return"])
             said = "OK" if "result" in line else line["error"]["status"]
-            request = system.codec.request(call["method"], system.codec.split(call["method"], call.get("params", {}))[1])
+            request = system.codec.request(
+                call["method"], system.codec.split(call["method"], call.get("params", {}))[1]
+            )
             found.append(f"{system.spec.describe(request)} was answered {said}")
     return tuple(found)
 

@@ -18,7 +18,15 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.rules import FAILED_PRECONDITION, INVALID_ARGUMENT, NOT_FOUND, OK, PERMISSION_DENIED, Operation, Rule
+from missionfsm.kernel.rules import (
+    FAILED_PRECONDITION,
+    INVALID_ARGUMENT,
+    NOT_FOUND,
+    OK,
+    PERMISSION_DENIED,
+    Operation,
+    Rule,
+)
 from missionfsm.kernel.spec import Spec, Step
 from missionfsm.kernel.subject import Exchange
 from missionfsm.kernel.system import System
@@ -162,7 +170,7 @@ class _Broken(Reference):
 def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
     run = Run(system, broken, introduce(system, broken), automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
-    if run.tour(random.Random(seed), TOURS, STEPS, mutant.favour):
+    if run.tour(random.Random(seed), TOURS, STEPS, mutant.favour):  # noqa: S311 - no secret
         return Bite(mutant.name, mutant.rule, killed=False, because=_excuse(system, mutant, broken.model, guide.worlds))
     if run.found is None:
         return Bite(mutant.name, mutant.rule, killed=True)
@@ -197,7 +205,14 @@ def mutants(system: System) -> Iterator[Mutant]:
     for bend in system.bends:
         yield Mutant(bend.rule, bend.says, {}, None, spec, bend=bend.bend)
     for one in system.twists:
-        yield Mutant(one.rule, one.says, _in_force(spec, one.rule), _operation_of(spec, one.rule), spec, _where(one.rule, one.twist))
+        yield Mutant(
+            one.rule,
+            one.says,
+            _in_force(spec, one.rule),
+            _operation_of(spec, one.rule),
+            spec,
+            _where(one.rule, one.twist),
+        )
 
 
 def _operation_of(spec: Spec, rule: str) -> str | None:
@@ -213,14 +228,14 @@ def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
     return {rule.under.of.id: rule.under.letters[0]}
 
 
-def _of_refusal(
-    spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]
-) -> Iterator[Mutant]:
+def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]) -> Iterator[Mutant]:
     choice = {**_in_force(spec, rule.id), **reaching}
     code = next(code for code in _OTHER_CODES if code != rule.code)
     if spec.rebuilt is None or rule.holds is None:
         # Its condition is in the effect: what can be broken is what is answered.
-        yield Mutant(rule.id, "is answered with another code", choice, operation.name, spec, _where(rule.id, _coded(code)))
+        yield Mutant(
+            rule.id, "is answered with another code", choice, operation.name, spec, _where(rule.id, _coded(code))
+        )
         yield Mutant(rule.id, "is dropped", choice, operation.name, spec, _where(rule.id, _coded(OK)))
         return
     for kind, others in (

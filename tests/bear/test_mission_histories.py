@@ -171,7 +171,7 @@ RACES = {
 
 @pytest.mark.parametrize("race", RACES)
 def test_races_are_judged_both_ways(race: str) -> None:
-    """Calls that overlap may take effect in any order, those that do not in theirs alone (under the default readings)."""
+    """Calls that overlap may take effect in any order, others in theirs alone (default readings)."""
     lines, right = RACES[race]
     verdict = judged(*lines, readings=DEFAULT)
     assert verdict.conforms is right, str(verdict)
@@ -227,7 +227,7 @@ CALLS_WITHOUT_ANSWER = {
 @pytest.mark.parametrize("known", [True, False], ids=["known to be lost", "pending"])
 @pytest.mark.parametrize("case", CALLS_WITHOUT_ANSWER)
 def test_a_call_without_an_answer_may_have_happened(case: str, *, known: bool) -> None:
-    """A call without an answer happened once at some time after it was sent, or never; knowing that beforehand is all one."""
+    """A call without an answer happened once at some time after it was sent, or never."""
     lines, right = CALLS_WITHOUT_ANSWER[case]
     verdict = judged(*lines, lost=frozenset({7}) if known else frozenset())
     assert verdict.conforms is right, str(verdict)

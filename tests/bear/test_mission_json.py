@@ -259,13 +259,9 @@ def test_a_state_without_a_name_is_kept() -> None:
 
 def test_a_world_has_defaults() -> None:
     """What a world leaves out is as the adapter protocol says; what is written is read again."""
+    tables = ("table-1", "table-2", "table-3")
     assert CODEC.world({}) == World(
-        Family.SERVI,
-        True,
-        True,
-        ("table-1", "table-2", "table-3"),
-        (),
-        blocked=False,  # noqa: FBT003
+        Family.SERVI, contact_dock=True, charging_location=True, destinations=tables, occupied=(), blocked=False
     )
     for world in (World(), World(Family.CARTI, contact_dock=False, occupied=("table-2",), blocked=True)):
         assert CODEC.world(CODEC.write_world(world)) == world

@@ -1,4 +1,4 @@
-"""Histories to measure with: what a robot that runs missions all day, and one client that watches it, leave in a log."""
+"""Histories to measure with: the log of a robot that runs missions all day, and of one client that watches it."""
 
 from __future__ import annotations
 

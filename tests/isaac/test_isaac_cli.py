@@ -30,7 +30,7 @@ class Process:
     """A child process whose output is read line by line, as it comes."""
 
     def __init__(self, *arguments: str) -> None:
-        self.child = subprocess.Popen(  # noqa: S603 - our own command
+        self.child = subprocess.Popen(
             [sys.executable, "-c", APP, *arguments],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8",
             env={**os.environ, "PYTHONUTF8": "1", "COLUMNS": "200"},
@@ -222,9 +222,7 @@ def test_isaac_cli_a_reader_that_goes_away_does_not_stop_the_missions(tmp_path: 
     reading, writing = os.pipe()
     os.close(reading)
     arguments = ["dispatch", file, "--host", "127.0.0.1", "--port", port]
-    server = subprocess.Popen(  # noqa: S603 - our own command
-        [sys.executable, "-c", APP, *arguments], stdout=writing, stderr=subprocess.PIPE
-    )
+    server = subprocess.Popen([sys.executable, "-c", APP, *arguments], stdout=writing, stderr=subprocess.PIPE)
     os.close(writing)
     start("robot", "--name", "r", "--port", port, "--duration", "0")
     _, errors = server.communicate(timeout=20)

@@ -125,7 +125,7 @@ def test_isaac_dag_the_server_is_the_naive_server(data: st.DataObject) -> None:
     assert server.core.unfinished == sum(one in {"QUEUED", "STARTED", "RUNNING"} for one in naive.status)
 
 
-def simulate(  # noqa: C901 - one loop over what two sides say
+def simulate(
     missions: list[tuple[int, list[int]]], robots: int, failing: set[int], tick: float = 0.5
 ) -> Iterator[tuple[Uuid, str]]:
     """Server and robots over real lines in virtual time; every status change in order."""

@@ -185,7 +185,7 @@ def test_isaac_file_is_submitted_in_its_order() -> None:
 @pytest.mark.parametrize("letter", "abc")
 def test_isaac_file_is_taken_whole_under_every_reading_of_unsubmitted_upstreams(letter: str) -> None:
     """Whatever a server does with upstreams that were not submitted, a whole file is no problem."""
-    random_numbers = random.Random(1)  # noqa: S311 - no secret
+    random_numbers = random.Random(1)
     entries = []
     for index in range(60):
         later = random_numbers.sample(range(index + 1, 60), k=min(2, 59 - index))

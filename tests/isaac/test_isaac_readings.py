@@ -549,7 +549,7 @@ def profiles(draw: st.DrawFn) -> Profile:
 
 
 @given(profiles(), st.data())
-def test_isaac_invariants_hold_under_every_profile(  # noqa: C901, PLR0915 - one walk through all events
+def test_isaac_invariants_hold_under_every_profile(  # noqa: PLR0915 - one walk through all events
     profile: Profile, data: st.DataObject
 ) -> None:
     """Whatever the readings and the events: nothing is sent before its upstreams have succeeded, nor twice save by

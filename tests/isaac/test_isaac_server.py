@@ -375,4 +375,4 @@ def test_isaac_server_void_deadlines_do_not_pile_up() -> None:
     for number in range(10_000):
         server.add(timeout=1e6)
         server.report(1, number, SUCCESS)
-    assert len(server.core._scheduler.deadlines) < 200  # noqa: SLF001 - that is the claim
+    assert len(server.core._scheduler.deadlines) < 200

@@ -99,7 +99,7 @@ class Peer:
 
 
 @contextlib.asynccontextmanager
-async def serving(**settings: Any) -> AsyncIterator[TcpMissionServer]:  # noqa: ANN401
+async def serving(**settings: Any) -> AsyncIterator[TcpMissionServer]:
     server = TcpMissionServer(host="127.0.0.1", port=0, **settings)
     await server.start()
     try:
@@ -108,7 +108,7 @@ async def serving(**settings: Any) -> AsyncIterator[TcpMissionServer]:  # noqa: 
         await server.close()
 
 
-def add(server: TcpMissionServer, robot: str, **settings: Any) -> Uuid:  # noqa: ANN401
+def add(server: TcpMissionServer, robot: str, **settings: Any) -> Uuid:
     made = fresh_uuid()
     assert server.create(MissionRequest(robot, **settings), made) is None
     assert server.submit(made) is None

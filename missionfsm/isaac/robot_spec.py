@@ -115,8 +115,8 @@ def _arrives(here: Codelet, event: Arrives, _: tuple[int | None, ...]) -> tuple[
         return ()
     ignored = Step(here, rules=(rules.IGNORES.id,))
     if event.foreign:
-        taken = _mission(here, event, (AI_27_TYPE["b"],), usable=True)
-        return (evolve(ignored, assumes=(AI_27_TYPE["a"],)), taken)
+        heeded = _mission(here, event, (AI_27_TYPE["b"],), usable=True)
+        return (evolve(ignored, assumes=(AI_27_TYPE["a"],)), heeded)
     if event.mission is None:
         return (ignored,)
     ways: list[tuple[bool, tuple[Assumption, ...]]] = []

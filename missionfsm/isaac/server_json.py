@@ -191,12 +191,10 @@ def write_request(asked: Submission | Statuses, names: tuple[Name, ...]) -> JSON
         return {}
     mission: dict[str, JSON] = {"channel": asked.channel, "config": json.loads(asked.config)}
     mission["upstream"] = [name[1] for name in names]  # type: ignore[index]
-    for key, value in (("robot", asked.robot), ("status_channel", asked.status_channel)):
-        if value is not None:
-            mission[key] = value
-    for key, time in (("start_timeout", asked.start), ("timeout", asked.run)):
-        if time is not None:
-            mission[key] = time / MICROSECONDS
+    texts = (("robot", asked.robot), ("status_channel", asked.status_channel))
+    times = (("start_timeout", asked.start), ("timeout", asked.run))
+    mission |= {key: text for key, text in texts if text is not None}
+    mission |= {key: time / MICROSECONDS for key, time in times if time is not None}
     return {"mission": mission}
 
 

@@ -43,7 +43,8 @@ NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
 class Heard:
     """A line that a robot sends.
 
-    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN` type.
+    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`
+    type.
 
     Attributes:
         what: the name's text, or the status.

@@ -287,7 +287,7 @@ AMBIGUITIES = (
 WAIVED: Mapping[str, str] = {
     "AI-01": "one reading is left: completed successfully. A downstream that is sent after a failure is a violation",
     "AI-08": "b, a stop message, is not offered: no such message is documented, so none could be told from a mistake",
-    "AI-14": "missions on several channels of one robot are the same question as AI-11 c; its other half is AI-14.status",
+    "AI-14": "missions on several channels of one robot are the question of AI-11 c; the other half is AI-14.status",
     "AI-16": "c, both connections get the mission, is a violation and not offered",
     "AI-18": "whether a connection without a name is closed after a time (c, d) cannot be seen: nothing is owed to it, "
     "and a drive on a connection that is closed does not happen",

@@ -328,11 +328,17 @@ INVARIANTS = (
         lambda server: all(one.sent for one in server.missions if one.status in UNDER_WAY),
     ),
 )
+
+
+def _some_mission_is(status: Status, server: Server) -> bool:
+    return any(one.status is status for one in server.missions)
+
+
 POSSIBILITIES = tuple(
     Invariant(
         f"a-mission-is-{status.name.lower()}",
         f"Some mission is {status.name}.",
-        lambda server, status=status: any(one.status is status for one in server.missions),
+        functools.partial(_some_mission_is, status),
     )
     for status in LIFECYCLE.states
 )

@@ -159,4 +159,4 @@ def from_json(rest: JSON) -> Said | Garbled:
     if isinstance(rest, dict):
         return Garbled(rest["garbled"])
     *first, bare = rest
-    return Said(*first, bare=tuple(bare))
+    return Said(*first, bare=tuple(bare))  # type: ignore[misc]  # the rest are those before it

@@ -138,12 +138,12 @@ class Conversation:
         if exchange.error is None:
             self._note({"return": number, "result": exchange.result})
             if method != "cancel":
-                self._learn(number, method, exchange.result)
+                self._learn(method, exchange.result)
         else:
             self._note({"return": number, "error": exchange.error})
         self._notifications(exchange.after)
 
-    def _learn(self, number: int, method: str, result: JSON) -> None:
+    def _learn(self, method: str, result: JSON) -> None:
         answer, names = self.system.codec.answer(method, result)
         self._know(names)
         if answer.code == OK and method not in self.system.codec.streams:

@@ -127,17 +127,19 @@ class Guide:
         here = belief.node.explanations[0]
         shape, phase = self.system.spec.shape(here.state), self.system.spec.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
-        names: list[tuple[int | None, Given | str]] = [(None, wrong) for wrong in self.alphabets[world].wrong_names[:1]]
+        wrong = self.alphabets[world].wrong_names[:1]
+        nameless: list[tuple[int | None, Given | str | None]] = [(None, None)]
+        names: list[tuple[int | None, Given | str | None]] = [(None, one) for one in wrong]
         for position, number in enumerate(here.names):
-            name = belief.name(number)
-            if name in known:
-                names.append((position, known[name]))
+            seen = belief.name(number)
+            if seen in known:
+                names.append((position, known[seen]))
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
         for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
             for call in self._calls[world].get(label, ()):
-                for position, name in names if call.named else [(None, None)]:
-                    refs = (position,) if call.named else ()
+                for where, name in names if call.named else nameless:
+                    refs = (where,) if call.named else ()
                     edge = self._edge(conversation, here, shape, call.request, refs)
                     if edge:
                         found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
@@ -165,7 +167,7 @@ class Guide:
         given = {name: one for one, name in conversation.given.items()}
         for template in templates:
             for picked in ways(template.wants, given, self.system.naming):
-                refs = tuple(positions.get(picked.get(slot)) for slot in template.slots)
+                refs = tuple(positions.get(picked.get(-1 if slot is None else slot)) for slot in template.slots)
                 if template.method == "drive":
                     edge = self._drive_edge(here, shape, template.what, refs, exact=True)
                 else:
@@ -190,7 +192,7 @@ class Guide:
         self.said[proposal.phase, proposal.edge[1:]] += 1
         self.visited[proposal.leads_to] += 1
 
-    def _edge(
+    def _edge(  # noqa: PLR0913 - what leads anywhere
         self,
         conversation: Conversation,
         here: Explanation,

@@ -51,7 +51,7 @@ class Run:
     automaton: Automaton
     bounds: Bounds
     progress: Callable[[], None] = lambda: None
-    guide: Guide = field(default=None)  # type: ignore[assignment]  # made below where none is given
+    guide: Guide = field(default=None)
     last: Conversation | None = None
     found: Conversation | None = None
     events: int = 0
@@ -235,6 +235,18 @@ class Run:
         if self.found is not None and not self.found.judge.exhausted:
             same = functools.partial(self.attempt, automaton=self.found.judge.automaton)
             self.found = shrink(self.found, same, self._simpler, self.guide.worlds[0])
+
+    def shorten_evidence(self) -> None:
+        """Make the conversations that ruled out the readings of a contradiction as short as can be."""
+        for (name, letter), conversation in list(self.settled_by.items()):
+            if name == self.contradiction:
+
+                def shows(tried: Conversation, name: str = name, letter: str = letter) -> bool:
+                    return tried.right and letter not in tried.judge.belief.readings.get(name, (letter,))
+
+                self.settled_by[name, letter] = shrink(
+                    conversation, self.attempt, self._simpler, self.guide.worlds[0], shows
+                )
 
     def _simpler(self, world: JSON, method: str) -> tuple[Prompt, ...]:
         return tuple(one for one in self.system.alphabet(world, self.bounds).plain if one.method == method)

@@ -16,28 +16,44 @@ Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 MOST_ATTEMPTS = 2_000
 
 
+def unexplained(conversation: Conversation) -> bool:
+    """Whether a conversation cannot be explained."""
+    return not conversation.right and not conversation.judge.exhausted
+
+
 def shrink(
-    found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]], usual: JSON
+    found: Conversation,
+    attempt: Attempt,
+    simpler: Callable[[JSON, str], tuple[Prompt, ...]],
+    usual: JSON,
+    shows: Callable[[Conversation], bool] = unexplained,
 ) -> Conversation:
-    """A conversation that cannot be explained either, from which nothing can be left out.
+    """A conversation that shows the same, from which nothing can be left out.
 
     Args:
-        found: one that cannot be explained.
+        found: one that shows it.
         attempt: has one anew.
         simpler: (world, method) to prompts that may stand in for a call of that method.
         usual: the world to have it in, if that will do.
+        shows: what is to be shown; that it cannot be explained, usually.
     """
-    return _Shrinker(found, attempt, simpler, usual).run()
+    return _Shrinker(found, attempt, simpler, usual, shows).run()
 
 
 class _Shrinker:
     def __init__(
-        self, found: Conversation, attempt: Attempt, simpler: Callable[[JSON, str], tuple[Prompt, ...]], usual: JSON
+        self,
+        found: Conversation,
+        attempt: Attempt,
+        simpler: Callable[[JSON, str], tuple[Prompt, ...]],
+        usual: JSON,
+        shows: Callable[[Conversation], bool],
     ) -> None:
         self.best = found
         self.attempt = attempt
         self.simpler = simpler
         self.usual = usual
+        self.shows = shows
         self.left = MOST_ATTEMPTS
 
     def run(self) -> Conversation:
@@ -50,12 +66,12 @@ class _Shrinker:
         return tuple(self.best.actions)
 
     def _try(self, world: JSON, actions: tuple[Action, ...]) -> bool:
-        """Keep this instead if it cannot be explained either and is no longer."""
+        """Keep this instead if it shows the same and is no longer."""
         if not self.left:
             return False
         self.left -= 1
         tried = self.attempt(world, actions)
-        if tried.right or len(tried.actions) > len(self.best.actions):
+        if not self.shows(tried) or len(tried.actions) > len(self.best.actions):
             return False
         self.best = tried
         return True

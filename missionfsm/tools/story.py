@@ -105,6 +105,7 @@ def ruled_out(system: System, conversation: Conversation, ambiguity: str, letter
 
 def inconsistent(run: Run) -> Violation:
     """The violation of an implementation that follows one reading now and another later: names both events."""
+    run.shorten_evidence()
     name = run.contradiction
     ambiguity = next(one for one in run.system.spec.ambiguities if one.id == name)
     expected, notes = [], []

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from attrs import evolve
+
 from missionfsm.adapters.historyfile import (
     STDIN,
     Stamps,
@@ -54,16 +56,26 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         except UnreadableError as error:
             raise wrong_line(path, number, error) from None
         judges: dict[str | None, Judge] = {}
+        stopped: dict[str | None, int] = {}
         for number, line in numbered:
             try:
                 robot = stamps.robot(line)
                 judge = judges.get(robot)
                 if judge is None:
                     judge = judges[robot] = nobody if robot is None else new_judge(robot)
-                judge.feed(line)
+                if not judge.feed(line):
+                    stopped.setdefault(robot, number)
             except UnreadableError as error:
                 raise wrong_line(path, number, error) from None
     finally:
         if path != STDIN:
             source.close()
-    return [(robot, judge.verdict()) for robot, judge in (judges or {None: nobody}).items()]
+    verdicts = ((robot, judge.verdict()) for robot, judge in (judges or {None: nobody}).items())
+    return [(robot, located(verdict, stopped.get(robot))) for robot, verdict in verdicts]
+
+
+def located(verdict: Verdict, line: int | None) -> Verdict:
+    """The verdict with the line of the file in which the violation is."""
+    if verdict.violation is None or line is None:
+        return verdict
+    return evolve(verdict, violation=evolve(verdict.violation, at=line, where=f"line {line}: "))

@@ -192,24 +192,39 @@ def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
     if not busy:
         yield from _from_free(move, queue)
         return
-    one_at_a_time, several = split(move, AI_11, "a")
+    apart = _lanes(missions, [index for index in queue if missions[index].channel not in busy])
+    holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
+    held, several = split(move, AI_11, holding)
     if several is not None:
         for letter, way in ways(several, AI_11, "b", "c"):
-            if letter == "b":
-                yield from _from_lane(way, queue)
-            else:
-                for channel in dict.fromkeys(missions[index].channel for index in queue):
-                    if channel not in busy:
-                        yield from _from_lane(way, [index for index in queue if missions[index].channel == channel])
-    if one_at_a_time is not None:
-        yield None, one_at_a_time
+            yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
+    if held is not None:
+        yield None, held
+
+
+def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
+    """The missions of a queue, those of each channel by themselves."""
+    lanes: dict[str, list[int]] = {}
+    for index in queue:
+        lanes.setdefault(missions[index].channel, []).append(index)
+    return list(lanes.values())
+
+
+def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
+    """What may be sent of several queues that do not wait for one another."""
+    missions = move.state.missions
+    surely = any(missions[lane[0]].ready for lane in lanes)
+    for lane in lanes:
+        for index, way in _from_lane(move, lane):
+            if index is not None or not surely:
+                yield index, way
 
 
 def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
     """Nothing is under way: the queue as one, or (AI-11 c) by channels, where that makes a difference."""
     missions = move.state.missions
-    channels = dict.fromkeys(missions[index].channel for index in queue)
-    if len(channels) == 1:
+    lanes = _lanes(missions, queue)
+    if len(lanes) == 1:
         yield from _from_lane(move, queue)
         return
     first = queue[0]
@@ -221,10 +236,8 @@ def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
         for index, way in _from_lane(whole, queue):
             found.setdefault(index, []).append(way)
     if apart is not None:
-        for channel in channels:
-            for index, way in _from_lane(apart, [one for one in queue if missions[one].channel == channel]):
-                if index is not None:
-                    found.setdefault(index, []).append(way)
+        for index, way in _from_lanes(apart, lanes):
+            found.setdefault(index, []).append(way)
     for index, moves in found.items():
         if index != first:
             yield from ((index, way) for way in dict.fromkeys(moves))

@@ -55,17 +55,20 @@ class _Script:
         self.lines.append(Line("drive", {"event": "connect"}))
         return self
 
-    def name(self, link: int, robot: str, channel: str = "name") -> _Script:
-        self.lines.append(Line("drive", _line(header(TextProto, channel), {"text": robot}), ((LINK, link),)))
+    def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> _Script:
+        self.lines.append(Line("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),)))
         return self.look()
 
     def robot(self, link: int, robot: str) -> _Script:
         return self.connect().name(link, robot).wait()
 
-    def report(self, link: int, mission: int, status: str, channel: str = "mission_status") -> _Script:
-        payload = {"uuid": pick("uuid", UUID), "missionStatus": status}
-        line = _line(header(MissionStatusProto, channel, uuid=pick("uuid", UUID)), payload)
-        self.lines.append(Line("drive", line, ((LINK, link), (UUID, mission))))
+    def report(
+        self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
+    ) -> _Script:
+        uuid = {"uuid": pick("uuid", UUID)}
+        head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
+        payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
+        self.lines.append(Line("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
         return self.wait()
 
     def raw(self, link: int, text: str) -> _Script:
@@ -240,6 +243,75 @@ _SCRIPTS = (
     .report(0, 0, "running")
     .report(0, 0, "success")
     .report(1, 1, "success"),
+    # Who goes first: one that waits is in front, and of the others there are several.
+    _Script()
+    .submit(B)
+    .submit(A, 0)
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "success")
+    .robot(1, B)
+    .report(1, 1, "success"),
+    # Statuses that name their mission in the payload, in the header, nowhere.
+    _Script()
+    .submit(A)
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running", by="")
+    .report(0, 0, "running", by="header")
+    .report(0, 0, "success", by="payload")
+    .report(0, 1, "success", by="header")
+    .report(0, 1, "success", by=""),
+    # The status channel of a mission that names another channel only.
+    _Script()
+    .submit(A, channel="arm")
+    .robot(0, A)
+    .report(0, 0, "running", "arm_status")
+    .report(0, 0, "success", "mission_status"),
+    # A newer connection takes over in the middle of a mission.
+    _Script()
+    .submit(A, timeout=30)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .robot(1, A)
+    .report(0, 0, "success")
+    .report(1, 0, "success")
+    .drop(1),
+    # An upstream that was sent and not acknowledged when its downstream came.
+    _Script().submit(A).robot(0, A).submit(A, 0).wait().report(0, 0, "success").report(0, 1, "running"),
+    # Timeouts of 0.
+    _Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
+    # One upstream fails while the other runs.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .submit(A, 0, 1)
+    .robot(0, A)
+    .robot(1, B)
+    .report(1, 1, "running")
+    .report(0, 0, "failure")
+    .report(1, 1, "success"),
+    # Names with space around them, a second name, a name whose message has numbers for its times, and odd messages.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .connect()
+    .name(0, f" {A} ")
+    .wait()
+    .connect()
+    .name(1, B, pubtime=17, acqtime=17)
+    .wait()
+    .report(1, 0, "running")
+    .robot(2, A)
+    .raw(2, '{"header":{"channel":"camera","proto":"TensorProto"},"payload":{}}')
+    .report(2, 1, "running")
+    .report(2, 0, "running")
+    .name(2, B)
+    .wait()
+    .report(2, 1, "success"),
     # Upstreams that do not exist.
     _Script()
     .refused(upcoming("mission"))

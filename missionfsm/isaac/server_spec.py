@@ -228,7 +228,8 @@ def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[
 
 
 def _urgent(server: Server) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for move in merged(urgent(Move(server))))
+    # Decisions alone are kept apart: one that was undone would be due again.
+    return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server))))
 
 
 def _spontaneous(server: Server) -> tuple[Step, ...]:

@@ -65,6 +65,7 @@ def _odd() -> Iterator[Prompt]:
     yield _submit(robot=robot, config=None)
     yield _submit(robot=robot, channel=None)
     yield _submit(robot=robot, channel=3)
+    yield _submit(robot=robot, channel="")
     yield _submit(robot=robot, priority=3)
     yield Prompt("submit", {"mission": "carter"})
     yield Prompt("submit", {})

@@ -17,6 +17,7 @@ from attrs import frozen
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.explanation import Explanation
+from missionfsm.kernel.oracle import Oracle
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
@@ -124,7 +125,7 @@ class Guide:
             rare: look at all of them, and put first what the rules have said least often in the whole run.
         """
         belief = conversation.judge.belief
-        here = belief.node.explanations[0]
+        here = _rested(conversation.judge.automaton.oracle, belief.node.explanations[0])
         shape, phase = self.system.spec.shape(here.state), self.system.spec.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
         wrong = self.alphabets[world].wrong_names[:1]
@@ -248,6 +249,16 @@ class Guide:
         """Where an edge begins; where nothing changes that may be said more coarsely."""
         idle = self.system.spec.idle_shape
         return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
+
+
+def _rested(oracle: Oracle, here: Explanation) -> Explanation:
+    """Where an explanation comes to rest."""
+    while step := next((one for one in oracle.urgent(here.state) if meet(here.assumed, one.assumes)), None):
+        taken = oracle.advance(here, step)
+        if taken is None:
+            break
+        here = taken[0]
+    return here
 
 
 def _prepared_templates(system: System, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[Template]]:

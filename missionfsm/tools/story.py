@@ -12,7 +12,7 @@ from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Re
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transcript import Transcript, head
 from missionfsm.tools.check import Judge
-from missionfsm.tools.explain import answer_words, event_words, name_words
+from missionfsm.tools.explain import answer_words, event_words, name_words, told
 from missionfsm.tools.verdict import Allowed, Violation
 
 if TYPE_CHECKING:
@@ -87,20 +87,25 @@ class Evidence:
     event: str
 
 
-def ruled_out(system: System, conversation: Conversation, ambiguity: str, letter: str) -> str:
-    """The event of a conversation by which a reading was ruled out, in words."""
+def ruled_out(system: System, conversation: Conversation, ambiguity: str, letter: str) -> tuple[str, tuple[str, ...]]:
+    """The event of a conversation by which a reading was ruled out, in words, and the rules that it speaks for."""
     history = conversation.judge.history
     judge = Judge(system, head(history[0]), conversation.judge.automaton)
-    requests: dict[Any, str] = {}
+    requests: dict[Any, Any] = {}
     for line in history[1:]:
         for event in judge.transcript.read(line):
             if isinstance(event, Called):
-                requests[event.call] = event_words(system.spec, event)
+                requests[event.call] = event.request
             judge.belief.observe(event)
-            if letter not in judge.belief.readings.get(ambiguity, (letter,)):
-                asked = f"{requests.get(event.call, '')} " if isinstance(event, Returned) else ""
-                return asked + event_words(system.spec, event)
-    return "the conversation as a whole"
+            if letter in judge.belief.readings.get(ambiguity, (letter,)):
+                continue
+            if not isinstance(event, Returned) or event.call not in requests:
+                return event_words(system.spec, event), ()
+            request = requests[event.call]
+            operation = system.spec.operations[system.spec.request_operation(request)]
+            rules = tuple(rule.id for rule in operation.refusals if rule.code == event.answer.code)
+            return f"{event_words(system.spec, Called(event.call, request))} {event_words(system.spec, event)}", rules
+    return "the conversation as a whole", ()
 
 
 def inconsistent(run: Run) -> Violation:
@@ -108,17 +113,18 @@ def inconsistent(run: Run) -> Violation:
     run.shorten_evidence()
     name = run.contradiction
     ambiguity = next(one for one in run.system.spec.ambiguities if one.id == name)
-    expected, notes = [], []
+    expected, notes, rules = [], [], list[str]()
     last: Conversation | None = None
     for letter, answer in ambiguity.readings.items():
         conversation = run.settled_by[ambiguity.id, letter]
-        event = ruled_out(run.system, conversation, ambiguity.id, letter)
+        event, spoken_for = ruled_out(run.system, conversation, ambiguity.id, letter)
+        rules += spoken_for
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
         notes.append(f"{letter} is ruled out: {event}")
         last = conversation
     history = last.judge.history if last else ()
     return Violation(
-        (),
+        told(run.system.spec, rules),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
         tuple(notes),

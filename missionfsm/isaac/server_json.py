@@ -90,7 +90,8 @@ class _Reader:
         upstream = self._upstream()
         config = self._config()
         defects = tuple(one for one in rules.DEFECTS if one in self.defects)
-        return Submission(robot or None, channel or "mission", status_channel, config, start, run, upstream, defects)
+        channel = "mission" if channel is None else channel
+        return Submission(robot or None, channel, status_channel, config, start, run, upstream, defects)
 
     def _text(self, key: str) -> str | None:
         value = self.mission.get(key)

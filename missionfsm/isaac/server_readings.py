@@ -286,22 +286,24 @@ AMBIGUITIES = (
 
 WAIVED: Mapping[str, str] = {
     "AI-01": "one reading is left: completed successfully. A downstream that is sent after a failure is a violation",
-    "AI-08": "b, a stop message, is not offered: no such message is documented, so none could be told from a mistake",
-    "AI-14": "missions on several channels of one robot are the question of AI-11 c; the other half is AI-14.status",
-    "AI-16": "c, both connections get the mission, is a violation and not offered",
-    "AI-18": "whether a connection without a name is closed after a time (c, d) cannot be seen: nothing is owed to it, "
-    "and a drive on a connection that is closed does not happen",
-    "AI-20": "the mission file is read by the program around the server; of a submission, defects other than the "
-    "three that are asked apart are always refused",
-    "AI-21": "an upstream is named by a handle, which exists once that mission was submitted: no reference is forward",
-    "AI-22": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor a "
-    "second submission can be said; an upstream that has ended counts at once (g), and h is a violation",
+    "AI-08 b": "no stop message is documented, so none could be told from a mistake",
+    "AI-14 a, b": "several channels of one robot are the question of AI-11 c",
+    "AI-16 c": "both connections getting the mission is a violation",
+    "AI-18 c, d": "whether a connection without a name is closed after a time cannot be seen: nothing is owed to it, and "
+    "a drive on a connection that is closed does not happen",
+    "AI-20 b": "the mission file is read by the program around the server; a submission is refused for every defect that "
+    "is not asked apart",
+    "AI-21": "an upstream is named by a handle, which exists once that mission was submitted: no reference is forward, "
+    "and none makes a cycle",
+    "AI-22 a to h": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor "
+    "a second submission can be said; an upstream that has ended counts at once (g), and h is a violation",
     "AI-23": "not observable: slips in the sample",
     "AI-27": "only the channel is needed to route a message; other header fields may be missing",
     "AI-29": "about the program around the server",
     "AI-30": "about the program around the server",
-    "AI-32": "a FAILURE fails the mission that it is about, preempted or not (c)",
-    "AI-34": "the server's statuses are AI-04's; STARTED is sent and not acknowledged (b)",
+    "AI-32": "a FAILURE fails the mission that it is about, preempted or not (c); a and b are about the robot",
+    "AI-34": "the statuses of the server are those of AI-04; STARTED is sent and not acknowledged (b)",
     "AI-35": "one reading is left: a failure does not affect missions that do not depend on it",
+    "AI-37 c": "neither the default nor tolerated: robots whose names differ in case are two",
 }
 """Entries, or readings of them, that make no ambiguity of the server, each with the reason."""

@@ -77,8 +77,11 @@ def violation(belief: Belief, event: Event, calls: dict[Any, Any]) -> Violation:
         options, rules, notes = _against_message(belief, oracle, event)
     elif isinstance(event, Settled):
         options, rules, notes = _still_due(belief, oracle)
+    elif isinstance(event, Ended):
+        options, rules, notes = [], _following(spec), ("the stream had to go on",)
     else:
-        options, rules, notes = [], [], ()
+        moves = [rule.id for rule in spec.rules if LIFECYCLE in rule.id]
+        options, rules, notes = [], moves, ("nothing that is in a state for it was there",)
     merged: dict[str, _Option] = {}
     for option in options:
         before = merged.get(option.what)
@@ -190,6 +193,10 @@ def _against_message(
 
 FOLLOWS = "updates-follow-the-state"
 """What every system calls its promise that messages come when something changes, and not otherwise."""
+
+
+LIFECYCLE = "/lifecycle/"
+"""Where every system registers the moves of its lifecycle."""
 
 
 def _following(spec: Spec) -> list[str]:

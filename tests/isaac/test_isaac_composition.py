@@ -51,7 +51,7 @@ class Together:
     def key(self) -> object:
         """All that decides what may happen next, with connections by whose they are."""
         there = tuple((one.robot, one.connection is not None, one.running) for one in self.core.robots())
-        robots = tuple((one.codelet, tuple(one._kept)) for one in self.robots.values())  # noqa: SLF001 - for a test
+        robots = tuple((one.codelet, tuple(one._kept)) for one in self.robots.values())
         linked = tuple(one is not None for one in self.link.values())
         ways = tuple(self.up.values()), tuple(self.down.values())
         return self.statuses, there, robots, linked, ways, self.drops, tuple(self.started)

@@ -65,8 +65,7 @@ WAIVED: Mapping[str, str] = {
     "AI-22": _SERVER,
     "AI-23": "not observable: slips in the sample",
     "AI-24": _SERVER,
-    "AI-26": "lines are framed by the adapter protocol; a line that is no message is skipped, since nothing can close "
-    "or reopen the one connection here",
+    "AI-26": "the adapter protocol frames lines and cannot close a connection: what is no message is skipped",
     "AI-29": _PROGRAM,
     "AI-30": _PROGRAM,
     "AI-31": "no period is documented; RUNNING has to come within the stated bound, however often it does",

@@ -285,18 +285,14 @@ AMBIGUITIES = (
 )
 
 WAIVED: Mapping[str, str] = {
-    "AI-01": "one reading is left: completed successfully. A downstream that is sent after a failure is a violation",
+    "AI-01": "one reading is left, completed successfully; sending a downstream after a failure is a violation",
     "AI-08 b": "no stop message is documented, so none could be told from a mistake",
     "AI-14 a, b": "several channels of one robot are the question of AI-11 c",
     "AI-16 c": "both connections getting the mission is a violation",
-    "AI-18 c, d": "whether a connection without a name is closed after a time cannot be seen: nothing is owed to it, and "
-    "a drive on a connection that is closed does not happen",
-    "AI-20 b": "the mission file is read by the program around the server; a submission is refused for every defect that "
-    "is not asked apart",
-    "AI-21": "an upstream is named by a handle, which exists once that mission was submitted: no reference is forward, "
-    "and none makes a cycle",
-    "AI-22 a to h": "a submission makes and submits a mission in one, so neither an upstream that was not submitted nor "
-    "a second submission can be said; an upstream that has ended counts at once (g), and h is a violation",
+    "AI-18 c, d": "nothing is owed to a connection without a name, so closing it cannot be seen",
+    "AI-20 b": "mission files are not the server's; a submission is refused for all that is not asked apart",
+    "AI-21": "a handle exists once that mission was submitted: no upstream is further down, none makes a cycle",
+    "AI-22 a to h": "it makes and submits in one; an ended upstream counts at once (g); h is a violation",
     "AI-23": "not observable: slips in the sample",
     "AI-27": "only the channel is needed to route a message; other header fields may be missing",
     "AI-29": "about the program around the server",

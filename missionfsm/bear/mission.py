@@ -10,11 +10,12 @@ import enum
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.bear.messages import Goal, State
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.rules import Document
+from missionfsm.kernel.values import value
 
 MISSION = Document("Mission", "Mission (robot API)")
 SYSTEM = "bear.mission"
@@ -89,7 +90,7 @@ NOT_CHOSEN = -1
 """The goal of a NavigateAuto mission that has not selected one."""
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Mission:
     """One listed mission.
 
@@ -120,7 +121,7 @@ class Mission:
         return evolve(self, finishing=False, doomed=False) if self.finishing or self.doomed else self
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class World:
     """What the robot is and where it stands; the fields are those of the adapter protocol.
 
@@ -138,7 +139,7 @@ class World:
     blocked: bool = False
 
 
-@frozen
+@value
 class Fault:
     """The next call that would succeed and documents `status` answers with it; `applied`: and takes effect."""
 
@@ -146,7 +147,7 @@ class Fault:
     applied: bool
 
 
-@frozen
+@value
 class Robot:
     """A robot: its world and its listed missions in order.
 
@@ -173,7 +174,7 @@ class Robot:
         return (*self.done, *((self.active,) if self.active else ()), *self.pending)
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Situation:
     """All of a robot that decides what a call is answered; the ended and the waiting missions only count."""
 

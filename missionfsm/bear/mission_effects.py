@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.bear.messages import Command, State
 from missionfsm.bear.mission import (
@@ -72,6 +72,7 @@ from missionfsm.kernel.rules import (
     decide,
 )
 from missionfsm.kernel.spec import Failure
+from missionfsm.kernel.values import value
 
 Assumed = tuple[Assumption, ...]
 Way = tuple[Edit, Assumed]
@@ -81,7 +82,7 @@ ADDED, ACTIVE, GONE, NOBODY = "those added", "the active one", "those that vanis
 """Whose ids an answer has."""
 
 
-@frozen
+@value
 class Outcome:
     """One answer that is allowed in a situation, with the edit that comes with it."""
 
@@ -434,7 +435,7 @@ def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[W
             yield _become(evolve(active, goal=chosen)), ()
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Happening:
     """Something that the environment does: the name of a drive and what it takes."""
 

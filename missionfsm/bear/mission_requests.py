@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import enum
 
-from attrs import frozen
-
 from missionfsm.bear.messages import Command, Goal
 from missionfsm.bear.mission import Kind
+from missionfsm.kernel.values import value
 
 
 class Defect(enum.Enum):
@@ -21,7 +20,7 @@ class Defect(enum.Enum):
     FIELD = "a field is not known"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Wanted:
     """One mission that a request asks for; `kind` is None where the request does not say which."""
 
@@ -29,7 +28,7 @@ class Wanted:
     goals: tuple[Goal, ...] = ()
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Request:
     """One call of one operation.
 
@@ -57,7 +56,7 @@ class Target(enum.Enum):
     UNKNOWN = "not listed"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Call:
     """A request with what its mission id means to the robot that gets it."""
 

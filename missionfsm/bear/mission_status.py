@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.bear.messages import (
     BaseFeedback,
@@ -52,11 +52,12 @@ from missionfsm.bear.mission_readings import (
 from missionfsm.kernel.readings import Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
+from missionfsm.kernel.values import value
 
 TOPIC = "mission status"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Listing:
     """What a status message shows: the listed missions in order, which of them is active, and on what robot.
 
@@ -85,7 +86,7 @@ def listing(robot: Robot) -> Listing:
     )
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Seen:
     """A status message without its mission ids and metadata; `named` tells which missions have an id.
 
@@ -97,7 +98,7 @@ class Seen:
     bare: tuple[bool, ...]
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Garbled:
     """A status message that is not of the documented form."""
 
@@ -365,9 +366,9 @@ def _type(view: Listing, mission: Mission, message: MissionState, where: str) ->
 
 
 def _type_name(shown: MissionType) -> str:
-    for value in (shown.base_type, shown.servi_type, shown.carti_type):
-        if value is not None:
-            return value.name if hasattr(value, "name") else f"type {value}"
+    for one in (shown.base_type, shown.servi_type, shown.carti_type):
+        if one is not None:
+            return one.name if hasattr(one, "name") else f"type {one}"
     return "no type"
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from missionfsm.bear.mission_breaks import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission_json import CODEC
+from missionfsm.bear.mission_sketches import SKETCHES
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
@@ -228,4 +229,6 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING)
+SYSTEM = System(
+    SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES
+)

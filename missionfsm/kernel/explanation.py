@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.spec import Emission, State, Step, View
+from missionfsm.kernel.values import value
 
 Names = tuple[int, ...]
 """Names as the oracle numbers them: 0… were observed, -2, -3… exist and were not seen yet, `GONE` is neither."""
@@ -23,7 +24,7 @@ GONE = -1
 """The number of a name that was observed once and that nothing carries any more."""
 
 
-@frozen
+@value
 class Ready:
     """An answer that a call in flight may come back with, and the readings that this assumes."""
 
@@ -33,7 +34,7 @@ class Ready:
     rules: tuple[str, ...]
 
 
-@frozen
+@value
 class InFlight:
     """A call whose answer has not come.
 
@@ -48,7 +49,7 @@ class InFlight:
     done: Ready | None = None
 
 
-@frozen
+@value
 class Owed:
     """A message that a channel has still to show.
 
@@ -64,7 +65,7 @@ class Owed:
     stays: bool = False
 
 
-@frozen
+@value
 class Channel:
     """A stream or a connection: its name, its topic, what it showed last and what it owes."""
 
@@ -78,7 +79,7 @@ Lost = tuple[tuple[Hashable, Names], ...]
 """Calls that will never be answered and have not taken effect: (request, args), in the order in which they came."""
 
 
-@frozen
+@value
 class Explanation:
     """One way in which everything observed so far can have come about."""
 

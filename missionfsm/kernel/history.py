@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from attrs import frozen
+from missionfsm.kernel.values import value
 
 Name = Hashable
 """A mission id (text), ``("stream", 3)``, ``("call", 7)``, ``("connection", 1)``: names of two kinds never meet."""
@@ -18,7 +18,7 @@ Mark = tuple[Hashable, int]
 """A number that is only ever compared with its predecessor on the same track: (track, number)."""
 
 
-@frozen
+@value
 class Answer:
     """What came back: a status name, and for OK the shape of the result without its names.
 
@@ -33,7 +33,7 @@ class Answer:
         return self.code if self.shape is None else f"{self.code} {self.shape}"
 
 
-@frozen
+@value
 class Called:
     """A call is sent. `request` is a value of the system; `lost` says that no answer is known to come."""
 
@@ -43,7 +43,7 @@ class Called:
     lost: bool = False
 
 
-@frozen
+@value
 class Returned:
     """The answer to a call arrives."""
 
@@ -52,7 +52,7 @@ class Returned:
     names: tuple[Name, ...] = ()
 
 
-@frozen
+@value
 class Received:
     """A message arrives on a stream, or a line on a connection."""
 
@@ -62,7 +62,7 @@ class Received:
     marks: tuple[Mark, ...] = ()
 
 
-@frozen
+@value
 class Ended:
     """A stream ends by itself, with a status name or, cleanly, with OK."""
 
@@ -70,14 +70,14 @@ class Ended:
     code: str
 
 
-@frozen
+@value
 class Cancelled:
     """The subscriber gave a stream up: what still comes on it means nothing."""
 
     channel: Name
 
 
-@frozen
+@value
 class Driven:
     """The environment is known to have done this."""
 
@@ -85,7 +85,7 @@ class Driven:
     names: tuple[Name, ...] = ()
 
 
-@frozen
+@value
 class Settled:
     """All that was caused before has been seen."""
 

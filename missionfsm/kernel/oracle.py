@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.kernel.explanation import (
     GONE,
@@ -31,6 +31,7 @@ from missionfsm.kernel.explanation import (
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet, merge
 from missionfsm.kernel.spec import Match, Mismatch, Spec, Step
+from missionfsm.kernel.values import value
 
 LAG = 6
 """How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones."""
@@ -43,7 +44,7 @@ class ExhaustedError(Exception):
     """An event has more explanations than the budget allows."""
 
 
-@frozen
+@value
 class Sighting:
     """An explanation that an observation leaves, and the rules that were exercised on the way."""
 

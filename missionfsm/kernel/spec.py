@@ -26,6 +26,7 @@ from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule
+from missionfsm.kernel.values import value
 
 State = Any
 """A frozen, hashable value of the system."""
@@ -34,7 +35,7 @@ View = Any
 """What one message shows, as a frozen, hashable value; names are left out and stand beside it."""
 
 
-@frozen
+@value
 class Emission:
     """A message that a step owes to every channel that its topic concerns.
 
@@ -55,7 +56,7 @@ class Emission:
     certain: bool = False
 
 
-@frozen
+@value
 class Opening:
     """A channel that a step opens: its topic, and its name as a reference like those in `Step.names`.
 
@@ -68,7 +69,7 @@ class Opening:
     kind: str = "stream"
 
 
-@frozen
+@value
 class Step:
     """Something that may happen, with the state after it.
 
@@ -119,7 +120,7 @@ class Failure:
     driven: bool = True
 
 
-@frozen
+@value
 class Match:
     """One way in which a message can be the showing of a view.
 

@@ -9,6 +9,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
+from missionfsm.kernel.sketch import Plan, Sketch
 from missionfsm.kernel.spec import Spec, Step
 
 
@@ -41,6 +42,7 @@ class System:
         naming: how its names are made up and written.
         bends, twists: how an implementation may break its promises, besides the ways that fit any system.
         reaching: name of a rule to the readings under which its condition can come about at all.
+        sketches, plans: what of it is drawn besides its charts.
     """
 
     name: str
@@ -51,3 +53,5 @@ class System:
     bends: tuple[Bend, ...] = ()
     twists: tuple[Break, ...] = ()
     reaching: Mapping[str, Mapping[str, str]] = field(factory=dict)
+    sketches: tuple[Sketch, ...] = ()
+    plans: tuple[Plan, ...] = ()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import field, frozen
@@ -163,8 +164,8 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     assumed: int = ANYTHING,
     *,
     forget_ended: bool = False,
-) -> dict[State, State | None]:
-    """Every state within `most` names, nearest first, with the state that it was first reached from.
+) -> Reached:
+    """Every state within `most` names.
 
     Args:
         forget_ended: what has ended is only counted, where the system can (see `Spec.forget_ended`).
@@ -172,9 +173,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     if spec.shortcut:
         events = [event for event, _ in labels.events]
         short = spec.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
-        codes = _reach(short.encode(start), short.successors)
-        states = dict(zip(codes, map(short.decode, codes), strict=True))
-        return {states[code]: None if before is None else states[before] for code, before in codes.items()}
+        return Reached(_reach(short.encode(start), short.successors), short.decode)
     quotient = (spec.forget_ended if forget_ended else None) or _itself
 
     def successors(here: State) -> Iterator[State]:
@@ -182,15 +181,57 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
             if meet(assumed, one.step.assumes) and spec.names(one.step.after) <= most:
                 yield quotient(one.step.after)
 
-    return _reach(quotient(start), successors)
+    return Reached(_reach(quotient(start), successors), _itself)
 
 
 def _itself(state: State) -> State:
     return state
 
 
-def _reach(start: State, successors: Callable[[State], Iterable[State]]) -> dict[State, State | None]:
-    found: dict[State, State | None] = {start: None}
+class Reached:
+    """The states that were reached, nearest first, and where each was first reached from.
+
+    They are kept as the codes that they were explored as, and read only when somebody looks at them.
+
+    Args:
+        before: every code to the one that it was first reached from, nearest first.
+        decode: a code to its state.
+    """
+
+    def __init__(self, before: Mapping[Hashable, Hashable], decode: Callable[[Any], State]) -> None:
+        self._before = before
+        self._decode = decode
+
+    def __len__(self) -> int:
+        return len(self._before)
+
+    def __iter__(self) -> Iterator[State]:
+        return iter(self._states)
+
+    @functools.cached_property
+    def _states(self) -> tuple[State, ...]:
+        return tuple(map(self._decode, self._before))
+
+    @functools.cached_property
+    def _codes(self) -> Mapping[State, Hashable]:
+        return dict(zip(self._states, self._before, strict=True))
+
+    def before(self, state: State) -> State | None:
+        """The state that this one was first reached from; None for the first."""
+        code = self._before[self._codes[state]]
+        return None if code is None else self._decode(code)
+
+    @property
+    def depth(self) -> int:
+        """Steps to the state that is furthest away."""
+        depth: dict[Hashable, int] = {}
+        for code, before in self._before.items():
+            depth[code] = 0 if before is None else depth[before] + 1
+        return max(depth.values())
+
+
+def _reach(start: Any, successors: Callable[[Any], Iterable[Any]]) -> dict[Any, Any]:  # noqa: ANN401 - codes of states
+    found: dict[Any, Any] = {start: None}
     todo = [start]
     add = todo.append
     for here in todo:  # grows while it is walked: a queue without a queue's cost
@@ -248,7 +289,7 @@ def explore(  # noqa: PLR0913 - every one has a default
         len(found),
         len(groups),
         tally.transitions,
-        _depth(found),
+        found.depth,
         {name: dict(sorted(codes.items())) for name, codes in sorted(tally.by_operation.items())},
         counterexample,
         unmet,
@@ -298,24 +339,17 @@ def references(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None
     return itertools.product(*(positions if one else (None,) for one in free))
 
 
-def _depth(found: Mapping[State, State | None]) -> int:
-    depth: dict[State, int] = {}
-    for here, before in found.items():
-        depth[here] = 0 if before is None else depth[before] + 1
-    return max(depth.values())
-
-
 def _counterexample(  # noqa: PLR0913 - what a way through the graph is made of
     spec: Spec,
     labels: Labels,
-    found: Mapping[State, State | None],
+    found: Reached,
     quotient: Callable[[State], State],
     invariant: Invariant,
     state: State,
 ) -> Counterexample:
     path: list[str] = []
     here = state
-    while (before := found[here]) is not None:
+    while (before := found.before(here)) is not None:
         taken = next(one for one in steps(spec, before, labels) if quotient(one.step.after) == here)
         path.append(taken.words(spec))
         here = before

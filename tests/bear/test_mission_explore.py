@@ -11,7 +11,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import ANYTHING, choose
 from missionfsm.kernel.spec import Invariant
 from missionfsm.systems import system
-from missionfsm.tools.explore import Labels, explore, firings, reachable, steps
+from missionfsm.tools.explore import Labels, Reached, explore, firings, reachable, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
@@ -25,7 +25,7 @@ def labels(bounds: Bounds, world: object = None) -> Labels:
     return Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
 
 
-def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> dict[Robot, Robot | None]:
+def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
     start = SPEC.initial(MISSION.codec.world({}))
     return reachable(SPEC, start, labels(bounds), bounds.missions, assumed, forget_ended=forgetting)
 
@@ -89,7 +89,7 @@ def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     slow = evolve(SPEC, shortcut=None)
     start = SPEC.initial(MISSION.codec.world({}))
     found = reachable(slow, start, labels(bounds), bounds.missions, assumed, forget_ended=True)
-    assert found.keys() == graph(bounds, assumed, forgetting=True).keys()
+    assert set(found) == set(graph(bounds, assumed, forgetting=True))
 
 
 def test_six_missions_and_two_goals() -> None:
@@ -102,8 +102,9 @@ def test_a_robot_is_nearest_to_the_first_state_through_its_parent() -> None:
     """What is reached knows a state before it from which a step leads there."""
     bounds = Bounds(2, 1, 1)
     tried = labels(bounds)
-    for here, before in graph(bounds, DEFAULT).items():
-        if before is not None:
+    found = graph(bounds, DEFAULT)
+    for here in found:
+        if (before := found.before(here)) is not None:
             assert here in {one.step.after for one in steps(SPEC, before, tried)}
 
 

@@ -1,0 +1,56 @@
+"""How a system is drawn small enough to be looked at: quotients of its explored graph, and plans of missions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import Prompt
+from missionfsm.kernel.codec import JSON
+
+Refs = tuple[int | None, ...]
+
+
+@frozen(eq=False)
+class Sketch:
+    """A quotient of the explored graph: which states are one node, and what a step between them is called.
+
+    Attributes:
+        name: what it shows, in a word.
+        title: the same in a few words.
+        node: state to what its node is called, which is what all of its states have in common; None for one that is
+            not in the picture.
+        label: (state, request or event, refs) to what doing that there is called; None for what is not shown. What the
+            system does by itself has None for a request and no refs.
+        within: whether exploration goes on from a state.
+        prompts, drives: what is tried.
+        world: the one that it starts in.
+        contrasts: choices of a reading, such as ``AM-09=b``, that are worth a picture beside the reference's reading.
+    """
+
+    name: str
+    title: str
+    node: Callable[[Any], str | None]
+    label: Callable[[Any, Any, Refs], str | None]
+    within: Callable[[Any], bool]
+    prompts: tuple[Prompt, ...] = ()
+    drives: tuple[JSON, ...] = ()
+    world: JSON = None
+    contrasts: tuple[str, ...] = ()
+
+
+@frozen
+class Plan:
+    """Missions that wait for one another.
+
+    Attributes:
+        missions: each in a few lines.
+        upstream: of each the indices of those that it waits for.
+    """
+
+    name: str
+    title: str
+    missions: tuple[tuple[str, ...], ...]
+    upstream: tuple[tuple[int, ...], ...]

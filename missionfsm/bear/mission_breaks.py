@@ -236,5 +236,10 @@ REACHING = {
     "a-mission-is-queued": _HALTED,
     "the-queue-is-halted": _HALTED,
     "a-mission-waits-in-a-halted-queue": _HALTED,
+    # What a skip comes to where there is nothing to skip to.
+    _rule("SkipGoal", "FAILED_PRECONDITION/there-is-no-next-goal"): {"AM-17.last": "b"},
+    _rule("SkipGoal", "INTERNAL/there-is-no-next-goal"): {"AM-17.last": "c"},
+    _rule("SkipGoal", "FAILED_PRECONDITION/charging-has-no-goals"): {"AM-19": "b"},
+    _rule("SkipGoal", "INTERNAL/charging-has-no-goals"): {"AM-19": "c"},
 }
-"""Conditions that no robot meets whose queue never halts."""
+"""The readings under which a rule can come up, for those that never do under the defaults."""

@@ -41,7 +41,7 @@ class System:
     Attributes:
         naming: how its names are made up and written.
         bends, twists: how an implementation may break its promises, besides the ways that fit any system.
-        reaching: name of a rule to the readings under which its condition can come about at all.
+        reaching: id or name of a rule to the readings under which its condition can come about at all.
         sketches, plans: what of it is drawn besides its charts.
     """
 

@@ -7,18 +7,30 @@ explained: the explanation takes the very same steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
+
+from attrs import evolve
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import ANYTHING, meet
-from missionfsm.kernel.spec import Mismatch, Step
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.spec import Emission, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
 from missionfsm.tools.model import Model
 
-BOUNDS = Bounds(missions=2, goals=1, batch=2)
+BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=1))
+"""Within which it is shown; the next ones are taken where the broken rule never comes up within the first."""
+
+Assumed = tuple[Assumption, ...]
+Options = frozenset[Assumed]
+"""Ways to explain one step: one of them has to be assumed."""
+
+_FREE: Options = frozenset([()])
+_FAILS = (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration)
+"""What a broken model may raise."""
 
 
 def straight(message: JSON) -> JSON:
@@ -26,14 +38,30 @@ def straight(message: JSON) -> JSON:
     return message
 
 
-class _GuiltyError(Exception):
-    """A step is allowed under no reading that agrees with those assumed before."""
+class Honest:
+    """The reference under the readings that a broken model follows, and what it takes to explain its answers.
+
+    What it remembers serves every model that breaks something else under the same readings.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._known: dict[Any, tuple[Step, Options]] = {}
+
+    def answers(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
+        """The reference's own answer in a state, and ways to explain it."""
+        key = (here, request, refs)
+        found = self._known.get(key)
+        if found is None:
+            step = self.model.outcome(here, request, refs)
+            found = self._known[key] = (step, _explaining(self.model.system, here, request, refs, step))
+        return found
 
 
 def excuse(  # noqa: PLR0913 - what an implementation is made of
-    system: System,
+    honest: Honest,
     model: Model,
-    honest: Model,
+    rule: str,
     operation: str | None,
     bend: Callable[[JSON], JSON],
     worlds: tuple[JSON, ...],
@@ -41,43 +69,84 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
     """The readings under which everything that a model does within bounds is allowed; empty if there are none.
 
     Args:
-        model: the implementation.
         honest: the reference under the same readings, from which it may differ by a twist, and in the rules of one
             operation.
-        operation: that operation.
+        model: the implementation.
+        rule: the rule that it breaks; nothing is proved where that never comes up.
+        operation: the operation whose rules differ.
         bend: what it does to its messages.
         worlds: those that it is explored in.
     """
-    assumed = ANYTHING
-    states = 0
-    explorer = _Explorer(system, model, honest, operation, bend)
-    try:
-        for world in worlds:
-            assumed, seen = explorer.run(world, assumed)
-            states += seen
-    except _GuiltyError:
-        return ""
-    followed = {one.id: one.possible(assumed) for one in system.spec.ambiguities}
+    system = honest.model.system
+    for bounds in BOUNDS:
+        explorer = _Explorer(system, model, honest, rule, operation, bend, bounds)
+        states = sum(map(explorer.run, worlds))
+        if not explorer.alternatives:
+            return ""
+        if explorer.came_up:
+            return _words(system, model, explorer.alternatives, states)
+    return ""
+
+
+def _words(system: System, model: Model, alternatives: tuple[int, ...], states: int) -> str:
     own = {one.id: one.possible(model.choice)[0] for one in system.spec.ambiguities}
-    others = [f"{name}={'|'.join(letters)}" for name, letters in followed.items() if own[name] not in letters]
-    why = f"which {', '.join(others)} allows" if others else "which its own readings allow"
+
+    def others(assumed: int) -> list[str]:
+        followed = {one.id: one.possible(assumed) for one in system.spec.ambiguities}
+        return [f"{name}={'|'.join(letters)}" for name, letters in followed.items() if own[name] not in letters]
+
+    nearest = min(map(others, alternatives), key=len)
+    why = f"which {', '.join(nearest)} allows" if nearest else "which its own readings allow"
     return f"it only does, in the {states} states that it reaches, {why}"
 
 
+class _GuiltyError(Exception):
+    """A step is allowed under no reading that agrees with those assumed before."""
+
+
 class _Explorer:
-    def __init__(
-        self, system: System, model: Model, honest: Model, operation: str | None, bend: Callable[[JSON], JSON]
+    """Walks a model through worlds, and keeps the readings under which everything so far is allowed.
+
+    Attributes:
+        alternatives: sets of readings, of which none holds another; empty once nothing explains the model.
+        came_up: whether the broken rule did.
+    """
+
+    def __init__(  # noqa: PLR0913 - what an exploration is made of
+        self,
+        system: System,
+        model: Model,
+        honest: Honest,
+        rule: str,
+        operation: str | None,
+        bend: Callable[[JSON], JSON],
+        bounds: Bounds,
     ) -> None:
         self.system = system
         self.spec = system.spec
         self.model = model
         self.honest = honest
+        self.rule = rule
         self.operation = operation
         self.bend = bend
+        self.bounds = bounds
+        self.alternatives: tuple[int, ...] = (ANYTHING,)
+        self.came_up = bend is not straight
+        self._required: set[Options] = {_FREE}
+        self._judged: set[Any] = set()
 
-    def run(self, world: JSON, assumed: int) -> tuple[int, int]:
-        """What is assumed once a world has been explored as well, and how many states it has."""
-        alphabet = self.system.alphabet(world, BOUNDS)
+    def run(self, world: JSON) -> int:
+        """How many states the model has in a world; its steps there are to be explained as well."""
+        if not self.alternatives:
+            return 0
+        try:
+            return self._walk(world)
+        except _GuiltyError:
+            self.alternatives = ()
+            return 0
+
+    def _walk(self, world: JSON) -> int:
+        alphabet = self.system.alphabet(world, self.bounds)
         plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
         own = [one for one in alphabet.prompts if one.method == self.operation]
         # The world stays as it is: the others are explored from their own start.
@@ -88,89 +157,129 @@ class _Explorer:
             situation = self.spec.situation(here)
             labels = plain if situation in situations else thorough
             situations.add(situation)
-            for taken, allowed in self._taken(here, labels):
-                if allowed is None:
-                    # The reference's own step: allowed, and under what is known.
-                    assumed = meet(assumed, taken.assumes)
-                    if not assumed:
-                        raise _GuiltyError
-                    passing = self.bend is straight
-                else:
-                    passing = self.model.urgent(taken.after) is not None
-                    assumed = _allowed(taken, allowed, assumed, here, passing=passing)
-                if not passing:
-                    assumed = _shown(self.system, self.model, self.bend, taken, assumed)
-                if taken.after not in found and self.spec.names(taken.after) <= BOUNDS.missions:
-                    found.add(taken.after)
-                    todo.append(taken.after)
-        return assumed, len(found)
+            for taken, options in self._taken(here, labels):
+                self._require(options)
+                after = taken.after
+                if after not in found and self.spec.names(after) <= self.bounds.missions:
+                    found.add(after)
+                    todo.append(after)
+        return len(found)
 
-    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, tuple[Step, ...] | None]]:  # noqa: ANN401
-        """Every step that the model takes in a state, with those that it might take there; urgent ones come first."""
-        urgent = tuple(step for step in self.spec.urgent(here) if meet(self.model.choice, step.assumes))
+    def _require(self, options: Options) -> None:
+        if options in self._required:
+            return
+        self._required.add(options)
+        met = {agreed for one in self.alternatives for assumes in options if (agreed := meet(one, assumes))}
+        self.alternatives = tuple(sorted(one for one in met if not any(one != two and one & two == one for two in met)))
+        if not self.alternatives:
+            raise _GuiltyError
+
+    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, Options]]:  # noqa: ANN401
+        """Every step that the model takes in a state and what explains it; urgent ones come first."""
         taken = self.model.urgent(here)
         if taken is not None:
-            yield taken, self.spec.urgent(here)
+            yield taken, self._explained(here, taken, self.spec.urgent(here))
             return
-        if urgent:
+        if any(meet(self.model.choice, step.assumes) for step in self.spec.urgent(here)):
             raise _GuiltyError
         for request, free in labels.requests:
             for refs in references(self.spec, here, free):
-                taken = self._answer(here, request, refs)
-                own = taken is self.honest.outcome(here, request, refs)
-                yield taken, None if own else self.spec.outcomes(here, request, refs)
+                yield self._asked(here, request, refs)
         for event, free in labels.events:
             for refs in references(self.spec, here, free):
                 happened = self.model.happening(here, event, refs)
                 if happened is not None:
-                    yield happened, self.spec.drives[event.name].steps(here, event, refs)
+                    allowed = self.spec.drives[event.name].steps(here, event, refs)
+                    yield happened, self._explained(here, happened, allowed)
 
-    def _answer(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> Step:  # noqa: ANN401
+    def _asked(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
+        own, options = self.honest.answers(here, request, refs)
+        self.came_up = self.came_up or self.rule in own.rules
         try:
-            if self.spec.request_operation(request) == self.operation:
-                return self.model.outcome(here, request, refs)
-            step = self.model.twist(here, self.honest.outcome(here, request, refs))
-        except (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+            asked = self.spec.request_operation(request) == self.operation
+            step = self.model.outcome(here, request, refs) if asked else self.model.twist(here, own)
+        except _FAILS:
             raise _GuiltyError from None
         if step is None:
             raise _GuiltyError
-        return step
+        self.came_up = self.came_up or self.rule in step.rules
+        if self.bend is not straight or (step is not own and (step.emits or step.opens)):
+            self._see(step, passing=False)
+        return step, options if step is own else _explaining(self.system, here, request, refs, step)
 
-
-def _allowed(taken: Step, allowed: tuple[Step, ...], assumed: int, here: Any, *, passing: bool) -> int:  # noqa: ANN401
-    found = 0
-    for step in allowed:
+    def _explained(self, here: Any, taken: Step, allowed: Iterable[Step]) -> Options:  # noqa: ANN401
+        """What explains a step that answers nobody."""
+        self.came_up = self.came_up or self.rule in taken.rules
+        passing = self.model.urgent(taken.after) is not None
+        self._see(taken, passing=passing)
         # What shows a state that does not last may be left out.
         silent = passing and not taken.emits
-        if _seen(step, here, silent=silent) == _seen(taken, here, silent=silent):
-            agreed = meet(assumed, step.assumes)
-            # The one that leaves the most open; where two leave different things open the first is taken.
-            found = agreed if agreed and not found else (agreed if agreed & found == found and agreed else found)
-    if not found:
-        raise _GuiltyError
-    return found
+        seen = _seen(taken, here, silent=silent)
+        return frozenset(step.assumes for step in allowed if _seen(step, here, silent=silent) == seen)
 
+    def _see(self, step: Step, *, passing: bool) -> None:
+        """Require what explains the messages of a step."""
+        if passing:
+            return
+        names = self.spec.names(step.after)
+        for emission in (*step.emits, *(owed for opening in step.opens for owed in opening.owed)):
+            key = (emission, names)
+            if key not in self._judged:
+                self._judged.add(key)
+                for options in self._shown(emission, names):
+                    self._require(options)
 
-def _seen(step: Step, here: Any, *, silent: bool) -> Any:  # noqa: ANN401 - what matters of a step
-    names = None if step.after is here else step.names
-    return (step.answer, step.after, names, () if silent else step.emits, step.opens, step.refs)
-
-
-def _shown(system: System, model: Model, bend: Callable[[JSON], JSON], step: Step, assumed: int) -> int:
-    for emission in (*step.emits, *(owed for opening in step.opens for owed in opening.owed)):
-        if emission.only and not meet(model.choice, (emission.only,)):
-            continue
-        count = 1 + max((*(emission.refs or ()), system.spec.names(step.after) - 1), default=0)
+    def _shown(self, emission: Emission, named: int) -> Iterator[Options]:
+        if emission.only and not meet(self.model.choice, (emission.only,)):
+            return
+        count = 1 + max((*(emission.refs or ()), named - 1), default=0)
         names = tuple(f"n{number}" for number in range(count if emission.refs is None else len(emission.refs)))
-        message = bend(system.codec.write_message(emission.view, names, model.choice, 1, 0.0))
-        for _, _, rest in system.codec.strip(message):
-            matches = system.spec.matches(emission.view, system.codec.content(rest))
+        codec = self.system.codec
+        message = self.bend(codec.write_message(emission.view, names, self.model.choice, 1, 0.0))
+        for _, _, rest in codec.strip(message):
+            matches = self.spec.matches(emission.view, codec.content(rest))
             if isinstance(matches, Mismatch):
                 raise _GuiltyError
-            agreed = next((both for match in matches if (both := meet(assumed, match.assumes))), 0)
-            if not agreed:
-                if meet(model.choice, [one for match in matches for one in match.assumes]):
-                    raise _GuiltyError
-                continue
-            assumed = agreed
-    return assumed
+            self.came_up = self.came_up or any(self.rule in match.rules for match in matches)
+            yield frozenset(match.assumes for match in matches)
+
+
+def _explaining(
+    system: System,
+    here: Any,  # noqa: ANN401 - of any system
+    request: Any,  # noqa: ANN401 - of any system
+    refs: tuple[int | None, ...],
+    taken: Step,
+) -> Options:
+    """Ways to explain an answer in a state, those of failures that may always come among them."""
+    seen = _seen(taken, here)
+    found = {
+        (*step.assumes, *also)
+        for step in system.spec.outcomes(here, request, refs)
+        if _seen(step, here) == seen
+        for also in _agreements(system, step.answer, taken.answer)
+    }
+    if taken.answer is not None and not taken.refs:
+        failure = system.spec.failing(request, taken.answer.code)
+        nothing = evolve(taken, after=here, names=None, emits=(), opens=())
+        if failure is not None and not failure.driven and _seen(nothing, here) == seen:
+            found.add(failure.assumes)
+    return frozenset(found)
+
+
+def _agreements(system: System, allowed: Answer | None, given: Answer | None) -> Iterable[Assumed]:
+    """Under which readings an answer is the one that is allowed."""
+    if allowed == given:
+        return ((),)
+    if allowed is None or given is None or system.spec.answers is None:
+        return ()
+    if (allowed.code, allowed.unordered) != (given.code, given.unordered):
+        return ()
+    matches = system.spec.answers(allowed.shape, given.shape)
+    return () if isinstance(matches, Mismatch) else (match.assumes for match in matches)
+
+
+def _seen(step: Step, here: Any, *, silent: bool = False) -> Any:  # noqa: ANN401 - what matters of a step
+    names = None if step.after is here else step.names
+    refs = tuple(sorted(step.refs)) if step.answer is not None and step.answer.unordered else step.refs
+    return (step.after, names, () if silent else step.emits, step.opens, refs)

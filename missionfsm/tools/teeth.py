@@ -8,6 +8,7 @@ shown by exploring it together with the oracle), or the oracle lacks a tooth.
 
 from __future__ import annotations
 
+import functools
 import random
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
@@ -31,15 +32,15 @@ from missionfsm.kernel.spec import Spec, Step
 from missionfsm.kernel.subject import Exchange
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import introduce
-from missionfsm.tools.excuse import excuse
+from missionfsm.tools.excuse import Honest, excuse
 from missionfsm.tools.excuse import straight as as_it_is
 from missionfsm.tools.guide import Guide
 from missionfsm.tools.model import Model, Twist, straight
 from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 
-TOURS, STEPS = 64, 40
-"""How long an implementation is judged before it counts as a survivor."""
+FIRST, TOURS, STEPS = 10, 64, 40
+"""Conversations before it is asked whether an implementation is allowed; before it survives; steps of each."""
 
 _OTHER_CODES = (FAILED_PRECONDITION, INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED, "OUT_OF_RANGE")
 
@@ -170,21 +171,25 @@ class _Broken(Reference):
 def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
     run = Run(system, broken, introduce(system, broken), automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
-    if run.tour(random.Random(seed), TOURS, STEPS, mutant.favour):  # noqa: S311 - no secret
-        return Bite(mutant.name, mutant.rule, killed=False, because=_excuse(system, mutant, broken.model, guide.worlds))
+    chance = random.Random(seed)  # noqa: S311 - no secret
+    if run.tour(chance, FIRST, STEPS, mutant.favour):
+        because = _excuse(system, mutant, broken.model, guide.worlds)
+        if because or run.tour(chance, TOURS - FIRST, STEPS, mutant.favour):
+            return Bite(mutant.name, mutant.rule, killed=False, because=because)
     if run.found is None:
         return Bite(mutant.name, mutant.rule, killed=True)
     return Bite(mutant.name, mutant.rule, killed=True, length=len(run.found.judge.history) - 1)
 
 
-_HONEST: dict[tuple[System, tuple[tuple[str, str], ...]], Model] = {}
-"""References by the readings that they follow; what they remember serves all mutants."""
+@functools.lru_cache(maxsize=1)
+def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> Honest:
+    """The reference under some readings; the mutants of a rule follow each other and share it."""
+    return Honest(Model(system, dict(choice)))
 
 
 def _excuse(system: System, mutant: Mutant, model: Model, worlds: tuple[JSON, ...]) -> str:
-    key = (system, tuple(sorted(mutant.choice.items())))
-    honest = _HONEST.setdefault(key, Model(system, mutant.choice))
-    return excuse(system, model, honest, mutant.favour, mutant.bend, worlds)
+    honest = _honest(system, tuple(sorted(mutant.choice.items())))
+    return excuse(honest, model, mutant.rule, mutant.favour, mutant.bend, worlds)
 
 
 # The mutants.
@@ -195,7 +200,7 @@ def mutants(system: System) -> Iterator[Mutant]:
     spec = system.spec
     for operation in spec.operations.values():
         for rule in operation.refusals:
-            yield from _of_refusal(spec, operation, rule, system.reaching.get(rule.name, {}))
+            yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
         for promised in operation.promises:
             yield from _of_promise(spec, promised, operation.name)
     own = {bend.rule for bend in system.bends}
@@ -213,6 +218,10 @@ def mutants(system: System) -> Iterator[Mutant]:
             spec,
             _where(one.rule, one.twist),
         )
+
+
+def _reaching(system: System, rule: Rule) -> Mapping[str, str]:
+    return system.reaching.get(rule.id) or system.reaching.get(rule.name, {})
 
 
 def _operation_of(spec: Spec, rule: str) -> str | None:

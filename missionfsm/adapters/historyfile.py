@@ -15,11 +15,12 @@ import orjson
 from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.transcript import Ids
 
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024
-"""Bytes that a line may have."""
+"""Bytes that a line may have, give or take a chunk."""
+CHUNK = 1 << 16
+"""Bytes that are read at a time."""
 
 
 def open_history(path: str) -> IO[bytes]:
@@ -38,28 +39,46 @@ def wrong_line(path: str, number: int, says: object) -> UnreadableError:
     return UnreadableError(f"{'stdin' if path == STDIN else path}:{number}: {says}")
 
 
-def _raw(source: IO[bytes], path: str) -> Iterator[tuple[int, bytes]]:
-    number = 0
-    while line := source.readline(LONGEST_LINE + 1):
-        number += 1
-        if len(line) > LONGEST_LINE:
-            raise wrong_line(path, number, f"the line has more than {LONGEST_LINE} bytes")
-        if not line.isspace():
-            yield number, line
+def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bool]]:
+    """The lines of a source, many at a time: how many came before, the lines, and whether they end with a newline."""
+    number, size = 0, 0
+    begun: list[bytes] = []
+    # What waits in a pipe is taken as it comes, so that a live stream is judged at once.
+    read: Callable[[int], bytes] = getattr(source, "read1", source.read)
+    while block := read(CHUNK):
+        end = block.rfind(b"\n")
+        size += len(block) if end < 0 else end
+        if size > LONGEST_LINE + CHUNK:
+            raise wrong_line(path, number + 1, f"the line has more than {LONGEST_LINE:,} bytes")
+        if end < 0:
+            begun.append(block)
+            continue
+        begun.append(block[:end])
+        found = b"".join(begun).split(b"\n")
+        yield number, found, True
+        number += len(found)
+        begun = [block[end + 1 :]]
+        size = len(begun[0])
+    if last := b"".join(begun):
+        yield number, [last], False
 
 
 def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
     """The JSON of every line with its number. Raises UnreadableError, which says where and what is wrong."""
-    for number, line in _raw(source, path):
-        try:
-            found = orjson.loads(line)
-        except orjson.JSONDecodeError as error:
-            short = " (the file ends in the middle of it)" if not line.endswith(b"\n") else ""
-            raise wrong_line(path, number, f"not JSON: {error}{short}") from None
-        yield number, found
+    loads = orjson.loads
+    for before, found, whole in _chunks(source, path):
+        for number, line in enumerate(found, before + 1):
+            try:
+                yield number, loads(line)
+            except orjson.JSONDecodeError as error:
+                if not line or line.isspace():
+                    continue
+                short = "" if whole else " (the file ends in the middle of it)"
+                raise wrong_line(path, number, f"not JSON: {error}{short}") from None
 
 
-_PLAIN = re.compile(rb'\{"(call|return)": ?(\d+)[,}]')
+_CALLS = re.compile(rb'\n\{"call": ?(\d+),')
+_RETURNS = re.compile(rb'\n\{"return": ?(\d+),')
 """How the commonest lines that call or return begin; what they say can be told without reading all of them."""
 
 
@@ -70,32 +89,37 @@ def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
     """
     if not Path(path).is_file():
         return {}
-    sent: dict[str | None, Ids] = {}
     waiting: dict[str | None, set[int]] = {}
     with open_history(path) as source:
         try:
-            for _, line in _raw(source, path):
-                plain = _PLAIN.match(line)
-                if plain and b'"robot"' not in line and b'"cancel"' not in line:
-                    robot, called, number = None, plain[1] == b"call", int(plain[2])
-                elif b'"call"' in line or b'"return"' in line:
-                    one = orjson.loads(line)
-                    if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
-                        continue
-                    robot, called = one.get("robot"), "call" in one
-                    number = one["call" if called else "return"]
-                else:
-                    continue
-                calls = waiting.setdefault(robot, set())
-                if not called:
-                    calls.discard(number)
-                elif sent.setdefault(robot, Ids()).add(number):
-                    calls.add(number)
-                else:
-                    return {}
+            for _, found, _ in _chunks(source, path):
+                _follow(found, waiting)
         except (orjson.JSONDecodeError, UnreadableError, TypeError, AttributeError):
             return {}
     return {robot: frozenset(calls) for robot, calls in waiting.items()}
+
+
+def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
+    """Take the calls and the returns of some lines into account."""
+    block = b"\n".join((b"", *found))
+    calls, returns = _CALLS.findall(block), _RETURNS.findall(block)
+    plain = b'"robot"' not in block and b'"cancel"' not in block
+    if plain and (len(calls), len(returns)) == (block.count(b'"call"'), block.count(b'"return"')):
+        known = waiting.setdefault(None, set())
+        known.update(map(int, calls))
+        known.difference_update(map(int, returns))
+        return
+    for line in found:
+        if b'"call"' not in line and b'"return"' not in line:
+            continue
+        one = orjson.loads(line)
+        if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
+            continue
+        known = waiting.setdefault(one.get("robot"), set())
+        if "call" in one:
+            known.add(one["call"])
+        else:
+            known.discard(one["return"])
 
 
 def fingerprint(value: JSON) -> bytes:

@@ -266,19 +266,34 @@ def _stripped(message: JSON) -> Part:
     missions = states.get("missions") if isinstance(states, dict) else None
     if not isinstance(missions, list):
         return (), marks, rest
-    ids: list[Name] = []
+    found = _nameless(missions)
+    if found is None:
+        return (), marks, rest
+    ids, bare = found
+    rest[key] = {**states, "missions": bare}  # type: ignore[dict-item]
+    return ids, marks, rest
+
+
+def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | None:
+    """The ids of missions, and the missions without them; None where one of them is no object."""
+    try:
+        ids = tuple([mission["missionId"] for mission in missions])
+    except (KeyError, TypeError):
+        ids = ()
+    if ids and all([type(one) is str and one for one in ids]):  # noqa: C419 - nearly always so, and faster so
+        return ids, [{**mission, "missionId": "-"} for mission in missions]
+    named: list[Name] = []
     bare: list[JSON] = []
     for mission in missions:
         if not isinstance(mission, dict):
-            return (), marks, rest
+            return None
         name = "missionId" if "missionId" in mission else "mission_id"
         given = mission.get(name)
         if isinstance(given, str) and given:
-            ids.append(given)
+            named.append(given)
             mission = {**mission, name: "-"}  # noqa: PLW2901 - the same mission without its id
         bare.append(mission)
-    rest[key] = {**states, "missions": bare}  # type: ignore[dict-item]
-    return tuple(ids), marks, rest
+    return tuple(named), bare
 
 
 def _sequence_number(metadata: dict[str, JSON]) -> int | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
+from pathlib import Path
 
 from attrs import evolve
 
@@ -16,11 +18,11 @@ from missionfsm.adapters.historyfile import (
     wrong_line,
 )
 from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.transcript import head
 from missionfsm.systems import system
-from missionfsm.tools.check import Judge
+from missionfsm.tools.check import KEPT, Judge
 from missionfsm.tools.verdict import Verdict
 
 
@@ -34,6 +36,8 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         ValueError: `readings` names something that does not exist.
     """
     lost = lost_calls(path)
+    # What can be read again is not kept while it is read.
+    keep = 0 if Path(path).is_file() else KEPT
     source = open_history(path)
     try:
         numbered = lines(source, path)
@@ -50,7 +54,7 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
 
             def new_judge(robot: str | None) -> Judge:
                 calls = lost.get(robot, frozenset())
-                return Judge(judged, first, automaton, fingerprint=fingerprint, lost=calls)
+                return Judge(judged, first, automaton, fingerprint=fingerprint, lost=calls, keep=keep)
 
             nobody = new_judge(None)
         except UnreadableError as error:
@@ -59,7 +63,8 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         stopped: dict[str | None, int] = {}
         for number, line in numbered:
             try:
-                robot = stamps.robot(line)
+                plain = type(line) is dict and "at" not in line and "robot" not in line
+                robot = None if plain else stamps.robot(line)
                 judge = judges.get(robot)
                 if judge is None:
                     judge = judges[robot] = nobody if robot is None else new_judge(robot)
@@ -71,7 +76,23 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         if path != STDIN:
             source.close()
     verdicts = ((robot, judge.verdict()) for robot, judge in (judges or {None: nobody}).items())
-    return [(robot, located(verdict, stopped.get(robot))) for robot, verdict in verdicts]
+    found = [(robot, located(verdict, stopped.get(robot))) for robot, verdict in verdicts]
+    return found if keep else [(robot, _retold(verdict, path, robot)) for robot, verdict in found]
+
+
+def _retold(verdict: Verdict, path: str, robot: str | None) -> Verdict:
+    """The verdict with the last lines before its violation, read again."""
+    if verdict.violation is None or verdict.violation.at is None:
+        return verdict
+    kept: deque[JSON] = deque(maxlen=KEPT)
+    with open_history(path) as source:
+        for number, line in lines(source, path):
+            if number > 1 and line.get("robot") == robot:
+                kept.append(line)
+            if number == verdict.violation.at:
+                break
+    told = (*verdict.violation.history, *kept)
+    return evolve(verdict, violation=evolve(verdict.violation, history=told))
 
 
 def located(verdict: Verdict, line: int | None) -> Verdict:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from attrs import frozen
+from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Prompt
 from missionfsm.kernel.codec import JSON
@@ -22,9 +22,11 @@ class Sketch:
         title: the same in a few words.
         node: state to what its node is called, which is what all of its states have in common; None for one that is
             not in the picture.
-        label: (state, request or event, refs) to what doing that there is called; None for what is not shown. What the
-            system does by itself has None for a request and no refs.
+        label: (state, request or event, refs) to what doing that there is called; None for what is not shown.
         within: whether exploration goes on from a state.
+        simple: (state, the readings that are followed) to the state that stands for it: under these readings the same
+            can be done there, with the same names.
+        shows: a view to what its being sent is called; None for what is not shown.
         prompts, drives: what is tried.
         world: the one that it starts in.
         contrasts: choices of a reading, such as ``AM-09=b``, that are worth a picture beside the reference's reading.
@@ -35,9 +37,11 @@ class Sketch:
     node: Callable[[Any], str | None]
     label: Callable[[Any, Any, Refs], str | None]
     within: Callable[[Any], bool]
+    simple: Callable[[Any, int], Any] = lambda state, _: state
+    shows: Callable[[Any], str | None] = lambda _: None
     prompts: tuple[Prompt, ...] = ()
     drives: tuple[JSON, ...] = ()
-    world: JSON = None
+    world: JSON = field(factory=dict)
     contrasts: tuple[str, ...] = ()
 
 

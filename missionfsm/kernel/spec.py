@@ -242,7 +242,11 @@ class Spec:
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
         idle_shape: the same for what changes nothing; None where it is `shape`.
-        size: state to how large it is, against `Bounds.missions`; None where that is the number of its names.
+        size: state to how large it is for a search, against `Bounds.missions`; None where that is the number of its
+            names.
+        extent: the same for exploration; None where that is the number of its names.
+        undecided: state to the one that stands for it in exploration, where every step may follow any reading: without
+            what it remembers of readings; None where states remember nothing of them.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
         phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
@@ -280,6 +284,8 @@ class Spec:
     place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
     idle_shape: Callable[[State], Hashable] | None = None
     size: Callable[[State], int] | None = None
+    extent: Callable[[State], int] | None = None
+    undecided: Callable[[State], State] | None = None
     forget_ended: Callable[[State], State] | None = None
     shortcut: Callable[..., Shortcut] | None = None
 

@@ -15,7 +15,11 @@ class SubjectError(Exception):
 
 @frozen
 class Notification:
-    """Something that the implementation sent unasked: a ``message``, ``closed`` or a ``line``."""
+    """Something that the implementation sent unasked: a ``message``, ``closed`` or a ``line``.
+
+    A subject that lives in real time knows more than what it is asked to do: a ``history`` is a line of the history,
+    such as that some time has passed.
+    """
 
     method: str
     params: JSON
@@ -23,12 +27,13 @@ class Notification:
 
 @frozen
 class Exchange:
-    """A request's answer, what had arrived before it, and what arrived with it."""
+    """A request's answer, and what had arrived before it was made, before its answer, and with that."""
 
     result: JSON = None
     error: JSON = None
     before: tuple[Notification, ...] = ()
     after: tuple[Notification, ...] = ()
+    earlier: tuple[Notification, ...] = ()
 
 
 class Subject(Protocol):

@@ -19,6 +19,7 @@ from missionfsm.kernel.history import (
     Driven,
     Ended,
     Event,
+    Name,
     Received,
     Returned,
     Settled,
@@ -43,6 +44,9 @@ _KEYS: Mapping[str, frozenset[str]] = {
 """What each kind of line may have; one that has more means something that would be passed over."""
 REMEMBERED = 20_000
 """How many different requests and messages a transcript knows again without reading them anew."""
+
+
+_Reader = Callable[[dict[str, Any]], tuple[Event, ...]]
 
 
 @frozen
@@ -129,7 +133,8 @@ class Transcript:
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
-        self._kinds: Mapping[str, Callable[[dict[str, Any]], tuple[Event, ...]]] = {
+        self._forms: dict[tuple[str, ...], _Reader] = {}
+        self._kinds: Mapping[str, _Reader] = {
             "call": self._call,
             "return": self._return,
             "stream": self._stream,
@@ -142,11 +147,18 @@ class Transcript:
         """The events that a line stands for; usually one. Raises UnreadableError."""
         if not isinstance(line, dict):
             raise _wrong(f"{brief(line)} is not an object")
-        for key in line:
+        form = tuple(line)
+        reader = self._forms.get(form)
+        return (reader or self._reader(form, line))(line)
+
+    def _reader(self, form: tuple[str, ...], line: dict[str, Any]) -> _Reader:
+        """What reads lines with these keys."""
+        for key in form:
             reader = self._kinds.get(key)
             if reader is not None:
                 _known_keys(key, line, _KEYS[key])
-                return reader(line)
+                self._forms[form] = reader
+                return reader
         raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
 
     @property
@@ -221,10 +233,14 @@ class Transcript:
             return (Ended(stream, self._status(line["error"]) if line.get("error") else OK),)
         if "message" not in line:
             raise _wrong(f"stream {stream[1]}: expected a message or closed")
-        return tuple(
-            Received(stream, self._content(rest), names, marks)
-            for names, marks, rest in self.codec.strip(line["message"])
-        )
+        return self._received(stream, line["message"])
+
+    def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
+        parts = self.codec.strip(message)
+        if len(parts) == 1:  # nearly always, and faster so
+            ((names, marks, rest),) = parts
+            return (Received(channel, self._content(rest), names, marks),)
+        return tuple([Received(channel, self._content(rest), names, marks) for names, marks, rest in parts])
 
     def _content(self, rest: JSON) -> Hashable:
         key = self._fingerprint(rest)
@@ -239,10 +255,7 @@ class Transcript:
         connection = ("connection", self._number(line, "connection"))
         if "line" not in line:
             raise _wrong(f"connection {connection[1]}: expected a line")
-        return tuple(
-            Received(connection, self._content(rest), names, marks)
-            for names, marks, rest in self.codec.strip(line["line"])
-        )
+        return self._received(connection, line["line"])
 
     def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:
         event, names = self.codec.drive(line["drive"])

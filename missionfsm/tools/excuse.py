@@ -21,8 +21,8 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
 from missionfsm.tools.model import Model
 
-BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=1))
-"""Within which it is shown; the next ones are taken where the broken rule never comes up within the first."""
+BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=2))
+"""Within which it is shown; the first only sort out quickly what is forbidden already there."""
 
 Assumed = tuple[Assumption, ...]
 Options = frozenset[Assumed]
@@ -46,16 +46,28 @@ class Honest:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self._known: dict[Any, tuple[Step, Options]] = {}
+        self._sets: dict[frozenset[str], frozenset[str]] = {}
+        self._known: dict[Any, tuple[Step, Options, frozenset[str]]] = {}
 
-    def answers(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
-        """The reference's own answer in a state, and ways to explain it."""
+    def answers(
+        self,
+        here: Any,  # noqa: ANN401 - of any system
+        request: Any,  # noqa: ANN401 - of any system
+        refs: tuple[int | None, ...],
+    ) -> tuple[Step, Options, frozenset[str]]:
+        """The reference's own answer in a state, ways to explain it, and the rules of all allowed answers."""
         key = (here, request, refs)
         found = self._known.get(key)
         if found is None:
             step = self.model.outcome(here, request, refs)
-            found = self._known[key] = (step, _explaining(self.model.system, here, request, refs, step))
+            options = _explaining(self.model.system, here, request, refs, step)
+            found = self._known[key] = (step, options, self._rules(here, request, refs))
         return found
+
+    def _rules(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> frozenset[str]:  # noqa: ANN401
+        outcomes = self.model.system.spec.outcomes(here, request, refs)
+        rules = frozenset(rule for one in outcomes for rule in one.rules)
+        return self._sets.setdefault(rules, rules)
 
 
 def excuse(  # noqa: PLR0913 - what an implementation is made of
@@ -83,9 +95,7 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
         states = sum(map(explorer.run, worlds))
         if not explorer.alternatives:
             return ""
-        if explorer.came_up:
-            return _words(system, model, explorer.alternatives, states)
-    return ""
+    return _words(system, model, explorer.alternatives, states) if explorer.came_up else ""
 
 
 def _words(system: System, model: Model, alternatives: tuple[int, ...], states: int) -> str:
@@ -187,14 +197,16 @@ class _Explorer:
                 yield self._asked(here, request, refs)
         for event, free in labels.events:
             for refs in references(self.spec, here, free):
+                own = self.honest.model.happening(here, event, refs)
+                self.came_up = self.came_up or (own is not None and self.rule in own.rules)
                 happened = self.model.happening(here, event, refs)
                 if happened is not None:
                     allowed = self.spec.drives[event.name].steps(here, event, refs)
                     yield happened, self._explained(here, happened, allowed)
 
     def _asked(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
-        own, options = self.honest.answers(here, request, refs)
-        self.came_up = self.came_up or self.rule in own.rules
+        own, options, rules = self.honest.answers(here, request, refs)
+        self.came_up = self.came_up or self.rule in rules
         try:
             asked = self.spec.request_operation(request) == self.operation
             step = self.model.outcome(here, request, refs) if asked else self.model.twist(here, own)
@@ -205,7 +217,11 @@ class _Explorer:
         self.came_up = self.came_up or self.rule in step.rules
         if self.bend is not straight or (step is not own and (step.emits or step.opens)):
             self._see(step, passing=False)
-        return step, options if step is own else _explaining(self.system, here, request, refs, step)
+        if step is own:
+            return step, options
+        # What shows a state that does not last may be left out.
+        silent = not step.emits and self.model.urgent(step.after) is not None
+        return step, _explaining(self.system, here, request, refs, step, silent=silent)
 
     def _explained(self, here: Any, taken: Step, allowed: Iterable[Step]) -> Options:  # noqa: ANN401
         """What explains a step that answers nobody."""
@@ -244,19 +260,21 @@ class _Explorer:
             yield frozenset(match.assumes for match in matches)
 
 
-def _explaining(
+def _explaining(  # noqa: PLR0913 - a step and where it is taken
     system: System,
     here: Any,  # noqa: ANN401 - of any system
     request: Any,  # noqa: ANN401 - of any system
     refs: tuple[int | None, ...],
     taken: Step,
+    *,
+    silent: bool = False,
 ) -> Options:
     """Ways to explain an answer in a state, those of failures that may always come among them."""
-    seen = _seen(taken, here)
+    seen = _seen(taken, here, silent=silent)
     found = {
         (*step.assumes, *also)
         for step in system.spec.outcomes(here, request, refs)
-        if _seen(step, here) == seen
+        if _seen(step, here, silent=silent) == seen
         for also in _agreements(system, step.answer, taken.answer)
     }
     if taken.answer is not None and not taken.refs:

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import functools
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import evolve, frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
@@ -39,8 +39,10 @@ from missionfsm.tools.model import Model, Twist, straight
 from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 
-FIRST, TOURS, STEPS = 10, 64, 40
+FIRST, TOURS, STEPS = 16, 160, 40
 """Conversations before it is asked whether an implementation is allowed; before it survives; steps of each."""
+BLOCK = 8
+"""How many mutants are judged one after the other in the same part: those of a rule share what they remember."""
 
 _OTHER_CODES = (FAILED_PRECONDITION, INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED, "OUT_OF_RANGE")
 
@@ -137,25 +139,36 @@ def teeth(
     *,
     seed: int = 0,
     only: str = "",
+    part: tuple[int, int] = (0, 1),
     progress: Callable[[Bite], None] = lambda _: None,
 ) -> Teeth:
     """Judge every mutant of a system.
 
     Args:
         only: part of the names of the mutants to judge; all by default.
+        part: which part of them, of how many that go side by side; `joined` puts them together again.
         progress: told of every mutant when it has been judged.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
     bounds = Bounds(missions=4, goals=3)
     guide = Guide(system, system.alphabet({}, bounds).worlds, bounds, tuple(system.spec.drives))
     bites, tested = [], set()
-    for mutant in mutants(system):
+    which, parts = part
+    for number, mutant in enumerate(mutants(system)):
         tested.add(mutant.rule)
-        if only in mutant.name:
+        if only in mutant.name and number // BLOCK % parts == which:
             bites.append(_bite(system, mutant, automaton, guide, seed))
             progress(bites[-1])
     untested = tuple(rule.id for rule in system.spec.all_rules if rule.id not in tested)
     return Teeth(system.name, tuple(bites), untested)
+
+
+def joined(system: System, parts: Iterable[Teeth]) -> Teeth:
+    """What came of all mutants, from what came of each part of them, in the order of the rules."""
+    parts = tuple(parts)
+    found = {bite.mutant: bite for part in parts for bite in part.bites}
+    ordered = tuple(found[mutant.name] for mutant in mutants(system) if mutant.name in found)
+    return Teeth(system.name, ordered, parts[0].untested)
 
 
 class _Broken(Reference):
@@ -172,10 +185,13 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
     run = Run(system, broken, introduce(system, broken), automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
     chance = random.Random(seed)  # noqa: S311 - no secret
-    if run.tour(chance, FIRST, STEPS, mutant.favour):
-        because = _excuse(system, mutant, broken.model, guide.worlds)
-        if because or run.tour(chance, TOURS - FIRST, STEPS, mutant.favour):
-            return Bite(mutant.name, mutant.rule, killed=False, because=because)
+    try:
+        if run.play() and run.tour(chance, FIRST, STEPS, mutant.favour):
+            because = _excuse(system, mutant, broken.model, guide.worlds)
+            if because or run.tour(chance, TOURS - FIRST, STEPS, mutant.favour):
+                return Bite(mutant.name, mutant.rule, killed=False, because=because)
+    except UnreadableError:
+        pass  # it does not even speak the protocol any more
     if run.found is None:
         return Bite(mutant.name, mutant.rule, killed=True)
     return Bite(mutant.name, mutant.rule, killed=True, length=len(run.found.judge.history) - 1)

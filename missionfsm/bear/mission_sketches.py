@@ -5,6 +5,7 @@ from __future__ import annotations
 from missionfsm.bear.mission import Robot
 from missionfsm.bear.mission_effects import Happening
 from missionfsm.bear.mission_requests import Request
+from missionfsm.bear.mission_shortcut import forget_ended
 from missionfsm.kernel.alphabet import ANY_NAME, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.sketch import Refs, Sketch
@@ -12,14 +13,12 @@ from missionfsm.kernel.sketch import Refs, Sketch
 _MOST = 4
 """Listed missions: enough for two to wait behind one, after another has ended."""
 
-_MISSION: JSON = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
+_GOALS: JSON = {"goals": [{"destinationId": "table-1"}, {"destinationId": "table-2"}]}
+_MISSION: JSON = {"mission": {"serviMission": {"deliveryMission": _GOALS}}}
 _PROMPTS = (
     Prompt("CreateMission", _MISSION),
     Prompt("CreateMissionBatch", {"missions": [_MISSION, _MISSION]}),
-    Prompt(
-        "CreateMissionWorkflow",
-        {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": [{"destinationId": "table-1"}]}}}},
-    ),
+    Prompt("CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"delivery": _GOALS}}}),
     Prompt("AppendMission", _MISSION),
     Prompt("AppendMissionBatch", {"missions": [_MISSION, _MISSION]}),
     Prompt("ChargeRobot", {}),
@@ -41,11 +40,10 @@ _HAPPENS = {
 
 def _node(robot: Robot) -> str:
     """What the active mission is at, and whether others wait."""
-    waiting = ", others wait" if robot.pending else ""
     if robot.active is not None:
-        return robot.active.state.name.removeprefix("STATE_") + waiting
+        return robot.active.state.name.removeprefix("STATE_") + (", others wait" if robot.pending else "")
     if robot.pending:
-        return "halted" + waiting
+        return f"{'halted' if robot.halted else 'none is active'}, missions wait"
     return "all have ended" if robot.done else "no mission"
 
 
@@ -74,10 +72,9 @@ SKETCHES = (
         node=_node,
         label=_label,
         within=lambda robot: len(robot.listed) <= _MOST,
+        simple=lambda robot, _: forget_ended(robot),
         prompts=_PROMPTS,
         drives=_DRIVES,
         contrasts=("AM-09=b", "AM-09=c", "AM-10=b", "AM-11=b"),
     ),
 )
-
-

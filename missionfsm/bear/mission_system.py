@@ -229,6 +229,4 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(
-    SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES
-)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES)

@@ -5,11 +5,16 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterator
 
+from attrs import evolve
+
 from missionfsm.bear import status_values as values
-from missionfsm.bear.status import MAPS, SINGLES, Endpoint
-from missionfsm.bear.status_stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED
+from missionfsm.bear.status import GET, MAPS, SINGLES, Endpoint
+from missionfsm.bear.status_messages import RobotState
+from missionfsm.bear.status_rules import OPERATIONS
+from missionfsm.bear.status_stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, Promised
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import Bend
+from missionfsm.kernel.spec import Step
+from missionfsm.kernel.system import Bend, Break
 
 Change = Callable[[dict[str, JSON]], None]
 
@@ -155,3 +160,18 @@ BENDS = (
     Bend(values.a_stuck_robot_stands.rule.id, "moves while it is stuck", _of(Endpoint.ROBOT, _moving)),
 )
 """Ways to send wrong messages; every promise about messages has one."""
+
+
+def _without_battery(_: object, step: Step) -> Step:
+    if step.answer is None or not isinstance(step.answer.shape, Promised):
+        return step
+    promised = step.answer.shape
+    if not isinstance(promised.shown.value, RobotState):
+        return step
+    shown = evolve(promised.shown, value=evolve(promised.shown.value, battery=None))
+    return evolve(step, answer=evolve(step.answer, shape=evolve(promised, shown=shown)))
+
+
+(_ANSWERED,) = OPERATIONS[GET].promises
+TWISTS = (Break(VALUES[GET].id, "leaves out the battery", _without_battery, at=_ANSWERED.id),)
+"""Ways to take wrong steps that show in no message."""

@@ -308,9 +308,14 @@ def _topical(
     if shown is None or (shown == view(before, endpoint)):
         yield (), ()
     elif endpoint is Endpoint.NETWORK and not shown.linked:
-        yield (Emission(told(fleet, after, endpoint), shown, (), optional=True),), ()
+        yield (Emission(told(fleet, after, endpoint), shown, (), optional=True, only=_told_of(shown)),), ()
     else:
         yield from _ways(fleet, shown, after, _minor(endpoint, before, after))
+
+
+def _told_of(shown: View) -> Assumption | None:
+    """AS-27: the readings without which nothing is told of a robot that is not known to be connected."""
+    return None if shown.endpoint is not Endpoint.NETWORK or shown.linked or shown.unheard else AS_27["a", "b"]
 
 
 def _minor(endpoint: Endpoint, before: Robot, after: Robot) -> Iterator[Assumption]:
@@ -359,7 +364,7 @@ def _reconnected(fleet: Fleet, before: Robot, after: Robot) -> Iterator[Emission
     """What a change of the connection may bring to the other streams: what they withheld, or a network that is gone."""
     network = view(after, Endpoint.NETWORK)
     if network:
-        yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), stays=True)
+        yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), stays=True, only=_told_of(network))
     if before.offline and after.connection is ConnectionState.STATE_CONNECTED:
         for endpoint in (Endpoint.BATTERY, Endpoint.ERRORS, Endpoint.NAVIGATION):
             shown = view(after, endpoint)
@@ -373,7 +378,7 @@ def restarted(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tupl
     if robot is None:
         return ()
     emits = tuple(
-        Emission(told(fleet, robot, endpoint), shown, (), stays=True)
+        Emission(told(fleet, robot, endpoint), shown, (), stays=True, only=_told_of(shown))
         for endpoint in Endpoint
         if robot.owned and not fleet.unheard and (shown := view(robot, endpoint))
     )
@@ -395,7 +400,7 @@ def moved(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[St
         if moves is Moves.FOLLOWED and robot.owned:
             # It joins the streams of its new place; those by robot ids may see it announced again.
             emits = tuple(
-                Emission(told(into, after, endpoint), shown, (), stays=True)
+                Emission(told(into, after, endpoint), shown, (), stays=True, only=_told_of(shown))
                 for endpoint in Endpoint
                 if (shown := _anything(fleet, after, endpoint))
             )

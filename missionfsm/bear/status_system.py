@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from missionfsm.bear.status import GET, Endpoint
 from missionfsm.bear.status import SYSTEM as NAME
-from missionfsm.bear.status_breaks import BENDS
+from missionfsm.bear.status_breaks import BENDS, TWISTS
 from missionfsm.bear.status_json import CODEC
+from missionfsm.bear.status_sketches import SKETCHES
 from missionfsm.bear.status_spec import SPEC
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
@@ -275,6 +276,6 @@ def alphabet(_: JSON, __: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS)
+SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, sketches=SKETCHES)
 
 __all__ = ["SYSTEM"]

@@ -245,8 +245,8 @@ class Spec:
         size: state to how large it is for a search, against `Bounds.missions`; None where that is the number of its
             names.
         extent: the same for exploration; None where that is the number of its names.
-        undecided: state to the one that stands for it in exploration, where every step may follow any reading: without
-            what it remembers of readings; None where states remember nothing of them.
+        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
+            readings, since every step may follow any; None where states remember neither.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
         phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
@@ -285,7 +285,7 @@ class Spec:
     idle_shape: Callable[[State], Hashable] | None = None
     size: Callable[[State], int] | None = None
     extent: Callable[[State], int] | None = None
-    undecided: Callable[[State], State] | None = None
+    outline: Callable[[State], State] | None = None
     forget_ended: Callable[[State], State] | None = None
     shortcut: Callable[..., Shortcut] | None = None
 

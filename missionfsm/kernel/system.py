@@ -26,12 +26,14 @@ class Bend:
 class Break:
     """A way to take wrong steps: the rule that it breaks, what it does, and how it changes a step.
 
-    `twist` takes the state before and a step that the rule justifies.
+    `twist` takes the state before and a step that the rule justifies, or the rule `at` where the one that is broken
+    justifies none (it is about what steps show).
     """
 
     rule: str
     says: str
     twist: Callable[[Any, Step], Step | None]
+    at: str = ""
 
 
 @frozen(eq=False)

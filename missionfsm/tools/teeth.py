@@ -219,7 +219,7 @@ def mutants(system: System) -> Iterator[Mutant]:
             yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
         for promised in operation.promises:
             yield from _of_promise(spec, promised, operation.name)
-    own = {bend.rule for bend in system.bends}
+    own = {bend.rule for bend in system.bends} | {one.rule for one in system.twists if one.at}
     for rule in spec.rules:
         if rule.id not in own:
             yield from _of_promise(spec, rule, None)
@@ -232,7 +232,7 @@ def mutants(system: System) -> Iterator[Mutant]:
             _in_force(spec, one.rule),
             _operation_of(spec, one.rule),
             spec,
-            _where(one.rule, one.twist),
+            _where(one.at or one.rule, one.twist),
         )
 
 

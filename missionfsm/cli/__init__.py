@@ -9,7 +9,7 @@ import sys
 
 import typer
 
-from missionfsm.cli import isaac, judging, listing
+from missionfsm.cli import diagram, isaac, judging, listing
 
 app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None, help=__doc__
@@ -21,6 +21,7 @@ for _command in (
     judging.teeth,
     listing.rules,
     listing.readings,
+    diagram.diagram,
     judging.adapter,
     isaac.dispatch,
     isaac.robot,

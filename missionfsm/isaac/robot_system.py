@@ -7,6 +7,7 @@ from typing import Any
 
 from missionfsm.isaac.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
 from missionfsm.isaac.robot_json import CODEC
+from missionfsm.isaac.robot_sketches import SKETCHES
 from missionfsm.isaac.robot_spec import SPEC
 from missionfsm.isaac.sight import new_uuid, uuid_json
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming, as_text, new, pick
@@ -95,4 +96,4 @@ _PLAIN: JSON = {
         '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"{}"}}}'
     ),
 }
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, sketches=SKETCHES)

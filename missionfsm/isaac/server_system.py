@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from missionfsm.isaac.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
+from missionfsm.isaac.plans import PLANS
 from missionfsm.isaac.robot_system import NAMING
 from missionfsm.isaac.server_json import CODEC
 from missionfsm.isaac.server_scripts import SCRIPTS
+from missionfsm.isaac.server_sketches import SKETCHES
 from missionfsm.isaac.server_spec import SPEC
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON
@@ -123,6 +125,10 @@ _TIMES: tuple[JSON, ...] = tuple(
 )
 
 
+_EVERY_CLOCK: JSON = {"event": "advance", "seconds": 11}
+"""More time than any clock of a plain mission takes."""
+
+
 def _drives(name_channel: str) -> Iterator[JSON]:
     yield {"event": "connect"}
     yield {"event": "disconnect", "connection": pick("connection", 0)}
@@ -136,13 +142,23 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
     good = tuple(_good())
     return Alphabet(
         prompts=(*good, *good, *good, *_odd(), Prompt("statuses", {})),
-        plain=(_submit(robot=ROBOTS[0]), _submit(robot=ROBOTS[1], timeout=4), Prompt("statuses", {})),
+        plain=(
+            _submit(robot=ROBOTS[0]),
+            _submit(robot=ROBOTS[0], upstream=[_MISSION]),
+            Prompt("statuses", {}),
+        ),
         drives=tuple(_drives(channel)),
-        plain_drives=({"event": "connect"}, {"event": "advance", "seconds": 3}, {"event": "advance", "seconds": 6}),
+        plain_drives=(
+            {"event": "connect"},
+            {"event": "disconnect", "connection": pick("connection", 0)},
+            _says(ROBOTS[0], channel),
+            *(_reports(status, uuid=pick("uuid", 1)) for status in _STATUSES),
+            _EVERY_CLOCK,
+        ),
         worlds=({}, {"nameChannel": "who"}),
         look=Prompt("statuses", {}),
         scripts=SCRIPTS,
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, sketches=SKETCHES, plans=PLANS)

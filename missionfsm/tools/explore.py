@@ -165,7 +165,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     *,
     forget_ended: bool = False,
 ) -> Reached:
-    """Every state within `most` names.
+    """Every state whose extent is `most` or less (see `Spec.extent`).
 
     Args:
         forget_ended: what has ended is only counted, where the system can (see `Spec.forget_ended`).
@@ -174,14 +174,20 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
         events = [event for event, _ in labels.events]
         short = spec.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
         return Reached(_reach(short.encode(start), short.successors), short.decode)
-    quotient = (spec.forget_ended if forget_ended else None) or _itself
+    quotient = _quotient(spec, forget_ended=forget_ended)
+    extent = spec.extent or spec.names
 
     def successors(here: State) -> Iterator[State]:
         for one in steps(spec, here, labels):
-            if meet(assumed, one.step.assumes) and spec.names(one.step.after) <= most:
+            if meet(assumed, one.step.assumes) and extent(one.step.after) <= most:
                 yield quotient(one.step.after)
 
     return Reached(_reach(quotient(start), successors), _itself)
+
+
+def _quotient(spec: Spec, *, forget_ended: bool) -> Callable[[State], State]:
+    """What stands for a state in an exploration."""
+    return (spec.forget_ended if forget_ended else None) or spec.outline or _itself
 
 
 def _itself(state: State) -> State:
@@ -269,12 +275,12 @@ def explore(  # noqa: PLR0913 - every one has a default
     alphabet = system.alphabet(usual, bounds)
     labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
     start = spec.initial(system.codec.world(usual))
-    quotient = spec.forget_ended if forget_ended else None
     found = reachable(spec, start, labels, bounds.missions, assumed, forget_ended=forget_ended)
     checked = spec.invariants if invariants is None else invariants
     broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
-    counterexample = _counterexample(spec, labels, found, quotient or _itself, *broken) if broken else None
-    possible = () if quotient else spec.possibilities
+    quotient = _quotient(spec, forget_ended=forget_ended)
+    counterexample = _counterexample(spec, labels, found, quotient, *broken) if broken else None
+    possible = () if forget_ended and spec.forget_ended else spec.possibilities
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
     groups = Counter(map(spec.situation, found))
     representatives = {spec.situation(here): here for here in found}
@@ -323,6 +329,8 @@ def firings(
     """For every refusal: whether some call in some of the states meets it, and whether some call does not."""
     found = {rule.id: [False, False] for operation in spec.operations.values() for rule in operation.refusals}
     for here in states:
+        if all(map(all, found.values())):
+            break  # no state can add anything
         for request, free in labels.requests:
             operation = spec.operations[spec.request_operation(request)]
             for refs in references(spec, here, free):

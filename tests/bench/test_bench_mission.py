@@ -134,7 +134,8 @@ def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int,
     states = len(set(found))
     reading = time.perf_counter() - began
     best = benchmark.stats.stats.min
-    print(f"\n{states:,} states, {states / best:,.0f} a second; {states / (best + reading):,.0f} when all are looked at")
+    looked_at = states / (best + reading)
+    print(f"\n{states:,} states, {states / best:,.0f} a second; {looked_at:,.0f} when all are looked at")
 
 
 def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:

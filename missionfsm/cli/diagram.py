@@ -1,0 +1,173 @@
+"""The command that draws: lifecycles, quotients of the explored graph, plans of missions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from missionfsm.cli.common import BAD_INPUT, choice, one_line_errors, say, stop, the_system
+from missionfsm.kernel.system import System
+
+if TYPE_CHECKING:  # drawing is loaded when something is drawn
+    from missionfsm.tools.diagrams.gallery import Picture, Wanted
+
+_WITHOUT_DOT = "SVG is drawn by Graphviz, whose program dot was not found: install the package graphviz"
+
+
+def diagram(  # noqa: PLR0913 - options of the command
+    what: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SYSTEM…]", help="Systems, or pictures such as bear.mission/queue; all if left out."),
+    ] = None,
+    form: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format", metavar="FORMAT", help="dot, svg, mermaid, plantuml, scxml, xstate, table; repeat it."
+        ),
+    ] = None,
+    output: Annotated[
+        str | None, typer.Option("-o", "--output", metavar="DIR", help="Write files; one picture goes to stdout else.")
+    ] = None,
+    reading: Annotated[
+        list[str] | None,
+        typer.Option("--reading", metavar="AM-09=b", help="A reading to follow instead of the reference's; repeat it."),
+    ] = None,
+    versus: Annotated[
+        list[str] | None,
+        typer.Option("--versus", metavar="AM-09=b", help="A reading to draw into the same picture, in another colour."),
+    ] = None,
+    refusals: Annotated[bool, typer.Option("--refusals", help="Tell below the pictures what is refused.")] = False,
+    missions: Annotated[
+        str | None, typer.Option("--missions", metavar="FILE", help="Draw the missions of a mission file (Isaac).")
+    ] = None,
+) -> None:
+    """Draw state diagrams from the model itself."""
+    from missionfsm.tools.diagrams.gallery import FORMATS, Wanted  # noqa: PLC0415 - commands load what they need
+
+    unknown = [one for one in form or () if one not in FORMATS]
+    if unknown:
+        stop(f"--format {unknown[0]}: there are {', '.join(FORMATS)}", BAD_INPUT)
+    forms = tuple(dict.fromkeys(form or (FORMATS if output else ("dot",))))
+    wanted = Wanted(choice(reading), choice(versus), refusals)
+    if missions and (what or reading or versus or refusals):
+        stop("--missions draws a mission file, which needs no SYSTEM and has no readings and no refusals", BAD_INPUT)
+    with one_line_errors():
+        shown = (_of_file(missions),) if missions else tuple(_chosen(what or (), wanted))
+    if output:
+        whole = not (what or form or reading or versus or refusals or missions)
+        _write(Path(output), shown, forms, whole=whole)
+    else:
+        _print(shown, forms)
+
+
+def _chosen(what: Sequence[str], wanted: Wanted) -> Iterator[Picture]:
+    """The pictures that are asked for."""
+    from missionfsm.systems import names  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.diagrams.gallery import pictures  # noqa: PLC0415
+
+    systems = tuple(the_system(one) for one in dict.fromkeys(one.partition("/")[0] for one in what) or names())
+    _known(systems, wanted)
+    try:
+        shown = [one for system in systems for one in pictures(system, wanted)]
+    except ValueError as error:
+        stop(str(error), BAD_INPUT)
+    chosen = shown if not what else [picture for one in what for picture in _called(one, shown)]
+    yield from dict.fromkeys(chosen)
+
+
+def _called(name: str, shown: Sequence[Picture]) -> list[Picture]:
+    """The picture that is called so; or all of what is called so, under whatever readings; or all of a system."""
+    called = [one for one in shown if name == one.id]
+    called = called or [one for one in shown if name in (one.system, f"{one.system}/{one.subject}")]
+    if not called:
+        stop(f"there is no picture {name}; there are {', '.join(one.id for one in shown) or 'none'}", BAD_INPUT)
+    return called
+
+
+def _known(systems: tuple[System, ...], wanted: Wanted) -> None:
+    """A reading has to be one of some system at least."""
+    from missionfsm.tools.diagrams.gallery import named  # noqa: PLC0415 - commands load what they need
+
+    for name in (*wanted.readings, *wanted.versus):
+        if not any(named(system, name) for system in systems):
+            stop(f"{', '.join(one.name for one in systems)}: there is no ambiguity {name}", BAD_INPUT)
+
+
+def _of_file(path: str) -> Picture:
+    """The missions of a file, which wait for one another."""
+    from missionfsm.adapters.historyfile import STDIN, open_history  # noqa: PLC0415 - commands load what they need
+    from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
+    from missionfsm.isaac.plans import plan  # noqa: PLC0415
+    from missionfsm.tools.diagrams.gallery import of_plan  # noqa: PLC0415
+
+    with open_history(path) as source:
+        found = parse(source.read())
+    if not isinstance(found, MissionFile):
+        stop(f"{path}: {found[0]}", BAD_INPUT)
+    name = "stdin" if path == STDIN else Path(path).name
+    return of_plan("isaac.server", plan(Path(name).stem, f"the missions of {name}", found))
+
+
+def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
+    if len(shown) != 1 or len(forms) != 1:
+        ids = ", ".join(picture.id for picture in shown)
+        stop(f"only one picture in one format goes to stdout; name a folder with -o, or one of {ids}", BAD_INPUT)
+    text = _text(shown[0], forms[0])
+    if text is None:
+        stop(_no_machine(shown[0], forms[0]), BAD_INPUT)
+    say(text.rstrip("\n"), json=None)
+
+
+def _no_machine(shown: Picture, form: str) -> str:
+    return f"{shown.id} cannot be had as {form}: only a lifecycle is a machine, in which every event leads to one state"
+
+
+def _write(folder: Path, shown: tuple[Picture, ...], forms: tuple[str, ...], *, whole: bool) -> None:
+    """Write every picture in every format that it can be had in; SVG comes last, as it may not work."""
+    from missionfsm.tools.diagrams.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.diagrams.index import index, path  # noqa: PLC0415
+
+    if whole:
+        _write_file(folder / "README.md", index(shown))
+    written = 0
+    for form in sorted(forms, key=lambda one: one == SVG):
+        for one in shown:
+            text = _text(one, form)
+            if text is not None:
+                _write_file(folder / path(one, form), text)
+                written += 1
+    if not written:
+        stop(_no_machine(shown[0], forms[0]), BAD_INPUT)
+    files = "file" if written == 1 else "files"
+    say(f"{written} {files} in {folder}: {', '.join(FORMATS[one].suffix for one in forms)}", json=None)
+
+
+def _write_file(path: Path, text: str) -> None:
+    from missionfsm.adapters.historyfile import write_whole  # noqa: PLC0415 - commands load what they need
+
+    with one_line_errors():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            stop(f"{path.parent}: {error.strerror}", BAD_INPUT)
+        write_whole(str(path), text.encode())
+
+
+def _text(shown: Picture, form: str) -> str | None:
+    from missionfsm.tools.diagrams.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
+
+    text = FORMATS[form].write(shown)
+    return _svg(text) if form == SVG and text is not None else text
+
+
+def _svg(dot: str) -> str:
+    """What Graphviz makes of DOT."""
+    import graphviz  # noqa: PLC0415 - only SVG needs it here
+
+    try:
+        return str(graphviz.Source(dot).pipe(format="svg", encoding="utf-8"))
+    except graphviz.ExecutableNotFound:
+        stop(_WITHOUT_DOT, BAD_INPUT)

@@ -66,3 +66,9 @@ def say(text: str, *, json: str | None) -> None:
     """Print for people, unless stdout is taken by JSON."""
     if json != "-":
         print(text)  # noqa: T201 - the command line speaks
+
+
+def say_now(text: str, *, json: str | None) -> None:
+    """Print for people who wait for it."""
+    say(text, json=json)
+    sys.stdout.flush()

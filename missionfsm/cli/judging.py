@@ -4,17 +4,41 @@ from __future__ import annotations
 
 import secrets
 import sys
-from collections.abc import Callable
+import time
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from missionfsm.cli.common import BAD_INPUT, DONE, FAILED, choice, one_line_errors, say, stop, the_system, write_json
+from missionfsm.cli.common import (
+    BAD_INPUT,
+    DONE,
+    FAILED,
+    choice,
+    one_line_errors,
+    say,
+    say_now,
+    stop,
+    the_system,
+    write_json,
+)
+from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
+from missionfsm.cli.progress import Bar
+from missionfsm.kernel.system import System
+from missionfsm.systems import names
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
 ]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
+KnownFile = Annotated[
+    str | None,
+    typer.Option(
+        "--expect-violations",
+        metavar="FILE",
+        help="Ids of rules that are known to be broken, one a line, # for comments; one that is not met fails.",
+    ),
+]
 
 
 def conform(  # noqa: PLR0913 - options of the command
@@ -22,35 +46,75 @@ def conform(  # noqa: PLR0913 - options of the command
     command: Annotated[
         list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")
     ] = None,
-    examples: Annotated[int, typer.Option(min=1, help="Conversations, each from a reset on.")] = 100,
+    examples: Annotated[
+        int | None, typer.Option(min=1, help="Conversations, each from a reset on: 100, or 5 in real time.")
+    ] = None,
     steps: Annotated[int, typer.Option(min=1, help="Calls and drives in a conversation, at most.")] = 40,
     seed: Annotated[int | None, typer.Option(help="The same seed asks the same.")] = None,
+    seconds: Annotated[
+        float | None, typer.Option("--time", metavar="SECONDS", min=0.1, help="Begin no further step after that.")
+    ] = None,
     reading: Readings = None,
+    expect_violations: KnownFile = None,
+    distinguish: Annotated[
+        bool, typer.Option("--distinguish", help="Try at the end to tell readings apart that are still open.")
+    ] = False,
     timeout: Annotated[float, typer.Option(min=0.01, help="Seconds that an answer may take.")] = 10.0,
+    tcp: Annotated[
+        str | None,
+        typer.Option(metavar="HOST:PORT", help="Judge the mission server that listens there (isaac.server)."),
+    ] = None,
+    missions: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="With --tcp: the server's mission file; the command after -- starts it."),
+    ] = None,
+    tcp_listen: Annotated[
+        int | None,
+        typer.Option(
+            metavar="PORT",
+            min=1,
+            max=65535,
+            help="Judge the robot that connects there; the command after -- starts it.",
+        ),
+    ] = None,
+    tolerance: Annotated[float, typer.Option(help="Over TCP: seconds that times may be off.")] = 0.2,
     record: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history of a violation.")] = None,
     json: JsonFile = None,
+    html: HtmlFile = None,
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.historyfile import write_history  # noqa: PLC0415 - commands load what they need
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415
+    from missionfsm.cli.bridged import Sockets, bridged  # noqa: PLC0415
+    from missionfsm.tools.conform import DEFAULT_EXAMPLES, DEFAULT_TOURS  # noqa: PLC0415
     from missionfsm.tools.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
     readings = choice(reading)
+    known = _known(expect_violations, judged)
+    deadline = None if seconds is None else time.monotonic() + seconds
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
+    sockets = Sockets(tcp, tcp_listen, missions, tolerance)
     with one_line_errors():
-        child = Child(command or own, timeout)
         try:
-            with _progress(examples) as progress:
-                verdict = judge(
-                    judged,
-                    child,
-                    examples=examples,
-                    steps=steps,
-                    seed=secrets.randbits(32) if seed is None else seed,
-                    readings=readings,
-                    progress=progress,
-                )
+            bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
+        except ValueError as error:
+            stop(str(error), BAD_INPUT)
+        child = bridge.subject if bridge else Child(command or own, timeout)
+        examples = examples or DEFAULT_EXAMPLES
+        try:
+            with Bar("conversations", bridge.conversations if bridge else examples + DEFAULT_TOURS) as bar:
+                asked: dict[str, Any] = {
+                    "seed": secrets.randbits(32) if seed is None else seed,
+                    "readings": readings,
+                    "expected": known,
+                    "enough": lambda: deadline is not None and time.monotonic() > deadline,
+                    "progress": bar.conversation,
+                }
+                if bridge:
+                    verdict = bridge.judge(steps, **asked)
+                else:
+                    verdict = judge(judged, child, examples=examples, steps=steps, distinguish=distinguish, **asked)
         except ValueError as error:
             stop(str(error), BAD_INPUT)
         finally:
@@ -58,54 +122,58 @@ def conform(  # noqa: PLR0913 - options of the command
         if record and verdict.violation:
             write_history(record, verdict.violation.history)
     write_json(json, verdict.to_json())
+    write_report(html, ("", None, verdict))
     say(str(verdict), json=json)
     raise typer.Exit(DONE if verdict.conforms else FAILED)
 
 
-class _progress:  # noqa: N801 - a context manager used like a function
-    """A progress bar on a terminal, nothing on a pipe."""
+def _known(path: str | None, *judged: System) -> tuple[str, ...]:
+    """The rules that a file lists as known to be broken; bad input if one of them is none."""
+    if path is None:
+        return ()
+    from missionfsm.tools.expected import read_expected  # noqa: PLC0415 - commands load what they need
 
-    def __init__(self, total: int) -> None:
-        self.total = total
-        self.bar: Any = None
-
-    def __enter__(self) -> Callable[[], None]:
-        if not sys.stderr.isatty():
-            return lambda: None
-        from rich.console import Console  # noqa: PLC0415 - only a terminal needs it
-        from rich.progress import Progress  # noqa: PLC0415
-
-        self.bar = Progress(console=Console(stderr=True), transient=True)
-        self.bar.start()
-        task = self.bar.add_task("conversations", total=self.total)
-        return lambda: self.bar.advance(task)
-
-    def __exit__(self, *_: object) -> None:
-        if self.bar is not None:
-            self.bar.stop()
+    try:
+        return read_expected(Path(path).read_text(encoding="utf-8"), [one.spec for one in judged])
+    except OSError as error:
+        stop(f"{path}: {error.strerror}", BAD_INPUT)
+    except ValueError as error:
+        stop(f"{path}:{error}", BAD_INPUT)
 
 
 def check(
     files: Annotated[list[str], typer.Argument(metavar="FILE…", help="Recorded histories; - is stdin.")],
     reading: Readings = None,
+    expect_violations: KnownFile = None,
     json: JsonFile = None,
+    html: HtmlFile = None,
 ) -> None:
-    """Judge recorded histories."""
+    """Judge recorded histories, or the bare messages of a status subscription."""
     from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.expected import Expected, excused  # noqa: PLC0415
 
     readings = choice(reading)
-    verdicts = []
+    known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations else ())
+    verdicts, pages = [], []
     for path in files:
         with one_line_errors():
             try:
-                found = check_file(path, readings)
+                found = check_file(path, readings, lambda problem: say_now(problem, json=json))
             except ValueError as error:
                 stop(str(error), BAD_INPUT)
-        for robot, verdict in found:
+        for robot, judged in found:
+            verdict = excused(judged, known)
             verdicts.append({"file": path, "robot": robot, **verdict.to_json()})
+            pages.append((path, robot, verdict))
             say(f"{path}{f' {robot}' if robot else ''}: {verdict}", json=json)
+    for rule in known.stale:
+        say(f"a violation of {rule} was expected and was not met: take it off the list", json=json)
+    if known.stale:
+        verdicts = [{**one, "stale": list(known.stale)} for one in verdicts]
     write_json(json, verdicts[0] if len(verdicts) == 1 else verdicts)
-    raise typer.Exit(DONE if all(one["verdict"] == "conforms" for one in verdicts) else FAILED)
+    write_report(html, *pages)
+    right = not known.stale and all(one["verdict"] == "conforms" for one in verdicts)
+    raise typer.Exit(DONE if right else FAILED)
 
 
 def explore(  # noqa: PLR0913 - options of the command
@@ -118,6 +186,7 @@ def explore(  # noqa: PLR0913 - options of the command
         bool, typer.Option("--forget-ended", help="Only count what has ended: far fewer states, the same steps.")
     ] = False,
     json: JsonFile = None,
+    html: HtmlFile = None,
 ) -> None:
     """Visit every state within bounds: invariants, possibilities, which rules fire."""
     from missionfsm.kernel.alphabet import Bounds  # noqa: PLC0415 - commands load what they need
@@ -129,26 +198,32 @@ def explore(  # noqa: PLR0913 - options of the command
         assumed = constrain(explored.spec.ambiguities, choice(reading))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
-    found = visit(explored, Bounds(missions, goals, batch), assumed=assumed, forget_ended=forget_ended)
+    bounds = Bounds(missions, goals, batch)
+    found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     write_json(json, found.to_json())
+    write_explorer(html, explored, bounds, assumed)
     say(str(found), json=json)
     raise typer.Exit(DONE if found.holds else FAILED)
 
 
-def teeth(
+def teeth(  # noqa: PLR0913 - options of the command
     system: Annotated[str, typer.Argument(help="Which system.")],
     only: Annotated[str, typer.Option(help="Judge only implementations with this in their name.")] = "",
-    seed: Annotated[int, typer.Option(help="The same seed asks the same.")] = 0,
+    seed: Annotated[int, typer.Option(help="The same seed asks the same, in as many processes.")] = 0,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
     json: JsonFile = None,
+    html: HtmlFile = None,
 ) -> None:
     """Break every rule, one at a time, and see whether the oracle notices."""
-    from missionfsm.tools.teeth import mutants  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.teeth import teeth as bite  # noqa: PLC0415
+    from missionfsm.cli.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.teeth import mutants  # noqa: PLC0415
 
     judged = the_system(system)
-    with _progress(sum(only in mutant.name for mutant in mutants(judged))) as progress:
-        found = bite(judged, seed=seed, only=only, progress=lambda _: progress())
+    total = sum(only in mutant.name for mutant in mutants(judged))
+    with Bar("implementations", total) as bar:
+        found = teeth_on(min(jobs or cores(), max(1, total)), system, seed=seed, only=only, progress=bar.one_more)
     write_json(json, found.to_json())
+    write_teeth(html, judged, found)
     say(str(found), json=json)
     raise typer.Exit(FAILED if found.missed or found.untested or not found.bites else DONE)
 

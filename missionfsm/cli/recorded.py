@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from attrs import evolve
@@ -17,6 +18,7 @@ from missionfsm.adapters.historyfile import (
     open_history,
     wrong_line,
 )
+from missionfsm.cli.watched import subscription, watch_messages
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.readings import constrain
@@ -26,10 +28,13 @@ from missionfsm.tools.check import KEPT, Judge
 from missionfsm.tools.verdict import Verdict
 
 
-def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tuple[str | None, Verdict]]:
+def check_file(
+    path: str, readings: Mapping[str, str] | None = None, tell: Callable[[str], None] = lambda _: None
+) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot that a history speaks of, in the order of their first lines.
 
-    A line without a robot belongs to the one conversation of the file.
+    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a status
+    subscription is the bare messages of that subscription; what is wrong with one is told at once.
 
     Raises:
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
@@ -45,6 +50,9 @@ def check_file(path: str, readings: Mapping[str, str] | None = None) -> list[tup
         if not number:
             message = f"{'stdin' if path == STDIN else path}: the history is empty"
             raise UnreadableError(message)
+        watched = subscription(line)
+        if watched:
+            return [(None, watch_messages(watched, itertools.chain([(number, line)], numbered), tell))]
         try:
             first = head(line)
             stamps = Stamps()

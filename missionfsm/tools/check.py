@@ -18,6 +18,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transcript import Head, Transcript
 from missionfsm.tools.explain import violation
+from missionfsm.tools.rulings import Rulings, by_ambiguity
 from missionfsm.tools.verdict import Outcome, Verdict, Violation
 
 KEPT = 200
@@ -56,6 +57,8 @@ class Judge:
             system.spec, head.drives, constrain(system.spec.ambiguities, readings or {})
         )
         self.belief = Belief(self.automaton, system.codec.world(head.world))
+        self.rulings = Rulings(self.belief)
+        self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost)
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
@@ -75,29 +78,27 @@ class Judge:
         events = self.transcript.read(line)
         self.lines.append(line)
         self.read += 1
-        for event in events:  # noqa: SIM110 - called for every line, and faster so
-            if not self._take(event):
-                return False
-        return True
-
-    def _take(self, event: Event) -> bool:
         if self._unexplained is not None or self.exhausted:
             return False
-        self.events += 1
-        kind = type(event)
-        if kind is Called:
-            self._calls[event.call] = event.request  # type: ignore[union-attr]
-        try:
-            explained = self.belief.observe(event)
-        except ExhaustedError:
-            self.exhausted = True
-            return False
-        if not explained:
-            self._unexplained = event
-            return False
-        if kind is Returned:
-            self._calls.pop(event.call, None)  # type: ignore[union-attr]
-            self.succeeded += event.answer.code == OK  # type: ignore[union-attr]
+        belief = self.belief
+        for event in events:
+            self.events += 1
+            kind = type(event)
+            if kind is Called:
+                self._calls[event.call] = event.request  # type: ignore[union-attr]
+            try:
+                explained = belief.observe(event)
+            except ExhaustedError:
+                self.exhausted = True
+                return False
+            if not explained:
+                self._unexplained = event
+                return False
+            if belief.node not in self._seen:
+                self.rulings.notice(event, self._calls)
+            if kind is Returned:
+                self._calls.pop(event.call, None)  # type: ignore[union-attr]
+                self.succeeded += event.answer.code == OK  # type: ignore[union-attr]
         return True
 
     @property
@@ -140,6 +141,7 @@ class Judge:
             violation=self.violation,
             because=because,
             flagged=flagged(self.system.spec, self.belief.readings),
+            ruled_out=by_ambiguity(self.system.spec.ambiguities, self.rulings.found),
         )
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, Verbosity, settings
@@ -21,7 +21,12 @@ from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check import flagged, uncovered
 from missionfsm.tools.conversation import Conversation, Given, Picks, introduce
+from missionfsm.tools.coverage import rare
+from missionfsm.tools.distinguish import distinguish as tell_apart
+from missionfsm.tools.distinguish import proposed
+from missionfsm.tools.expected import Expected, held_against
 from missionfsm.tools.picking import is_template, kind_of, slots
+from missionfsm.tools.rulings import by_ambiguity
 from missionfsm.tools.run import Run
 from missionfsm.tools.story import inconsistent, story, with_suspects
 from missionfsm.tools.verdict import Outcome, Verdict
@@ -35,6 +40,10 @@ CHOICES = 12
 
 class _Found(BaseException):
     """Something that cannot be explained: the search is over."""
+
+
+class _Enough(BaseException):
+    """No more is to be done: the search is over."""
 
 
 class _Broke(BaseException):
@@ -54,7 +63,11 @@ def conform(  # noqa: PLR0913 - every one has a default
     seed: int = 0,
     readings: Mapping[str, str] | None = None,
     bounds: Bounds | None = None,
-    progress: Callable[[], None] = lambda: None,
+    expected: Iterable[str] = (),
+    distinguish: bool = False,
+    advice: bool = True,
+    enough: Callable[[], bool] = lambda: False,
+    progress: Callable[[Run], None] = lambda _: None,
 ) -> Verdict:
     """Judge an implementation.
 
@@ -64,7 +77,13 @@ def conform(  # noqa: PLR0913 - every one has a default
         tours: conversations before those that walk systematically where the run has been least.
         seed: the same seed asks the same of the same implementation.
         readings: readings that the implementation has to follow; the others are found out.
-        progress: called after every conversation.
+        expected: ids of rules that are known to be broken: such a violation does not end the search, and one that is
+            not met any more makes the verdict a bad one.
+        distinguish: whether to try at the end what would tell readings apart that are still open.
+        advice: whether to think at the end about what the search did not come to: experiments that would tell open
+            readings apart, and why some rules came up seldom.
+        enough: asked before every step: whether to end the search.
+        progress: told of the run after every conversation.
 
     Raises:
         SubjectError: the adapter failed.
@@ -72,7 +91,17 @@ def conform(  # noqa: PLR0913 - every one has a default
     """
     about = introduce(system, subject)
     automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
-    run = Run(system, subject, about, automaton, bounds or Bounds(missions=4, goals=3), progress)
+    known = Expected(expected)
+    run = Run(system, subject, about, automaton, bounds or Bounds(missions=4, goals=3), progress, known, enough)
+    ended = search(run, examples, steps, tours, seed)
+    if distinguish and ended and run.found is None and run.contradiction is None:
+        tell_apart(run)
+    notes = () if ended else (f"it was stopped after {run.examples} conversations",)
+    return verdict_of(run, seed, known, notes, advice=advice)
+
+
+def search(run: Run, examples: int, steps: int, tours: int, seed: int) -> bool:
+    """Have all conversations, or until something is found; False if it was stopped before."""
     machine = with_seed(seed)(_machine(run))
     options = settings(
         max_examples=examples,
@@ -86,16 +115,30 @@ def conform(  # noqa: PLR0913 - every one has a default
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    if run.play() and run.tour(random.Random(seed), tours, steps):  # noqa: S311 - no secret
-        try:
-            with with_reporter(lambda _: None), contextlib.suppress(_Found):
-                run_state_machine_as_test(machine, settings=options)
-        except _Broke as broke:
-            raise broke.error from None
-    return _verdict(run, seed)
+    if not (run.play() and run.tour(random.Random(seed), tours, steps)):  # noqa: S311 - no secret
+        return True
+    try:
+        with with_reporter(lambda _: None), contextlib.suppress(_Found):
+            run_state_machine_as_test(machine, settings=options)
+    except _Enough:
+        return False
+    except _Broke as broke:
+        raise broke.error from None
+    return True
 
 
-def _verdict(run: Run, seed: int) -> Verdict:
+def verdict_of(
+    run: Run, seed: int, known: Expected | None = None, notes: tuple[str, ...] = (), *, advice: bool = True
+) -> Verdict:
+    """What a run came to.
+
+    Args:
+        known: what was expected of it.
+        notes: what else there is to know of it.
+        advice: see `conform`.
+    """
+    known = known or Expected()
+    advice = advice and run.found is None and run.contradiction is None
     outcome, because, violation, followed = Outcome.CONFORMS, "", None, run.readings
     exercised = run.exercised()
     if not _does_anything(run):
@@ -111,7 +154,7 @@ def _verdict(run: Run, seed: int) -> Verdict:
     elif run.contradiction is not None:
         outcome, violation = Outcome.VIOLATES, inconsistent(run)
     spec = run.system.spec
-    return Verdict(
+    verdict = Verdict(
         outcome,
         run.system.name,
         run.about.name,
@@ -125,7 +168,14 @@ def _verdict(run: Run, seed: int) -> Verdict:
         because,
         flagged(spec, followed),
         story(run.system, violation.history) if violation and run.found is not None else "",
+        by_ambiguity(spec.ambiguities, run.rulings),
+        tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
+        rare=rare(run.system, exercised, run.steps, followed) if advice else {},
+        known={rule: times for rule, times in known.met.items() if times},
+        notes=notes,
     )
+    # A search that was stopped says nothing of what it did not come to.
+    return verdict if notes else held_against(verdict, known.stale)
 
 
 def _does_anything(run: Run) -> bool:
@@ -146,8 +196,12 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
     """The state machine: a rule for each operation and each drive of the adapter, one to settle, one that is guided."""
 
     class Machine(RuleBasedStateMachine):
-        conversation: Conversation
         world: int
+
+        @property
+        def conversation(self) -> Conversation:
+            assert run.last is not None, "a conversation has begun"  # noqa: S101 - it begins with `start`
+            return run.last
 
         @property
         def alphabet(self) -> Alphabet:
@@ -157,13 +211,17 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
         def start(self, world: int, watched: bool) -> None:  # noqa: FBT001 - drawn
             self.world = world
             with _stopping():
-                self.conversation = run.start(run.guide.worlds[world])
+                if run.enough():
+                    raise _Enough
+                run.start(run.guide.worlds[world])
             streams = run.system.codec.streams
             if watched and len(streams) == 1:
                 self.act(streams[0], {})
 
         def act(self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()) -> None:
             with _stopping():
+                if run.enough():
+                    raise _Enough
                 if not run.act(method, params, name, picks):
                     raise _Found
 
@@ -185,7 +243,8 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
                     self.act("settle")
 
         def teardown(self) -> None:
-            if hasattr(self, "conversation") and self.conversation.right:
+            # Where nothing was begun, what was begun last has been gathered before.
+            if hasattr(self, "world") and (run.over or self.conversation.right):
                 self.act("settle")
                 if not run.gather():
                     raise _Found

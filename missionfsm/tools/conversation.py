@@ -105,9 +105,10 @@ class Conversation:
         self.actions: list[Action] = []
         self.given: dict[Given, object] = {}
         self._acting = self._learnt = 0
+        self._asked = ""
         self.succeeded = 0
         # What was still under way before a reset belongs to nobody.
-        self._result("reset", {"world": world})
+        self._notifications(self._result("reset", {"world": world}).after)
 
     @property
     def right(self) -> bool:
@@ -132,8 +133,9 @@ class Conversation:
         return self.right
 
     def _call(self, number: int, method: str, params: JSON) -> None:
-        self._note({"call": number, "method": method, "params": params})
         exchange = self.subject.exchange(method, params)
+        self._notifications(exchange.earlier)
+        self._note({"call": number, "method": method, "params": params})
         self._notifications(exchange.before)
         if exchange.error is None:
             self._note({"return": number, "result": exchange.result})
@@ -162,6 +164,7 @@ class Conversation:
         if not isinstance(happened, bool):
             message = f"the adapter answered drive with {brief(exchange.result)}, not with happened true or false"
             raise SubjectError(message)
+        self._notifications(exchange.earlier)
         first = not happened or self.system.spec.drives[event["event"]].ends
         if first:
             self._notifications(exchange.before)
@@ -175,6 +178,7 @@ class Conversation:
 
     def _settle(self) -> None:
         exchange = self._result("settle", {})
+        self._notifications(exchange.earlier)
         self._notifications(exchange.before)
         self._note({"settled": True})
         self._notifications(exchange.after)
@@ -194,6 +198,11 @@ class Conversation:
                 error = one.params.get("error")
                 closed = {"stream": one.params["stream"], "closed": True}
                 self._note({**closed, "error": error} if error else closed)
+            elif one.method == "history":
+                self._note(one.params)
+                self._asked = one.params.get("method", self._asked)
+                if "result" in one.params:
+                    self._learn(self._asked, one.params["result"])
             else:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
                 self._note(line)

@@ -61,7 +61,9 @@ class Template:
 
 
 @frozen(eq=False)
-class _Call:
+class Call:
+    """A prompt without stand-ins but perhaps for one name, and what it says."""
+
     prompt: Prompt
     request: Any
     named: bool
@@ -75,6 +77,10 @@ class Guide:
         worlds: the worlds that conversations start in.
         bounds: for the alphabet; longer queues than `bounds.missions` are not sought.
         drives: the drives that the adapter has.
+
+    Attributes:
+        alphabets: what is worth trying in each world.
+        calls, events, templates: the same, prepared, by operation or drive.
     """
 
     def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds, drives: tuple[str, ...]) -> None:
@@ -82,12 +88,12 @@ class Guide:
         self.bounds = bounds
         self.worlds = worlds
         self.alphabets = [system.alphabet(world, bounds) for world in worlds]
-        self._calls = [self._prepared(alphabet) for alphabet in self.alphabets]
-        self._events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
-        self._templates = [_prepared_templates(system, alphabet, drives) for alphabet in self.alphabets]
+        self.calls = [self._prepared(alphabet) for alphabet in self.alphabets]
+        self.events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
+        self.templates = [_prepared_templates(system, alphabet, drives) for alphabet in self.alphabets]
         self._labels = [
             list(dict.fromkeys((*calls, *events, *templates)))
-            for calls, events, templates in zip(self._calls, self._events, self._templates, strict=True)
+            for calls, events, templates in zip(self.calls, self.events, self.templates, strict=True)
         ]
         self.walked: Counter[Edge] = Counter()
         self.tried: Counter[tuple[Hashable, str]] = Counter()
@@ -97,15 +103,15 @@ class Guide:
         self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
         self._growth: dict[Any, int] = {}
 
-    def _prepared(self, alphabet: Alphabet) -> dict[str, list[_Call]]:
+    def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
         """The calls of each operation; those that are the same request in other words only once."""
-        found: dict[str, dict[Any, _Call]] = {}
+        found: dict[str, dict[Any, Call]] = {}
         for prompt in alphabet.prompts:
             if is_template(prompt.params):
                 continue
             names, rest = self.system.codec.split(prompt.method, prompt.params)
             request = self.system.codec.request(prompt.method, rest)
-            found.setdefault(prompt.method, {}).setdefault(request, _Call(prompt, request, bool(names)))
+            found.setdefault(prompt.method, {}).setdefault(request, Call(prompt, request, bool(names)))
         return {method: list(calls.values()) for method, calls in found.items()}
 
     def _prepared_events(self, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[JSON, Any]]]:
@@ -138,17 +144,17 @@ class Guide:
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
         for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
-            for call in self._calls[world].get(label, ()):
+            for call in self.calls[world].get(label, ()):
                 for where, name in names if call.named else nameless:
                     refs = (where,) if call.named else ()
                     edge = self._edge(conversation, here, shape, call.request, refs)
                     if edge:
                         found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
-            for drive, event in self._events[world].get(label, ()):
+            for drive, event in self.events[world].get(label, ()):
                 edge = self._drive_edge(here, shape, event)
                 if edge:
                     found.append(Proposal("drive", drive, None, *edge, phase))
-            found += self._filled(conversation, here, shape, self._templates[world].get(label, ()))
+            found += self._filled(conversation, here, shape, self.templates[world].get(label, ()))
             enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
             if enough and not rare:
                 break

@@ -17,7 +17,10 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks
 from missionfsm.tools.guide import Guide, Proposal
 from missionfsm.tools.picking import kind_of, slots
+from missionfsm.tools.rulings import Ruling
 from missionfsm.tools.shrink import shrink
+from missionfsm.tools.story import inconsistent
+from missionfsm.tools.verdict import Violation
 
 SETTLED = 0.6
 """How often a tour waits for everything to settle after a step."""
@@ -37,10 +40,17 @@ class Run:
     """One run against one implementation, and what it gathers.
 
     Attributes:
+        progress: told of the run after every conversation.
+        expects: whether a violation is known; the search goes on after such a one, in another conversation.
+        enough: whether no more should be done.
         found: the conversation that could not be explained.
+        over: whether the last conversation ended in a violation that is known; what is done in it then is nothing.
+        steps: calls and drives so far.
         readings: the readings that every conversation so far can be explained by.
         settled_by: ambiguity and letter to the number of the first conversation that ruled it out.
+        rulings: ambiguity and letter to the event in that conversation.
         contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
+        aside: ambiguities of which it is known that no single reading is followed.
         narrowed: where explanations became many, the automaton of what was found out so far; conversations walk it from
             then on, and one that cannot be explained there is had again without.
     """
@@ -50,16 +60,22 @@ class Run:
     about: Introduced
     automaton: Automaton
     bounds: Bounds
-    progress: Callable[[], None] = lambda: None
+    progress: Callable[[Run], None] = lambda _: None
+    expects: Callable[[Violation], bool] | None = None
+    enough: Callable[[], bool] = lambda: False
     guide: Guide = field(default=None)
     last: Conversation | None = None
     found: Conversation | None = None
+    over: bool = False
+    steps: int = 0
     events: int = 0
     examples: int = 0
     succeeded: int = 0
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     settled_by: dict[tuple[str, str], Conversation] = field(factory=dict)
+    rulings: dict[tuple[str, str], Ruling] = field(factory=dict)
     contradiction: str | None = None
+    aside: set[str] = field(factory=set)
     narrowed: Automaton | None = None
     _widest: int = 0
     _before: dict[str, int] = field(factory=dict)
@@ -73,6 +89,7 @@ class Run:
     def start(self, world: JSON) -> Conversation:
         """Begin a new conversation in a world."""
         self._narrow()
+        self.over = False
         automaton = self.narrowed or self.automaton
         self.last = Conversation(self.system, self.subject, self.about, world, automaton)
         return self.last
@@ -102,25 +119,68 @@ class Run:
         return times
 
     def act(self, method: str, params: JSON = None, name: Given | str | None = None, picks: Picks = ()) -> bool:
-        """Do something in the conversation that was begun last; False once it cannot be explained."""
+        """Do something in the conversation that was begun last; False once something is found that is not expected."""
+        assert self.last is not None, "a conversation has begun"  # noqa: S101 - whoever acts has begun one
+        return self.perform(Action(len(self.last.actions) + 1, method, params, name, picks))
+
+    def perform(self, action: Action) -> bool:
+        """Perform an action in the conversation that was begun last; see `act`."""
         last = self.last
         assert last is not None, "a conversation has begun"  # noqa: S101 - whoever acts has begun one
-        if last.perform(Action(len(last.actions) + 1, method, params, name, picks)):
+        if self.over:
+            return True
+        self.steps += action.method != "settle"
+        if last.perform(action):
             self._widest = max(self._widest, len(last.judge.belief.node.explanations))
+            return True
+        if last.judge.exhausted and self._had_narrowly(last):
             return True
         if self.narrowed is not None and not last.judge.exhausted:
             again = self.attempt(last.world, tuple(last.actions))
             if again.right:
                 # Explained by itself, but not together with those before: a contradiction, if one question shows it.
-                self.last = again
-                if self.gather():
-                    self.found = last
-                return False
-            if not again.judge.exhausted:
+                self.last, known = again, len(self.aside)
+                if not self.gather():
+                    return False
+                if len(self.aside) > known:
+                    self.over = True
+                    return True
+                self.last = last
+            elif not again.judge.exhausted:
                 last = self.last = again
+        if self._is_known(last):
+            self.over = True
+            return True
         self.found = last
         self.gather()
         return False
+
+    def _is_known(self, last: Conversation) -> bool:
+        if self.expects is None or last.judge.exhausted:
+            return False
+        found = last.judge.violation
+        return found is not None and self.expects(found)
+
+    def _had_narrowly(self, exhausted: Conversation) -> bool:
+        """Have a conversation again that has too many explanations, now assuming what is known; whether that did it."""
+        current = self.narrowed or self.automaton
+        self._widest = WIDE + 1
+        self._narrow()
+        if self.narrowed is None or self.narrowed is current:
+            return False
+        again = self.attempt(exhausted.world, tuple(exhausted.actions), self.narrowed)
+        if again.right:
+            self.last = again
+        return again.right
+
+    def have(self, world: JSON, actions: tuple[Action, ...]) -> bool:
+        """Have a whole conversation, judged by all that is known; False once something is found that is not expected.
+
+        It shows more than one that is judged by itself: what others have decided is taken for decided.
+        """
+        self._widest = WIDE + 1
+        self.start(world)
+        return all(map(self.perform, actions)) and self.gather()
 
     def take_up(self, proposal: Proposal, *, counts: bool = True) -> bool:
         """Do what the guide proposed; the guide remembers it if it counts."""
@@ -135,26 +195,43 @@ class Run:
         self.events += done.judge.events
         self.examples += 1
         self.succeeded += done.succeeded
-        self.progress()
+        self.progress(self)
         if not done.right:
             return True
         for name, letters in done.judge.belief.readings.items():
+            if name in self.aside:
+                continue
             known = self.readings.get(name)
             everything = known or next(one for one in self.system.spec.ambiguities if one.id == name).readings
             for letter in everything:
                 if letter not in letters:
                     self.settled_by.setdefault((name, letter), done)
+                    if (name, letter) in done.judge.rulings.found:
+                        self.rulings.setdefault((name, letter), done.judge.rulings.found[name, letter])
             left = tuple(one for one in everything if one in letters)
             self.readings[name] = left
-            if not left:
-                self.contradiction = name
+            if not left and not self._is_known_contradiction(name):
                 return False
+        return True
+
+    def _is_known_contradiction(self, name: str) -> bool:
+        self.contradiction = name
+        if self.expects is None or not self.expects(inconsistent(self)):
+            return False
+        self.contradiction = None
+        self.aside.add(name)
+        del self.readings[name]
+        if self.narrowed is not None:  # it assumes what turned out to be wrong
+            self._before = self.exercised(besides=self.automaton)
+            self.narrowed = None
         return True
 
     def play(self) -> bool:
         """Have the conversations that the system's alphabet has written down; whether all could be explained."""
         world = self.guide.worlds[0]
         for script in self.guide.alphabets[0].scripts:
+            if self.enough():
+                break
             self.start(world)
             for line in script:
                 if line.method == "drive" and line.params["event"] not in self.about.drives:
@@ -184,13 +261,15 @@ class Run:
         """
         streams = self.system.codec.streams
         for number in range(conversations):
+            if self.enough():
+                break
             world = number % len(self.guide.worlds)
             self.start(self.guide.worlds[world])
             if len(streams) == 1 and number % 4 != 3 and not self.act(streams[0], {}):
                 return False
             for _ in range(steps):
                 proposal = self._next(draw, world, favour if number % 2 else None)
-                if proposal is None:
+                if proposal is None or self.over or self.enough():
                     break
                 if not self.take_up(proposal):
                     return False
@@ -233,8 +312,12 @@ class Run:
     def shorten(self) -> None:
         """Make what was found as short as can be, asking the implementation again each time."""
         if self.found is not None and not self.found.judge.exhausted:
-            same = functools.partial(self.attempt, automaton=self.found.judge.automaton)
-            self.found = shrink(self.found, same, self._simpler, self.guide.worlds[0])
+            self.found = self.shortened(self.found)
+
+    def shortened(self, found: Conversation) -> Conversation:
+        """The shortest conversation like one that cannot be explained, asking the implementation again each time."""
+        same = functools.partial(self.attempt, automaton=found.judge.automaton)
+        return shrink(found, same, self._simpler, self.guide.worlds[0])
 
     def shorten_evidence(self) -> None:
         """Make the conversations that ruled out the readings of a contradiction as short as can be."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
@@ -78,36 +78,6 @@ def suspects(system: System, history: tuple[JSON, ...], readings: dict[str, str]
     return tuple(found)
 
 
-@frozen
-class Evidence:
-    """The event by which a reading was ruled out."""
-
-    ambiguity: str
-    letter: str
-    event: str
-
-
-def ruled_out(system: System, conversation: Conversation, ambiguity: str, letter: str) -> tuple[str, tuple[str, ...]]:
-    """The event of a conversation by which a reading was ruled out, in words, and the rules that it speaks for."""
-    history = conversation.judge.history
-    judge = Judge(system, head(history[0]), conversation.judge.automaton)
-    requests: dict[Any, Any] = {}
-    for line in history[1:]:
-        for event in judge.transcript.read(line):
-            if isinstance(event, Called):
-                requests[event.call] = event.request
-            judge.belief.observe(event)
-            if letter in judge.belief.readings.get(ambiguity, (letter,)):
-                continue
-            if not isinstance(event, Returned) or event.call not in requests:
-                return event_words(system.spec, event), ()
-            request = requests[event.call]
-            operation = system.spec.operations[system.spec.request_operation(request)]
-            rules = tuple(rule.id for rule in operation.refusals if rule.code == event.answer.code)
-            return f"{event_words(system.spec, Called(event.call, request))} {event_words(system.spec, event)}", rules
-    return "the conversation as a whole", ()
-
-
 def inconsistent(run: Run) -> Violation:
     """The violation of an implementation that follows one reading now and another later: names both events."""
     run.shorten_evidence()
@@ -117,10 +87,13 @@ def inconsistent(run: Run) -> Violation:
     last: Conversation | None = None
     for letter, answer in ambiguity.readings.items():
         conversation = run.settled_by[ambiguity.id, letter]
-        event, spoken_for = ruled_out(run.system, conversation, ambiguity.id, letter)
-        rules += spoken_for
+        ruling = conversation.judge.rulings.found.get((ambiguity.id, letter))
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
-        notes.append(f"{letter} is ruled out: {event}")
+        if ruling is None:
+            notes.append(f"{letter} is ruled out: another reading had to be followed")
+            continue
+        rules += ruling.rules
+        notes.append(f"{letter} is ruled out: {ruling}")
         last = conversation
     history = last.judge.history if last else ()
     return Violation(

@@ -9,6 +9,12 @@ from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
 
+RATE, PER = 100, 10_000
+"""How often each rule should be exercised, in how many steps."""
+
+SHORT = 72
+"""How much of an event a line of the verdict has room for."""
+
 
 class Outcome(enum.Enum):
     """How it came out."""
@@ -82,6 +88,38 @@ class Violation:
 
 
 @frozen
+class Experiment:
+    """What would tell readings apart that are still open.
+
+    Attributes:
+        ambiguity: the id of the question.
+        follows: the letter of the reading that it shows.
+        against: the letters that it rules out if the implementation follows that one.
+        says: what to do and what is then seen, line by line.
+        history: the same as lines of the history format, as the reference answers under `follows`.
+    """
+
+    ambiguity: str
+    follows: str
+    against: tuple[str, ...]
+    says: str
+    history: tuple[JSON, ...] = ()
+
+    def to_json(self) -> JSON:
+        """The experiment as the command line writes it."""
+        return {
+            "ambiguity": self.ambiguity,
+            "follows": self.follows,
+            "against": list(self.against),
+            "says": self.says.splitlines(),
+            "history": list(self.history),
+        }
+
+    def __str__(self) -> str:
+        return f"{self.ambiguity}: {self.follows}, and not {' or '.join(self.against)}, would show in\n{self.says}"
+
+
+@frozen
 class Verdict:
     """A judgement of one implementation or of one recorded history.
 
@@ -91,6 +129,12 @@ class Verdict:
         readings: ambiguity id to the readings that are still possible, for those that mattered.
         flagged: readings among those followed that depart from the letter of the text.
         because: why it is inconclusive.
+        ruled_out: ambiguity id to letter to the event that ruled it out, in words.
+        experiments: for readings that are still open, what would tell them apart.
+        known: ids of rules whose violation was expected, to how often it was met.
+        stale: ids of rules whose violation was expected and was not met.
+        rare: ids of rules that were exercised less often than they should be, to the reason.
+        notes: what else there is to know about how the run went.
     """
 
     outcome: Outcome
@@ -106,10 +150,16 @@ class Verdict:
     because: str = ""
     flagged: tuple[str, ...] = ()
     story: str = ""
+    ruled_out: Mapping[str, Mapping[str, str]] = field(factory=dict)
+    experiments: tuple[Experiment, ...] = ()
+    known: Mapping[str, int] = field(factory=dict)
+    stale: tuple[str, ...] = ()
+    rare: Mapping[str, str] = field(factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def conforms(self) -> bool:
-        """Whether everything that was observed is explained, and something was."""
+        """Whether everything that was observed is explained or was expected, and something was observed."""
         return self.outcome is Outcome.CONFORMS
 
     def to_json(self) -> JSON:
@@ -122,7 +172,16 @@ class Verdict:
             "examples": self.examples,
             "events": self.events,
             "readings": {name: list(letters) for name, letters in self.readings.items()},
-            "coverage": {"rules": dict(self.exercised), "uncovered": list(self.uncovered)},
+            "ruled_out": {name: dict(events) for name, events in self.ruled_out.items()},
+            "experiments": [one.to_json() for one in self.experiments],
+            "coverage": {
+                "rules": dict(self.exercised),
+                "uncovered": list(self.uncovered),
+                "rare": dict(self.rare),
+            },
+            "known": dict(self.known),
+            "stale": list(self.stale),
+            "notes": list(self.notes),
             "because": self.because,
             "violation": None
             if self.violation is None
@@ -145,11 +204,31 @@ class Verdict:
             if self.story:
                 lines += ["", self.story]
             lines += ["", self.violation.explanation]
+        lines += [f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times]
+        lines += [f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale]
+        lines += [f"  {note}" for note in self.notes]
         if self.readings:
             lines += ["", "readings followed:"]
-            lines += [f"  {name} = {' or '.join(letters) or 'none'}" for name, letters in self.readings.items()]
+            lines += [f"  {name} = {self._told(name, letters)}" for name, letters in self.readings.items()]
         lines += [f"  departs from the text: {one}" for one in self.flagged]
+        for experiment in self.experiments:
+            lines += ["", str(experiment)]
         total = len(self.exercised) + len(self.uncovered)
         if total:
             lines += ["", f"rules exercised: {len(self.exercised)} of {total}"]
+        if self.rare:
+            lines.append(f"fewer than {RATE} times in {PER:,} steps:")
+            lines += [f"  {rule}: {why}" for rule, why in self.rare.items()]
         return "\n".join(lines)
+
+    def _told(self, name: str, letters: tuple[str, ...]) -> str:
+        """The readings of an ambiguity that are left, and what ruled out the others."""
+        events: dict[str, list[str]] = {}
+        for letter, event in self.ruled_out.get(name, {}).items():
+            events.setdefault(event, []).append(letter)
+        gone = "; ".join(f"not {', '.join(others)}: {_short(event)}" for event, others in events.items())
+        return (" or ".join(letters) or "none") + (f" ({gone})" if gone else "")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= SHORT else text[: SHORT - 1] + "…"

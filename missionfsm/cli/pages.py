@@ -1,0 +1,60 @@
+"""``--html FILE``: what a command found, as one page for a browser. Pages take long to import, so that happens here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from missionfsm.adapters.historyfile import STDIN, write_whole
+from missionfsm.cli.common import one_line_errors
+from missionfsm.systems import system
+
+if TYPE_CHECKING:
+    from missionfsm.kernel.alphabet import Bounds
+    from missionfsm.kernel.system import System
+    from missionfsm.tools.teeth import Teeth
+    from missionfsm.tools.verdict import Verdict
+
+
+def _a_file(path: str | None) -> str | None:
+    if path == STDIN:
+        message = "a page goes to a file"
+        raise typer.BadParameter(message)
+    return path
+
+
+HtmlFile = Annotated[
+    str | None, typer.Option("--html", metavar="FILE", callback=_a_file, help="Write a page for a browser, one file.")
+]
+
+
+def _write(path: str, page: Callable[[], str]) -> None:
+    with one_line_errors():
+        # What an implementation sent may hold halves of surrogate pairs, which no encoding has.
+        write_whole(path, page().encode("utf-8", "xmlcharrefreplace"))
+
+
+def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> None:
+    """Write the page on some verdicts, each with the file and the robot that it is about, if it is wanted."""
+    if path:
+        from missionfsm.pages.report import Judged, report  # noqa: PLC0415 - pages load what they need
+
+        _write(path, lambda: report([Judged(verdict, file, robot or "") for file, robot, verdict in judged], system))
+
+
+def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
+    """Write the page on all mutants of a system, if it is wanted."""
+    if path:
+        from missionfsm.pages.teeth import teeth_page  # noqa: PLC0415 - pages load what they need
+
+        _write(path, lambda: teeth_page(judged, found))
+
+
+def write_explorer(path: str | None, explored: System, bounds: Bounds, assumed: int) -> None:
+    """Write the page to click through a system with, if it is wanted."""
+    if path:
+        from missionfsm.pages.explorer import explorer_page  # noqa: PLC0415 - pages load what they need
+
+        _write(path, lambda: explorer_page(explored, bounds, assumed))

@@ -1,0 +1,209 @@
+"""What was judged, as a page: verdicts with their stories, the rules that were exercised, the map of the document."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+
+from attrs import frozen
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.system import System
+from missionfsm.pages.outline import (
+    MEANINGS,
+    Evidence,
+    RuleLine,
+    Section,
+    Standing,
+    document_map,
+    rule_line,
+)
+from missionfsm.pages.render import rendered
+from missionfsm.pages.sequence import SHOWN, Row, rows
+from missionfsm.tools.story import as_pytest
+from missionfsm.tools.verdict import Experiment, Outcome, Verdict
+
+_REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
+
+
+@frozen
+class Judged:
+    """A verdict, and what it is about: the file that was read, the robot in it."""
+
+    verdict: Verdict
+    file: str = ""
+    robot: str = ""
+
+    @property
+    def about(self) -> str:
+        """What was judged, in a few words."""
+        return " ".join(filter(None, (self.file, self.robot))) or self.verdict.implementation or self.verdict.system
+
+
+@frozen
+class Answer:
+    """One reading of an ambiguity: what it says, and whether what was observed still fits it.
+
+    Attributes:
+        ruled_out_by: the event that does not fit it, in words, where one is known.
+    """
+
+    letter: str
+    says: str
+    possible: bool
+    default: bool
+    departs: bool
+    ruled_out_by: str
+
+
+@frozen
+class Asked:
+    """An ambiguity that mattered, and what would tell the readings apart that are left of it."""
+
+    id: str
+    question: str
+    answers: tuple[Answer, ...]
+    experiments: tuple[Experiment, ...]
+
+    @property
+    def decided(self) -> bool:
+        """Whether one reading is left."""
+        return sum(one.possible for one in self.answers) == 1
+
+
+@frozen
+class Topic:
+    """The rules of an operation or of another topic, with how they fared."""
+
+    name: str
+    rules: tuple[RuleLine, ...]
+
+    @property
+    def reached(self) -> int:
+        """How many were put to the test."""
+        return sum(rule.standing in _REACHED for rule in self.rules)
+
+    @property
+    def applicable(self) -> int:
+        """How many belong to a reading that may be followed."""
+        return sum(rule.standing is not Standing.OTHERWISE for rule in self.rules)
+
+    @property
+    def violated(self) -> int:
+        """How many are broken."""
+        return sum(rule.standing is Standing.VIOLATED for rule in self.rules)
+
+
+@frozen
+class Story:
+    """A verdict as the page tells it.
+
+    Attributes:
+        earlier: the rows that are folded away.
+        history: the history as text, to be copied; `test`: as a pytest module.
+    """
+
+    judged: Judged
+    earlier: tuple[Row, ...]
+    rows: tuple[Row, ...]
+    asked: tuple[Asked, ...]
+    history: str
+    test: str
+
+
+@frozen
+class Chapter:
+    """All that a page has to say on one system."""
+
+    spec: Spec
+    topics: tuple[Topic, ...]
+    outline: tuple[Section, ...]
+
+    @property
+    def reached(self) -> int:
+        """How many rules were put to the test."""
+        return sum(topic.reached for topic in self.topics)
+
+    @property
+    def applicable(self) -> int:
+        """How many rules belong to a reading that may be followed."""
+        return sum(topic.applicable for topic in self.topics)
+
+
+def report(judged: Sequence[Judged], system: Callable[[str], System]) -> str:
+    """The page on some verdicts.
+
+    Args:
+        system: a system's name to the system.
+    """
+    by_system: dict[str, list[Judged]] = {}
+    for one in judged:
+        by_system.setdefault(one.verdict.system, []).append(one)
+    chapters = [_chapter(system(name), some) for name, some in by_system.items()]
+    outcomes = [one.verdict.outcome for one in judged]
+    return rendered(
+        "report.html",
+        outcome=next(one for one in (Outcome.VIOLATES, Outcome.INCONCLUSIVE, Outcome.CONFORMS) if one in outcomes),
+        stories=[_story(system(one.verdict.system), one) for one in judged],
+        counts={one: outcomes.count(one) for one in Outcome},
+        chapters=chapters,
+        meanings=MEANINGS,
+        Standing=Standing,
+    )
+
+
+def _story(system: System, judged: Judged) -> Story:
+    violation = judged.verdict.violation
+    history = violation.history if violation else ()
+    told = rows(system, history) if history else ()
+    return Story(
+        judged,
+        told[:-SHOWN],
+        told[-SHOWN:],
+        readings_asked(system.spec, judged.verdict),
+        "".join(f"{_line(line)}\n" for line in history),
+        as_pytest(history, "the_recorded_conversation_is_explained") if history else "",
+    )
+
+
+def _line(line: JSON) -> str:
+    return json.dumps(line, ensure_ascii=False, separators=(",", ":"))
+
+
+def readings_asked(spec: Spec, verdict: Verdict) -> tuple[Asked, ...]:
+    """The ambiguities that mattered in a verdict, each with all its readings."""
+    return tuple(
+        Asked(
+            ambiguity.id,
+            ambiguity.question,
+            tuple(
+                Answer(
+                    letter,
+                    says,
+                    letter in verdict.readings[ambiguity.id],
+                    letter == ambiguity.default,
+                    letter in ambiguity.flagged,
+                    verdict.ruled_out.get(ambiguity.id, {}).get(letter, ""),
+                )
+                for letter, says in ambiguity.readings.items()
+            ),
+            tuple(one for one in verdict.experiments if one.ambiguity == ambiguity.id),
+        )
+        for ambiguity in spec.ambiguities
+        if ambiguity.id in verdict.readings
+    )
+
+
+def _chapter(system: System, judged: Iterable[Judged]) -> Chapter:
+    evidence = Evidence.of(one.verdict for one in judged)
+    lines = (rule_line(rule, evidence) for rule in system.spec.all_rules)
+    return Chapter(system.spec, topics(lines), document_map(system.spec, evidence))
+
+
+def topics(lines: Iterable[RuleLine]) -> tuple[Topic, ...]:
+    """Rules by operation or topic, in the order in which they are declared."""
+    ordered: dict[str, list[RuleLine]] = {}
+    for line in lines:
+        ordered.setdefault(line.operation, []).append(line)
+    return tuple(Topic(name, tuple(some)) for name, some in ordered.items())

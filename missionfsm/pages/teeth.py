@@ -1,0 +1,63 @@
+"""What the oracle noticed of broken implementations, as a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from attrs import frozen
+
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.system import System
+from missionfsm.pages.render import rendered
+from missionfsm.tools.teeth import Bite, Teeth
+
+
+@frozen
+class Bitten:
+    """A rule with what came of every implementation that breaks it."""
+
+    rule: Rule
+    bites: tuple[tuple[str, Bite], ...]
+
+    @property
+    def killed(self) -> int:
+        """How many were noticed."""
+        return sum(bite.killed for _, bite in self.bites)
+
+    @property
+    def allowed(self) -> int:
+        """How many do nothing that the documents forbid."""
+        return sum(bool(bite.because) for _, bite in self.bites)
+
+    @property
+    def missed(self) -> int:
+        """How many were not noticed though they should have been."""
+        return len(self.bites) - self.killed - self.allowed
+
+    @property
+    def slug(self) -> str:
+        """The name that the style sheet knows its standing by."""
+        if self.missed or not self.bites:
+            return "violated"
+        return "exercised" if self.killed else "otherwise"
+
+
+def teeth_page(system: System, teeth: Teeth) -> str:
+    """The page on all mutants of a system."""
+    by_rule: dict[str, list[tuple[str, Bite]]] = {}
+    for bite in teeth.bites:
+        by_rule.setdefault(bite.rule, []).append((bite.mutant.removeprefix(bite.rule).strip(), bite))
+    topics: dict[str, list[Bitten]] = {}
+    for rule in system.spec.all_rules:
+        if rule.id in by_rule or rule.id in teeth.untested:
+            bitten = Bitten(rule, tuple(by_rule.get(rule.id, ())))
+            topics.setdefault(rule.id.split("/")[1], []).append(bitten)
+    return rendered("teeth.html", teeth=teeth, spec=system.spec, topics=topics, scores=_scores(topics))
+
+
+def _scores(topics: Mapping[str, list[Bitten]]) -> Mapping[str, tuple[int, int]]:
+    """Of each topic how many mutants were noticed, and how many break something."""
+    return {
+        name: (sum(one.killed for one in some), sum(one.killed + one.missed for one in some))
+        for name, some in topics.items()
+    }

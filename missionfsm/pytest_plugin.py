@@ -1,0 +1,90 @@
+"""The pytest plugin: files named ``*.history.jsonl`` are tests, and ``--missionfsm-examples`` says how much is tried.
+
+pytest loads it wherever missionfsm is installed, so it loads nothing itself until there is something to judge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from missionfsm.tools.verdict import Verdict
+
+SUFFIX = ".history.jsonl"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option."""
+    parser.getgroup("missionfsm").addoption(
+        "--missionfsm-examples",
+        type=int,
+        default=None,
+        metavar="N",
+        help="conversations that each suite of missionfsm.testing has; the suites say how many otherwise",
+    )
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Take recorded histories for tests."""
+    return HistoryFile.from_parent(parent, path=file_path) if file_path.name.endswith(SUFFIX) else None
+
+
+class UnexplainedError(Exception):
+    """A recorded history is not judged right; the message is what there is to say."""
+
+
+class HistoryFile(pytest.File):
+    """A recorded history."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """One test for the whole file, whomever it speaks of."""
+        yield HistoryItem.from_parent(self, name=self.path.name.removesuffix(SUFFIX))
+
+
+class HistoryItem(pytest.Item):
+    """The test that a recorded history can be explained."""
+
+    def runtest(self) -> None:
+        """Judge the history."""
+        from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - see above
+        from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
+
+        try:
+            verdicts = check_file(str(self.path))
+        except UnreadableError as error:
+            raise UnexplainedError(str(error)) from None
+        wrong = [
+            f"{robot + ': ' if robot else ''}{_told(verdict)}" for robot, verdict in verdicts if not verdict.conforms
+        ]
+        if wrong:
+            raise UnexplainedError("\n\n".join(wrong))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *args: object, **options: object) -> str:
+        """What is wrong, without a traceback: nobody's code is at fault but that of the implementation."""
+        if isinstance(excinfo.value, UnexplainedError):
+            return str(excinfo.value)
+        return str(super().repr_failure(excinfo, *args, **options))  # type: ignore[arg-type]
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Where the test is, and what it is called."""
+        return self.path, None, f"history {self.name}"
+
+
+def _told(verdict: Verdict) -> str:
+    """A verdict with the story before it; the story of a long history is left out, since its beginning is not kept."""
+    from attrs import evolve  # noqa: PLC0415 - see above
+
+    from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
+    from missionfsm.systems import system  # noqa: PLC0415
+    from missionfsm.tools.story import story  # noqa: PLC0415
+
+    if verdict.violation is None:
+        return str(verdict)
+    try:
+        return str(evolve(verdict, story=story(system(verdict.system), verdict.violation.history)))
+    except UnreadableError:
+        return str(verdict)

@@ -1,0 +1,55 @@
+"""The reference under random combinations of readings, judged: what several tests and a benchmark need."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.system import System
+from missionfsm.tools.conversation import introduce
+from missionfsm.tools.distinguish import reference
+from missionfsm.tools.guide import Guide
+from missionfsm.tools.run import Run
+
+BOUNDS = Bounds(missions=4, goals=3)
+
+
+@frozen(eq=False)
+class Bench:
+    """What judging many references of one system can share: a belief automaton and a prepared guide."""
+
+    system: System
+    automaton: Automaton
+    guide: Guide
+
+    @classmethod
+    def of(cls, system: System) -> Bench:
+        """A bench for a system."""
+        drives = tuple(system.spec.drives)
+        guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS, drives)
+        return cls(system, Automaton(system.spec, drives), guide)
+
+
+def combination(system: System, seed: int) -> dict[str, str]:
+    """A random reading of every ambiguity; the same seed gives the same."""
+    draw = random.Random(f"{system.name} {seed}")
+    return {one.id: draw.choice(sorted(one.readings)) for one in system.spec.ambiguities}
+
+
+def wrong(bench: Bench, choice: Mapping[str, str], seed: int, examples: int, steps: int) -> str:
+    """What is wrong with the judgement of a reference that follows a combination of readings; empty if nothing is."""
+    system = bench.system
+    subject = reference(system, choice)
+    run = Run(system, subject, introduce(system, subject), bench.automaton, BOUNDS, guide=bench.guide.fresh())
+    if not (run.play() and run.tour(random.Random(seed), examples, steps)):
+        if run.found is None:
+            return f"no reading of {run.contradiction} is left"
+        if run.found.judge.exhausted:
+            return f"too many explanations after {len(run.found.actions)} actions"
+        return f"false alarm: {run.found.judge.verdict()}"
+    missing = [f"{name}={choice[name]}" for name, letters in run.readings.items() if choice[name] not in letters]
+    return f"ruled out though followed: {', '.join(missing)}" if missing else ""

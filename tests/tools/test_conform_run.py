@@ -1,0 +1,164 @@
+"""What a run of `conform` says of itself: what ruled a reading out, which rules came up seldom, that it was stopped."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import orjson
+import pytest
+from broken import MISSION
+from commandline import CommandLine
+
+from missionfsm.kernel.transcript import Head, head
+from missionfsm.systems import names, system
+from missionfsm.tools.check import Judge, check
+from missionfsm.tools.conform import conform
+from missionfsm.tools.coverage import Survey, rare
+from missionfsm.tools.distinguish import reference
+from missionfsm.tools.run import Run
+from missionfsm.tools.verdict import PER, RATE
+
+HEAD: Any = {"missionfsm": 1, "system": "bear.mission", "world": {}}
+
+
+def call(number: int, method: str, params: Any, **came: Any) -> tuple[Any, Any]:
+    return {"call": number, "method": method, "params": params}, {"return": number, **came}
+
+
+# What ruled a reading out.
+
+
+def test_the_event_that_ruled_a_reading_out_is_named() -> None:
+    """Each reading by the event after which no explanation follows it any more."""
+    lines = (
+        *call(1, "ClearMissionStatus", {}, result={"missionIds": []}),
+        *call(2, "SkipGoal", {}, error={"status": "FAILED_PRECONDITION", "message": ""}),
+    )
+    verdict = check(MISSION, head(HEAD), lines)
+    told = "ClearMissionStatus() was answered OK"
+    assert (verdict.readings["AM-33"], verdict.ruled_out["AM-33"]) == (("a",), {"b": told, "c": told})
+    assert f"  AM-33 = a (not b, c: {told})" in str(verdict).splitlines()
+    assert verdict.to_json()["ruled_out"]["AM-33"] == {"b": told, "c": told}
+
+
+def test_a_reading_that_was_asked_for_was_ruled_out_by_nothing() -> None:
+    """Only events rule readings out; what a user decides beforehand is no event."""
+    lines = call(1, "ClearMissionStatus", {}, result={"missionIds": []})
+    verdict = check(MISSION, head(HEAD), lines, readings={"AM-33": "a"})
+    assert "AM-33" not in verdict.ruled_out
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_reading_that_is_gone_has_an_event(name: str) -> None:
+    """Replayed line by line: a reading is noted with the first line after which it is not possible any more."""
+    judged = system(name)
+    seen: list[Judge] = []
+
+    def keep(run: Run) -> None:
+        if run.last is not None and run.last.judge not in seen:
+            seen.append(run.last.judge)
+
+    conform(judged, reference(judged, {}), examples=1, tours=4, steps=15, seed=3, advice=False, progress=keep)
+    for judge in seen:
+        first, *lines = judge.history
+        again = Judge(judged, head(first), judge.automaton)
+        gone: dict[tuple[str, str], str] = {}
+        for line in lines:
+            again.feed(line)
+            for one, letters in again.belief.readings.items():
+                ambiguity = next(each for each in judged.spec.ambiguities if each.id == one)
+                for letter in set(ambiguity.possible(judge.automaton.assumed)) - set(letters):
+                    gone.setdefault((one, letter), str(again.rulings.found[one, letter]))
+        assert {one: str(ruling) for one, ruling in judge.rulings.found.items()} == gone
+
+
+def test_a_run_names_events_for_what_all_its_conversations_ruled_out() -> None:
+    """What is not left of an ambiguity has an event, whichever conversation it was in."""
+    verdict = conform(MISSION, reference(MISSION, {}), examples=2, tours=6, steps=15, seed=1, advice=False)
+    letters = {one.id: set(one.readings) for one in MISSION.spec.ambiguities}
+    gone = {name: letters[name] - set(left) for name, left in verdict.readings.items() if letters[name] - set(left)}
+    assert {name: set(events) for name, events in verdict.ruled_out.items()} == gone
+
+
+# Which rules came up seldom.
+
+
+def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
+    """Those and no others; each with a reason that the model gives."""
+    runs: list[Run] = []
+    verdict = conform(
+        MISSION, reference(MISSION, {}), examples=2, tours=10, steps=20, seed=1, progress=runs.append
+    )
+    steps = runs[-1].steps
+    seldom = {rule.id for rule in MISSION.spec.all_rules if verdict.exercised.get(rule.id, 0) * PER < RATE * steps}
+    assert set(verdict.rare) == seldom
+    assert all(verdict.rare.values())
+    assert verdict.to_json()["coverage"]["rare"] == verdict.rare
+
+
+@pytest.mark.parametrize(
+    ("rule", "readings", "why"),
+    [
+        (
+            "ClearMissionStatus/FAILED_PRECONDITION/nothing-is-listed",
+            {"AM-33": ("a",)},
+            "only under AM-33=b, which is not followed",
+        ),
+        ("ChargeRobot/NOT_FOUND/the-robot-has-no-contact-dock", {}, "and that in 1 of 8 worlds"),
+        ("AppendMission/FAILED_PRECONDITION/the-queue-is-halted", {}, "no step in "),
+    ],
+)
+def test_the_reason_is_the_models(rule: str, readings: dict[str, tuple[str, ...]], why: str) -> None:
+    """A reading that is not followed, a world that is seldom met, something that is far from the start."""
+    assert why in Survey(MISSION, readings).why(MISSION.spec.rule(f"bear.mission/{rule}"))
+
+
+@pytest.mark.parametrize("name", names())
+def test_what_is_exercised_enough_is_not_rare(name: str) -> None:
+    """A rule that is exercised at the rate is not on the list; with none exercised all are."""
+    rules = [rule.id for rule in system(name).spec.all_rules]
+    assert rare(system(name), dict.fromkeys(rules, RATE), PER, {}) == {}
+    assert list(rare(system(name), {}, PER, {})) == rules
+
+
+# That it was stopped.
+
+
+def test_a_run_ends_once_it_is_enough() -> None:
+    """No step is begun after that, whichever part of the search it is in, and the verdict says that it was stopped."""
+    for limit in (1, 20, 100):
+        asked = itertools.count()
+        verdict = conform(
+            MISSION,
+            reference(MISSION, {}),
+            examples=20,
+            tours=3,
+            steps=10,
+            seed=1,
+            advice=False,
+            enough=lambda asked=asked, limit=limit: next(asked) >= limit,
+        )
+        assert verdict.examples < 23
+        assert verdict.notes == (f"it was stopped after {verdict.examples} conversations",)
+
+
+def test_time_bounds_a_run(command_line: CommandLine) -> None:
+    """``--time`` stops a run that would take far longer; what it came to is told."""
+    ended = command_line("conform", "isaac.robot", "--examples", "100000", "--time", "1", "--seed", "1", "--json", "-")
+    told = orjson.loads(ended.out)
+    assert (ended.status, told["verdict"], len(told["notes"])) == (0, "conforms", 1)
+
+
+def test_the_same_seed_asks_the_same() -> None:
+    """Two runs with the same seed come to the same verdict."""
+    first, second = (
+        conform(MISSION, reference(MISSION, {}), examples=3, tours=3, steps=10, seed=7).to_json() for _ in range(2)
+    )
+    assert first == second
+
+
+def test_a_head_is_read() -> None:
+    """The first line of a history that a judge shows is one that makes the same judge."""
+    judge = Judge(MISSION, Head("bear.mission", {}, ("goalReached",)))
+    assert head(judge.history[0]) == judge.head

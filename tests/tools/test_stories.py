@@ -1,0 +1,187 @@
+"""What was found, as a story: short, judged alike by `check`, and in forms that others can use."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import pytest
+from broken import BUSY, EMPTY, MISSION, Fickle, answering
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.subject import Exchange
+from missionfsm.kernel.transcript import head
+from missionfsm.tools.check import check
+from missionfsm.tools.conform import conform
+from missionfsm.tools.distinguish import reference
+from missionfsm.tools.story import as_mermaid, as_pytest, story, suspects
+from missionfsm.tools.verdict import Verdict
+
+HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
+
+
+@functools.cache
+def found(code: str, *rules: str) -> Verdict:
+    return conform(MISSION, answering(code, *rules), examples=5, tours=20, steps=20, seed=2, advice=False)
+
+
+def history(verdict: Verdict) -> tuple[JSON, ...]:
+    assert verdict.violation is not None, str(verdict)
+    return verdict.violation.history
+
+
+BROKEN = [("NOT_FOUND", BUSY), ("PERMISSION_DENIED", BUSY), ("FAILED_PRECONDITION", EMPTY), ("INTERNAL", EMPTY)]
+
+
+@pytest.mark.parametrize(("code", "rule"), BROKEN)
+def test_the_history_of_a_story_is_judged_alike(code: str, rule: str) -> None:
+    """`check` finds the same violation in it, at its last line."""
+    verdict = found(code, rule)
+    first, *lines = history(verdict)
+    again = check(MISSION, head(first), lines)
+    assert again.violation is not None
+    assert (again.violation.observed, again.violation.rules) == (
+        verdict.violation and verdict.violation.observed,
+        verdict.violation and verdict.violation.rules,
+    )
+    assert check(MISSION, head(first), lines[:-1]).violation is None
+
+
+@pytest.mark.parametrize(("code", "rule"), BROKEN)
+def test_nothing_can_be_left_out_of_a_story(code: str, rule: str) -> None:
+    """Without any one of the calls or drives in it the implementation, asked again, does nothing wrong any more."""
+    first, *lines = history(found(code, rule))
+    done = [line for line in lines if "call" in line or "drive" in line or "settled" in line]
+    for left_out in done:
+        assert _had(first, [one for one in done if one is not left_out], answering(code, rule)).violation is None
+    assert _had(first, done, answering(code, rule)).violation is not None
+
+
+def _had(first: JSON, done: list[JSON], subject: object) -> Verdict:
+    """The verdict on a conversation in which these things are done again, in this order."""
+    ask = subject.exchange  # type: ignore[attr-defined]
+    ask("initialize", {"protocolVersion": 1, "system": "bear.mission"})
+    ask("reset", {"world": first["world"]})
+    lines: list[JSON] = []
+    for one in done:
+        if "call" in one:
+            exchange: Exchange = ask(one["method"], one["params"])
+            came = {"result": exchange.result} if exchange.error is None else {"error": exchange.error}
+            lines += ({**one, "call": len(lines)}, {"return": len(lines), **came})
+        elif "drive" in one:
+            exchange = ask("drive", one["drive"])
+            lines.append(one)
+        else:
+            exchange = ask("settle", {})
+            lines.append(one)
+        lines += ({"stream": sent.params["stream"], "message": sent.params["message"]} for sent in exchange.after)
+    return check(MISSION, head(first), lines)
+
+
+def test_a_story_has_a_line_for_each_thing_that_was_done() -> None:
+    """Calls and their answers share one."""
+    told = story(MISSION, history(found("NOT_FOUND", BUSY))).splitlines()
+    assert [line[:4] for line in told] == [f"{number:>3}." for number in range(1, len(told) + 1)]
+    assert told[-1].endswith(" → NOT_FOUND")
+
+
+def test_calls_that_overlap_have_lines_of_their_own() -> None:
+    """So that one sees what came between."""
+    lines = (
+        HEAD,
+        {"call": 1, "method": "ClearMissionStatus", "params": {}},
+        {"call": 2, "method": "SkipGoal", "params": {}},
+        {"return": 2, "error": {"status": "FAILED_PRECONDITION"}},
+        {"return": 1, "result": {"missionIds": []}},
+        {"settled": True},
+    )
+    assert [line[5:] for line in story(MISSION, lines).splitlines()] == [
+        "ClearMissionStatus()",
+        "SkipGoal() → FAILED_PRECONDITION",
+        "answered OK",
+        "(settled)",
+    ]
+
+
+def test_an_answer_that_was_excused_before_is_suspected() -> None:
+    """Where the last excuse dies late, the answer without which everything is explained is named."""
+    create = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    lines: tuple[JSON, ...] = (
+        {**HEAD, "drives": ["world", "fault"]},
+        {"call": 1, "method": "CreateMission", "params": create},
+        {"return": 1, "result": {"missionId": "m1"}},
+        {"settled": True},
+        {"call": 2, "method": "SkipGoal", "params": {}},
+        {"return": 2, "error": {"status": "FAILED_PRECONDITION"}},
+        {
+            "call": 3,
+            "method": "UpdateMission",
+            "params": {"missionCommand": {"missionId": "m1", "command": "COMMAND_PAUSE"}},
+        },
+        {"return": 3, "result": {}},
+    )
+    readings = {one.id: one.default for one in MISSION.spec.ambiguities}
+    assert check(MISSION, head(lines[0]), lines[1:-2], readings=readings).violation is None
+    assert check(MISSION, head(lines[0]), lines[1:], readings=readings).violation is not None
+    assert "SkipGoal() was answered FAILED_PRECONDITION" in suspects(MISSION, lines, readings)
+
+
+def test_the_pytest_function_fails_for_what_was_found(tmp_path: Path) -> None:
+    """It judges the same history; that of the right reference passes."""
+    wrong = history(found("NOT_FOUND", BUSY))
+    first, *lines = wrong
+    done = [line for line in lines if "call" in line or "drive" in line or "settled" in line]
+    subject = reference(MISSION, {})
+    right = [first]
+    subject.exchange("reset", {"world": first["world"]})
+    for line in done:
+        assert "call" in line, "this story has calls alone"
+        exchange = subject.exchange(line["method"], line["params"])
+        right += (line, {"return": line["call"], "error": exchange.error})
+        if exchange.error is None:
+            right[-1] = {"return": line["call"], "result": exchange.result}
+    for lines_of, passes in ((wrong, False), (tuple(right), True)):
+        text = as_pytest(lines_of, "robot")
+        space: dict[str, object] = {}
+        exec(compile(text, str(tmp_path / "test_robot.py"), "exec"), space)  # noqa: S102 - it is made to be run
+        function = space["test_robot"]
+        assert callable(function)
+        try:
+            function()
+            passed = True
+        except AssertionError as error:
+            passed = False
+            assert "was answered NOT_FOUND" in str(error)  # noqa: PT017 - that it fails is looked at below
+        assert passed == passes
+
+
+def test_the_sequence_diagram_has_a_line_for_every_event() -> None:
+    """Calls go to the implementation, what it sends comes back, drives and pauses are notes; nothing breaks Mermaid."""
+    lines: tuple[JSON, ...] = (
+        HEAD,
+        {"call": 1, "method": "SubscribeMissionStatus", "params": {}},
+        {"return": 1, "result": {"stream": 1}},
+        {"drive": {"event": "goalReached"}},
+        {"settled": True},
+        {"stream": 1, "closed": True},
+    )
+    drawn = as_mermaid(MISSION, lines).splitlines()
+    assert drawn[:3] == ["sequenceDiagram", "    participant C as client", "    participant S as implementation"]
+    assert [line.split(":")[0].strip() for line in drawn[3:]] == [
+        "C->>S",
+        "S-->>C",
+        "Note over S",
+        "Note over C,S",
+        "S-->>C",
+    ]
+    assert not any(mark in line for line in drawn for mark in ";#")
+
+
+def test_an_implementation_without_a_single_reading_has_both_events_told() -> None:
+    """Every reading of the question is ruled out by an event, and the notes say which."""
+    verdict = conform(MISSION, Fickle("AM-41", "ab"), examples=2, tours=12, steps=20, seed=1, advice=False)
+    assert verdict.violation is not None
+    notes = verdict.violation.notes
+    assert [note.partition(" is ruled out: ")[0] for note in notes] == ["a", "b", "c"]
+    assert any("was answered INVALID_ARGUMENT" in note for note in notes)
+    assert any("was answered FAILED_PRECONDITION" in note for note in notes)

@@ -1,0 +1,214 @@
+"""The explorer in a browser: the model is clicked through, and what was clicked is a history that conforms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import Opener, missionfsm
+
+from missionfsm import systems
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.readings import ANYTHING
+from missionfsm.pages.graph import Graph
+
+# One mission of a server goes through as much as two of a robot.
+MISSIONS = {"bear.mission": 2, "bear.status": 1, "isaac.server": 1, "isaac.robot": 1}
+
+# Presses buttons at random, with a seed; says how many steps that made.
+WANDER = """
+async ([seed, steps]) => {
+  let number = seed;
+  const next = (bound) => (number = (number * 48271) % 2147483647) % bound;
+  let taken = 0;
+  while (taken < steps) {
+    const buttons = [...document.querySelectorAll("button[data-move]:not(:disabled)")];
+    if (!buttons.length) break;
+    const moved = new Promise((resolve) => addEventListener("hashchange", () => resolve(), { once: true }));
+    buttons[next(buttons.length)].click();
+    await moved;
+    await new Promise((resolve) => setTimeout(resolve));
+    taken += 1;
+  }
+  return taken;
+}
+"""
+
+
+@pytest.fixture(scope="session")
+def explorers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The explorer of every system, as the command line writes it."""
+    folder = tmp_path_factory.mktemp("explorers")
+    found = {}
+    for name in systems.names():
+        found[name] = folder / f"{name}.html"
+        ended = missionfsm("explore", name, "--missions", MISSIONS[name], "--batch", 1, "--html", found[name])
+        assert (ended.status in (0, 1), ended.err) == (True, "")
+    return found
+
+
+def _press(page: Any, group: str, asked: str, answer: str) -> None:
+    """Press the button with an answer to something that can be asked."""
+    doing = page.locator(f"[data-group='{group}'] .doing").filter(has_text=asked).first
+    doing.get_by_role("button", name=answer).first.click()
+
+
+def _queue(page: Any) -> list[str]:
+    texts: list[str] = page.locator(".mission").all_inner_texts()
+    return [" ".join(text.split()) for text in texts]
+
+
+def _walked(page: Any) -> None:
+    """Create, start, append, be refused, pause: five steps, the second by itself."""
+    _press(page, "CreateMission", "servi delivery to", "OK")
+    _press(page, "by itself", "moves by start", "happens")
+    _press(page, "AppendMission", "base navigate", "OK")
+    _press(page, "CreateMission", "base navigate", "FAILED_PRECONDITION")
+    _press(page, "UpdateMission", "COMMAND_PAUSE) of mission-1", "OK")
+
+
+AFTER = ["mission-1 paused serving table-1 table-2", "mission-2 waiting navigate table-1"]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", ["desktop", "phone"])
+@pytest.mark.parametrize("name", systems.names())
+def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: dict[str, Path], open_page: Opener) -> None:
+    """At the start and on the way, folded and unfolded, the page is as wide as the window."""
+    seen = open_page(explorers[name], size, scheme)
+    assert not seen.overflows()
+    assert seen.page.evaluate(WANDER, [7, 5]) == 5
+    seen.page.evaluate("for (const part of document.querySelectorAll('details')) part.open = true")
+    assert not seen.overflows()
+
+
+def test_it_is_clicked_through(explorers: dict[str, Path], open_page: Opener) -> None:
+    """Steps lead on, a refusal changes nothing and says why, and the way can be gone back and forth."""
+    page = open_page(explorers["bear.mission"]).page
+    assert page.locator("#path .nothing").is_visible()
+    _walked(page)
+    assert _queue(page) == AFTER
+    assert page.locator("#path li").count() == 5
+    refused = page.locator("[data-group='CreateMission'] .answer").first
+    assert refused.locator("button").inner_text() == "FAILED_PRECONDITION"
+    assert "A mission is running, paused or waiting" in refused.inner_text()
+    assert "[Mission › CreateMission › Errors]" in refused.inner_text()
+    page.get_by_role("button", name="← Back").click()
+    page.get_by_role("button", name="← Back").click()
+    assert _queue(page)[0] == "mission-1 running serving table-1 table-2"
+    assert page.locator("#path li.ahead").count() == 2
+    page.get_by_role("button", name="Forward →").click()
+    page.get_by_role("button", name="Forward →").click()
+    assert _queue(page) == AFTER
+    assert page.get_by_role("button", name="Forward →").is_disabled()
+    page.locator("#path li button").first.click()
+    assert _queue(page) == ["mission-1 waiting serving table-1 table-2"]
+    page.get_by_role("button", name="Start again").click()
+    assert _queue(page) == []
+
+
+def test_the_buttons_of_the_browser_work(explorers: dict[str, Path], open_page: Opener) -> None:
+    """Every step is an entry of the browser's own history."""
+    page = open_page(explorers["bear.mission"]).page
+    _walked(page)
+    page.go_back()
+    assert _queue(page)[0] == "mission-1 running serving table-1 table-2"
+    page.go_forward()
+    assert _queue(page) == AFTER
+
+
+def test_a_link_restores_the_position(explorers: dict[str, Path], open_page: Opener) -> None:
+    """A copied link shows the same state, the same way there and the same switches; a foreign one says so."""
+    page = open_page(explorers["bear.mission"]).page
+    _walked(page)
+    switch = page.locator("#readings > .reading button[aria-pressed='true']").first
+    key = switch.get_attribute("data-reading")
+    switch.click()
+    page.get_by_role("button", name="Copy a link").click()
+    link = page.evaluate("window.clipped")
+    fragment = "#" + link.partition("#")[2]
+    again = open_page(explorers["bear.mission"], fragment=fragment).page
+    assert _queue(again) == AFTER
+    assert again.locator("#path li").all_inner_texts() == page.locator("#path li").all_inner_texts()
+    assert again.locator(f"[data-reading='{key}']").get_attribute("aria-pressed") == "false"
+    assert not again.locator("#told").is_visible()
+    for wrong in (fragment.replace("g=", "g=0"), "#p=0.0.99999", "#p=rubbish&at=-1&off=AM-99=z"):
+        stray = open_page(explorers["bear.mission"], fragment=wrong).page
+        assert _queue(stray) == []
+        assert stray.locator("#told").is_visible()
+        assert "leads to the start" in stray.locator("#told").inner_text()
+
+
+def test_a_reading_that_is_switched_off_hides_its_answers(explorers: dict[str, Path], open_page: Opener) -> None:
+    """Only answers under readings that are on are there, and those that are hidden are counted."""
+    page = open_page(explorers["bear.mission"]).page
+    _press(page, "CreateMission", "servi delivery to", "OK")
+    chips = page.locator(".assumes")
+    asked = {text.partition(" = ")[0] for text in chips.all_inner_texts()}
+    assert asked
+    one = min(asked)
+    every = page.locator(".answer").count()
+    for letter in page.locator(f"[data-ambiguity='{one}'] button").all():
+        letter.click()
+    left = chips.all_inner_texts()
+    assert [text for text in left if text.partition(" = ")[0] == one] == []
+    assert page.locator(".answer").count() < every
+    assert page.locator(".hidden-note").count() > 0
+    page.locator("#all-readings").click()
+    assert page.locator(".answer").count() == every
+    page.locator("#reference-readings").click()
+    asked_alone = page.evaluate(
+        "[...document.querySelectorAll('.doing')].map((one) => one.querySelectorAll('.answer').length)"
+    )
+    assert set(asked_alone) == {1}
+
+
+def test_a_step_rules_readings_out(explorers: dict[str, Path], open_page: Opener) -> None:
+    """After a step that assumes a reading the others of its ambiguity cannot be switched on any more."""
+    page = open_page(explorers["bear.mission"]).page
+    _press(page, "UpdateMission", "COMMAND_CANCEL", "FAILED_PRECONDITION")
+    ruled_out = page.locator("[data-reading]:disabled")
+    assert ruled_out.count() > 0
+    assert "ruled out by a step on the way" in ruled_out.first.inner_text()
+
+
+@pytest.mark.parametrize("name", systems.names())
+def test_what_was_clicked_conforms(name: str, explorers: dict[str, Path], open_page: Opener, tmp_path: Path) -> None:
+    """The history of any walk, under whatever readings it assumed, is one that the oracle explains."""
+    page = open_page(explorers[name]).page
+    for seed in (1, 2, 3):
+        assert page.evaluate(WANDER, [seed, 30]) == 30
+        page.get_by_role("button", name="Copy as a history").click()
+        copied = tmp_path / f"{seed}.jsonl"
+        copied.write_text(page.evaluate("window.clipped"))
+        page.get_by_role("button", name="Start again").click()
+    checked = missionfsm("check", *(tmp_path / f"{seed}.jsonl" for seed in (1, 2, 3)))
+    assert (checked.status, checked.err) == (0, ""), checked.out
+
+
+def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -> None:
+    """What was clicked can be copied as a test, which passes, and fails once the history is another."""
+    page = open_page(explorers["bear.mission"]).page
+    _walked(page)
+    page.get_by_role("button", name="Copy as a pytest").click()
+    text = page.evaluate("window.clipped")
+    for source, fails in ((text, False), (text.replace("FAILED_PRECONDITION", "NOT_FOUND"), True)):
+        scope: dict[str, Any] = {}
+        exec(source, scope)  # noqa: S102 - the text is what is tested
+        (copied,) = (one for key, one in scope.items() if key.startswith("test_"))
+        if fails:
+            with pytest.raises(AssertionError, match="violates"):
+                copied()
+        else:
+            copied()
+
+
+def test_the_bounds_are_told(explorers: dict[str, Path], open_page: Opener) -> None:
+    """The page says how many states it has and within which bounds."""
+    graph = Graph(systems.system("isaac.robot"), Bounds(1, 2, 1), ANYTHING).data()
+    told = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
+    steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
+    assert told.startswith(f"{len(graph['states'])} states and {steps} steps")
+    assert "at most 1 listed missions, 2 goals each, batches of 1" in told
+    assert "more states than this page holds" not in told

@@ -147,7 +147,7 @@ class Fault:
     applied: bool
 
 
-@value
+@value(cache_hash=True)
 class Robot:
     """A robot: its world and its listed missions in order.
 

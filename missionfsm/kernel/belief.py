@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from typing import Any
 
-from attrs import define, evolve, field
+from attrs import define, field
 
 from missionfsm.kernel.explanation import GONE, Explanation, rename
 from missionfsm.kernel.history import (
@@ -117,7 +117,7 @@ class Automaton:
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
         if retired:
             left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
-            explanations = tuple(evolve(one, gone=left[id(one)]) for one in explanations)
+            explanations = tuple(one.but(gone=left[id(one)]) for one in explanations)
         numbered = tuple(rename(one, new) for one in explanations)
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)

@@ -10,8 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
-from attrs import evolve
-
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.spec import Emission, State, Step, View
@@ -95,6 +93,26 @@ class Explanation:
     def ref(self, name: int) -> int | None:
         """The position of a name among those of the state."""
         return self.names.index(name) if name in self.names else None
+
+    def but(
+        self,
+        *,
+        assumed: int | None = None,
+        calls: tuple[InFlight, ...] | None = None,
+        lost: Lost | None = None,
+        channels: tuple[Channel, ...] | None = None,
+        gone: Names | None = None,
+    ) -> Explanation:
+        """The same explanation but for some of what is not its state: `attrs.evolve`, four times as fast."""
+        return Explanation(
+            self.state,
+            self.names,
+            self.assumed if assumed is None else assumed,
+            self.calls if calls is None else calls,
+            self.lost if lost is None else lost,
+            self.channels if channels is None else channels,
+            self.gone if gone is None else gone,
+        )
 
 
 def fresh(explanation: Explanation) -> Iterator[int]:
@@ -198,7 +216,7 @@ def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explana
     left.update(channel.name for channel in explanation.channels)
     lapsed = [observed for own, observed in new.items() if own not in left]
     bound = rename(explanation, new)
-    return evolve(bound, gone=outlived(bound, lapsed)) if lapsed else bound
+    return bound.but(gone=outlived(bound, lapsed)) if lapsed else bound
 
 
 def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
@@ -220,7 +238,7 @@ def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
     for one in added:
         if not (one.stays and owed and owed[-1] == one):
             owed = (*owed, one)
-    return evolve(channel, owed=owed)
+    return Channel(channel.name, channel.topic, channel.last, owed)
 
 
 def take(

@@ -11,8 +11,6 @@ from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
-from attrs import evolve
-
 from missionfsm.kernel.explanation import (
     GONE,
     Channel,
@@ -142,9 +140,9 @@ class Oracle:
             if call.done is None and call.name != besides:
                 known = dict.fromkeys(call.ready)
                 known.update(dict.fromkeys(self._idle_answers(explanation, call)))
-                call = evolve(call, ready=tuple(known))  # noqa: PLW2901 - the same call, knowing more
+                call = InFlight(call.name, call.request, call.args, tuple(known), call.done)  # noqa: PLW2901 - the same call, knowing more
             calls.append(call)
-        return evolve(explanation, calls=tuple(calls))
+        return explanation.but(calls=tuple(calls))
 
     def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
         refs = tuple(explanation.ref(arg) for arg in call.args)
@@ -189,7 +187,7 @@ class Oracle:
             for where, refs in self._addressed(explanation, args):
                 for step in self.outcomes(where.state, request, refs):
                     if changes(where, step) and not step.opens:
-                        yield from self._sight(evolve(where, lost=rest), step, besides)
+                        yield from self._sight(where.but(lost=rest), step, besides)
         for position, call in enumerate(explanation.calls):
             if call.done is None and call.name != besides:
                 yield from self._take_effect(explanation, position, besides)
@@ -211,7 +209,7 @@ class Oracle:
                     calls = list(after.calls)
                     late = () if step.opens else tuple(self._late_answers(where, where.calls[position], refs))
                     calls[position] = InFlight(calls[position].name, calls[position].request, (), late, done)
-                    yield Sighting(tidy(evolve(after, calls=tuple(calls))), step.rules)
+                    yield Sighting(tidy(after.but(calls=tuple(calls))), step.rules)
 
     def closure(self, start: Explanation, besides: int | None = None) -> Iterator[Sighting]:
         """An explanation and everything that it can silently become, nearest first.
@@ -275,9 +273,9 @@ class Oracle:
         call: int,
     ) -> Iterator[Sighting]:
         if lost:
-            yield Sighting(evolve(explanation, lost=(*explanation.lost, (request, args))))
+            yield Sighting(explanation.but(lost=(*explanation.lost, (request, args))))
         else:
-            yield Sighting(evolve(explanation, calls=(*explanation.calls, InFlight(call, request, args))))
+            yield Sighting(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
 
     def _returned(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
         yield from self._failed(explanation, answer, names, call)
@@ -307,23 +305,23 @@ class Oracle:
         if assumed:
             calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
             late = ((one.request, one.args),) if failure.open_ended and not one.done else ()
-            yield Sighting(tidy(evolve(explanation, assumed=assumed, calls=calls, lost=(*explanation.lost, *late))))
+            yield Sighting(tidy(explanation.but(assumed=assumed, calls=calls, lost=(*explanation.lost, *late))))
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names
     ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
         call = here.calls[position]
-        rest = evolve(here, calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
         if call.done:
             for match in self._agreements(call.done.answer, answer):
                 assumed = meet(rest.assumed, match.assumes)
                 for bound in _bindings(rest, answer, call.done.names, names) if assumed else ():
-                    yield evolve(bound, assumed=assumed), match.rules
+                    yield bound.but(assumed=assumed), match.rules
         for ready in call.ready:
             for match in self._agreements(ready.answer, answer):
                 assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
                 for bound in _bindings(rest, answer, ready.names, names) if assumed else ():
-                    yield evolve(bound, assumed=assumed), ready.rules + match.rules
+                    yield bound.but(assumed=assumed), ready.rules + match.rules
         if call.done:
             return
         for where, refs in self._addressed(rest, call.args):
@@ -340,7 +338,7 @@ class Oracle:
         if not assumed:
             return
         lost = where.lost if step.applied else (*where.lost, (call.request, call.args))
-        taken = self.advance(evolve(where, lost=lost, assumed=assumed), step)
+        taken = self.advance(where.but(lost=lost, assumed=assumed), step)
         if taken:
             for bound in _bindings(taken[0], answer, taken[1], names):
                 yield bound, step.rules + match.rules
@@ -372,7 +370,7 @@ class Oracle:
         assumed = meet(explanation.assumed, sequence)
         if not assumed:
             return
-        start = Sighting(evolve(explanation, assumed=assumed))
+        start = Sighting(explanation.but(assumed=assumed))
         if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
             yield from self._showings(start, channel, None, content, names, echo=True)
         if "equal" in relations and echoes:
@@ -453,9 +451,9 @@ class Oracle:
                 agreed = meet(assumption, match.assumes)
                 if not agreed:
                     continue
-                shown = evolve(channel, last=Owed(owed.view, owed.names), owed=left)
+                shown = Channel(channel.name, channel.topic, Owed(owed.view, owed.names), left)
                 channels = (*here.channels[:position], shown, *here.channels[position + 1 :])
-                after = evolve(here, assumed=agreed, channels=channels)
+                after = here.but(assumed=agreed, channels=channels)
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
                 bound = unify(after, pairs)
                 if bound:
@@ -479,9 +477,9 @@ class Oracle:
                 skips = self.spec.delivery(channel.topic).skips
                 assumed = meet(assumed, (skips,)) if skips else 0
             if assumed:
-                passed = evolve(channel, owed=_offers(channel))
+                passed = _offering(channel)
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
-                yield evolve(explanation, assumed=assumed, channels=channels), channel.topic
+                yield explanation.but(assumed=assumed, channels=channels), channel.topic
 
     def _ended(self, explanation: Explanation, code: str, name: int) -> Iterator[Sighting]:
         # A stream that nothing is known of yet is that of a call whose answer has not come.
@@ -498,13 +496,13 @@ class Oracle:
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
-                    ended = evolve(bound, assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
+                    ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
                     yield Sighting(tidy(ended), sighting.rules)
 
     def _cancelled(self, explanation: Explanation, name: int) -> Iterator[Sighting]:
         rest = tuple(channel for channel in explanation.channels if channel.name != name)
         if len(rest) < len(explanation.channels):
-            explanation = evolve(explanation, channels=rest, gone=outlived(explanation, (name,)))
+            explanation = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
         yield Sighting(tidy(explanation))
 
     def _driven(self, explanation: Explanation, event: Hashable, names: Names) -> Iterator[Sighting]:
@@ -543,8 +541,10 @@ class Oracle:
                 skips = self.spec.delivery(channel.topic).skips
                 told = channel.last and (due[-1].view, due[-1].names) == (channel.last.view, channel.last.names)
                 assumed = meet(assumed, (skips,)) if skips and told else 0
-            channels.append(evolve(channel, owed=_offers(channel)) if channel.owed else channel)
-        return tidy(evolve(explanation, assumed=assumed, channels=tuple(channels))) if assumed else None
+            channels.append(
+                Channel(channel.name, channel.topic, channel.last, _offers(channel)) if channel.owed else channel
+            )
+        return tidy(explanation.but(assumed=assumed, channels=tuple(channels))) if assumed else None
 
     # Fewer explanations that say the same.
 
@@ -552,7 +552,7 @@ class Oracle:
         """Those among the explanations that the others do not already stand for."""
         points: dict[Explanation, list[Sighting]] = {}
         for sighting in found:
-            point = evolve(sighting.explanation, assumed=0)
+            point = sighting.explanation.but(assumed=0)
             points[point] = self._widened(points.get(point, []), sighting)
         kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
         return tuple(kept) if len(kept) <= 1 else tuple(self._without_later(kept))
@@ -566,33 +566,38 @@ class Oracle:
                     return sightings
                 rules = tuple(dict.fromkeys(other.rules + new.rules))
                 rest = [*sightings[:position], *sightings[position + 1 :]]
-                return self._widened(rest, Sighting(evolve(new.explanation, assumed=union), rules))
+                return self._widened(rest, Sighting(new.explanation.but(assumed=union), rules))
         return [*sightings, new]
 
     def _without_later(self, sightings: list[Sighting]) -> Iterator[Sighting]:
         """Those that no other can silently become."""
         reached: dict[Explanation, int] = {}
         for sighting in sightings:
-            point = evolve(sighting.explanation, assumed=0)
+            point = sighting.explanation.but(assumed=0)
             if point in reached and sighting.explanation.assumed | reached[point] == reached[point]:
                 covered = True
             else:
                 covered = False
                 yield sighting
             base = reached[point] if covered else sighting.explanation.assumed
-            for later in self.silent(evolve(sighting.explanation, assumed=base)):
-                key = evolve(later.explanation, assumed=0)
+            for later in self.silent(sighting.explanation.but(assumed=base)):
+                key = later.explanation.but(assumed=0)
                 if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
                     reached[key] = later.explanation.assumed
 
 
 def _point(explanation: Explanation) -> Explanation:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
-    return evolve(explanation, assumed=0, lost=())
+    return explanation.but(assumed=0, lost=())
 
 
 _EQUAL = (Match(),)
 """The one way in which equal answers agree."""
+
+
+def _offering(channel: Channel) -> Channel:
+    """The channel without what it owed, but for what it may say at any time."""
+    return Channel(channel.name, channel.topic, channel.last, _offers(channel))
 
 
 def _offers(channel: Channel) -> tuple[Owed, ...]:

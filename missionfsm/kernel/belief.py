@@ -56,6 +56,7 @@ class Edge:
         rules: ids of the rules that were exercised.
         touched: the bits of the ambiguities on which this event's explanations depend.
         appends: whether nothing becomes of the names before but that others follow them.
+        cuts: whether nothing becomes of the names but that the last ones are left out.
         walked: how often.
     """
 
@@ -65,6 +66,7 @@ class Edge:
     rules: tuple[str, ...]
     touched: int
     appends: bool = False
+    cuts: bool = False
     walked: int = 0
 
 
@@ -127,13 +129,15 @@ class Automaton:
             after = {one.assumed & ambiguity.group for one in explanations}
             if before != after:
                 touched |= ambiguity.group
+        in_order = keep == tuple(range(len(keep)))
         edge = Edge(
             next_node,
-            None if keep == tuple(range(node.width)) and not retired else keep,
+            None if in_order and len(keep) == node.width and not retired else keep,
             retired,
             tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules)),
             touched,
-            len(keep) > node.width and keep == tuple(range(len(keep))) and not retired,
+            len(keep) > node.width and in_order and not retired,
+            len(keep) < node.width and in_order and not retired,
         )
         node.next[symbol] = edge
         self._edges.append(edge)
@@ -196,7 +200,7 @@ class Belief:
         if self.broken:
             return False
         kind = type(event)
-        if (kind is Received or kind is Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
+        if self._given_up and (kind is Received or kind is Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
             return True  # what still comes on a stream that was given up means nothing
         symbol, new = self.symbol(event)
         edge = self.node.next.get(symbol)
@@ -298,6 +302,11 @@ class Belief:
         if edge.appends and len(edge.keep) == len(self._names) + len(new):
             self._numbers.update(zip(new, range(len(self._names), len(self._names) + len(new)), strict=True))
             self._names += new
+            return
+        if edge.cuts:
+            for name in self._names[len(edge.keep) :]:
+                del self._numbers[name]
+            del self._names[len(edge.keep) :]
             return
         names = self._names + new
         for number in edge.retired:

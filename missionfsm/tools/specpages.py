@@ -13,8 +13,10 @@ two comments, the first of which says what it is:
 `regenerate` fills those parts in; what else stands on a page is left alone. Kinds of parts:
 
 - ``operations``: every operation with its codes;
-- ``rules NAME``: the rules of an operation or a topic, each with the clauses that name it;
-- ``chart NAME``: the moves of a lifecycle;
+- ``rules NAME``: the rules of an operation or a topic, each with the clauses that name it, and in how many ways it is
+  broken on purpose to see whether the oracle notices (`missionfsm.tools.teeth`);
+- ``chart NAME``: the moves of a lifecycle, as a picture and as a table;
+- ``picture NAME``: a picture of the explored graph;
 - ``readings``: every ambiguity in one line;
 - ``entry AM-09``: the ambiguities of an entry with their readings, and what of it is waived;
 - ``waived``: everything that is waived.
@@ -24,6 +26,7 @@ from __future__ import annotations
 
 import fnmatch
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from attrs import frozen
@@ -32,6 +35,7 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
+from missionfsm.tools.teeth import mutants
 
 _PART = re.compile(
     r"(<!-- generated: (?P<kind>\w+)(?: (?P<what>[^\n]*?))? -->\n)(?P<body>.*?)(<!-- end -->)", re.DOTALL
@@ -102,10 +106,12 @@ def regenerate(text: str, system: System, waived: Mapping[str, str] | None = Non
     """
     spec, waived = system.spec, waived or {}
     by_clause = citing(text, spec)
+    broken = Counter(mutant.rule for mutant in mutants(system))
     kinds: Mapping[str, Callable[[str], Iterable[str]]] = {
         "operations": lambda _: _operations(spec),
-        "rules": lambda name: _rules(spec, name, by_clause),
-        "chart": lambda name: _chart(spec, name),
+        "rules": lambda name: _rules(spec, name, by_clause, broken),
+        "chart": lambda name: (*_picture(system, name), "", *_chart(spec, name)),
+        "picture": lambda name: _picture(system, name),
         "readings": lambda _: _readings(spec.ambiguities),
         "entry": lambda name: _entry(spec.ambiguities, waived, name),
         "waived": lambda _: _waived(waived),
@@ -149,16 +155,26 @@ def _operations(spec: Spec) -> Iterator[str]:
     )
 
 
-def _rules(spec: Spec, name: str, by_clause: Mapping[str, tuple[Clause, ...]]) -> Iterator[str]:
+def _rules(
+    spec: Spec, name: str, by_clause: Mapping[str, tuple[Clause, ...]], broken: Mapping[str, int]
+) -> Iterator[str]:
     rules = [rule for rule in spec.all_rules if rule.id.split("/")[1] == name]
-    head = ("answer", "rule", "where", "under", "clauses")
-    return _table(head, (_rule(rule, by_clause[rule.id]) for rule in rules))
+    head = ("answer", "rule", "where", "under", "clauses", "broken in")
+    return _table(head, (_rule(rule, by_clause[rule.id], broken[rule.id]) for rule in rules))
 
 
-def _rule(rule: Rule, named_by: tuple[Clause, ...]) -> tuple[str, ...]:
+def _rule(rule: Rule, named_by: tuple[Clause, ...], ways: int) -> tuple[str, ...]:
     under = str(rule.under) if rule.under else ""
     numbers = ", ".join(clause.number for clause in named_by)
-    return rule.code or "(promise)", f"`{rule.name}`", rule.says, under, numbers
+    tested = f"{ways} way" if ways == 1 else f"{ways} ways"
+    return rule.code or "(promise)", f"`{rule.name}`", rule.says, under, numbers, tested
+
+
+def _picture(system: System, name: str) -> Iterator[str]:
+    """The picture as it stands in ``diagrams/``, which are computed as well; nothing if there is none."""
+    known = (*(chart.name for chart in system.spec.charts), *(sketch.name for sketch in system.sketches))
+    if name in known:
+        yield f"![{system.name}: {name}](../diagrams/{system.name}/{name.replace(' ', '-')}.svg)"
 
 
 def _chart(spec: Spec, name: str) -> Iterator[str]:

@@ -45,11 +45,12 @@ class Naming:
     """How a tester writes names into params, and what names it may make up.
 
     A name is ``(kind, value)``. `write` gives its JSON, `make` a name of a kind that belongs to a serial number, which
-    is 0 for one that is never anything's.
+    is 0 for one that is never anything's; `shown` one as messages carry it.
     """
 
     write: Callable[[Any], JSON] = _as_it_is
     make: Callable[[str, int], Any] = lambda kind, serial: (kind, serial)
+    shown: Callable[[int], Any] = lambda serial: f"n{serial}"
 
 
 @frozen

@@ -7,7 +7,6 @@ after it. `missionfsm.kernel.belief` walks that automaton and remembers it.
 from __future__ import annotations
 
 import itertools
-from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
@@ -16,6 +15,7 @@ from missionfsm.kernel.explanation import (
     Channel,
     Explanation,
     InFlight,
+    Lost,
     Names,
     Owed,
     Ready,
@@ -216,7 +216,7 @@ class Oracle:
 
         One that has used up more lost calls than another at the same point is left out, and so is all that follows.
         """
-        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
+        seen: dict[Any, list[tuple[int, _Bag]]] = {}
         todo = [Sighting(start)]
         while todo:
             later: list[Sighting] = []
@@ -230,11 +230,11 @@ class Oracle:
                 )
             todo = later
 
-    def _outdone(self, seen: dict[Any, list[tuple[int, Counter[Any]]]], explanation: Explanation) -> bool:
+    def _outdone(self, seen: dict[Any, list[tuple[int, _Bag]]], explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
         self._spend()
         key = _point(explanation)
-        lost = Counter(explanation.lost)
+        lost = _bag(explanation.lost)
         others = seen.setdefault(key, [])
         if any(explanation.assumed | assumed == assumed and lost <= left for assumed, left in others):
             return True
@@ -376,7 +376,7 @@ class Oracle:
         if "equal" in relations and echoes:
             return
         # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
-        seen: dict[Hashable, dict[Any, list[tuple[int, Counter[Any]]]]] = {}
+        seen: dict[Hashable, dict[Any, list[tuple[int, _Bag]]]] = {}
         todo: list[tuple[Sighting, Hashable]] = [(start, None)]
         while todo:
             later: list[tuple[Sighting, Hashable]] = []
@@ -516,7 +516,7 @@ class Oracle:
 
     def _settled(self, explanation: Explanation) -> Iterator[Sighting]:
         # What is urgent need not be what happened: a call or the surroundings may have come before it.
-        seen: dict[Any, list[tuple[int, Counter[Any]]]] = {}
+        seen: dict[Any, list[tuple[int, _Bag]]] = {}
         todo = [Sighting(explanation)]
         while todo:
             later: list[Sighting] = []
@@ -550,9 +550,9 @@ class Oracle:
 
     def _sift(self, found: Iterable[Sighting]) -> tuple[Sighting, ...]:
         """Those among the explanations that the others do not already stand for."""
-        points: dict[Explanation, list[Sighting]] = {}
+        points: dict[_Place, list[Sighting]] = {}
         for sighting in found:
-            point = sighting.explanation.but(assumed=0)
+            point = _place(sighting.explanation)
             points[point] = self._widened(points.get(point, []), sighting)
         kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
         return tuple(kept) if len(kept) <= 1 else tuple(self._without_later(kept))
@@ -571,9 +571,9 @@ class Oracle:
 
     def _without_later(self, sightings: list[Sighting]) -> Iterator[Sighting]:
         """Those that no other can silently become."""
-        reached: dict[Explanation, int] = {}
+        reached: dict[_Place, int] = {}
         for sighting in sightings:
-            point = sighting.explanation.but(assumed=0)
+            point = _place(sighting.explanation)
             if point in reached and sighting.explanation.assumed | reached[point] == reached[point]:
                 covered = True
             else:
@@ -581,14 +581,30 @@ class Oracle:
                 yield sighting
             base = reached[point] if covered else sighting.explanation.assumed
             for later in self.silent(sighting.explanation.but(assumed=base)):
-                key = later.explanation.but(assumed=0)
+                key = _place(later.explanation)
                 if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
                     reached[key] = later.explanation.assumed
 
 
-def _point(explanation: Explanation) -> Explanation:
+_Place = tuple[Hashable, ...]
+_Bag = frozenset[tuple[Hashable, int]]
+"""Lost calls whatever their order: each with how many like it came before."""
+
+
+def _place(explanation: Explanation) -> _Place:
+    """Where an explanation is, whatever it assumed."""
+    return (*_point(explanation), explanation.lost)
+
+
+def _point(explanation: Explanation) -> _Place:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
-    return explanation.but(assumed=0, lost=())
+    return explanation.state, explanation.names, explanation.calls, explanation.channels, explanation.gone
+
+
+def _bag(lost: Lost) -> _Bag:
+    if len(set(lost)) == len(lost):
+        return frozenset(zip(lost, itertools.repeat(0), strict=False))
+    return frozenset((call, lost[:position].count(call)) for position, call in enumerate(lost))
 
 
 _EQUAL = (Match(),)
@@ -643,9 +659,9 @@ def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
     """Without those that have used up more lost calls than another at the same point, assuming no less."""
     if not any(sighting.explanation.lost for sighting in sightings):
         return sightings
-    kept: dict[Explanation, list[tuple[int, Counter[Any], Sighting]]] = {}
+    kept: dict[_Place, list[tuple[int, _Bag, Sighting]]] = {}
     for sighting in sorted(sightings, key=lambda one: -len(one.explanation.lost)):
-        lost = Counter(sighting.explanation.lost)
+        lost = _bag(sighting.explanation.lost)
         others = kept.setdefault(_point(sighting.explanation), [])
         assumed = sighting.explanation.assumed
         if not any(assumed | other == other and lost <= left for other, left, _ in others):

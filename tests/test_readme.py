@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -24,6 +28,48 @@ def test_the_readme_has_code_to_run() -> None:
 def test_a_snippet_runs_as_it_stands(snippet: str) -> None:
     """What a reader copies works."""
     exec(compile(snippet, "README.md", "exec"), {})  # noqa: S102 - the README's own code
+
+
+SHELL = re.findall(r"<!-- console -->\n```console\n(.*?)```", README, re.DOTALL)
+SUITE = re.findall(r"<!-- suite -->\n```python\n(.*?)```", README, re.DOTALL)
+ID = re.compile(r"[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12}")
+
+
+@pytest.fixture
+def reader(tmp_path: Path) -> Path:
+    """Where a reader is who has just cloned the project."""
+    if shutil.which("node") is None:
+        pytest.skip("Node.js is not installed")
+    (tmp_path / "tests").symlink_to(Path(__file__).parent)
+    return tmp_path
+
+
+def test_the_shown_commands_say_what_is_shown(reader: Path) -> None:
+    """Every command of the console blocks, one after the other, begins to say what stands below it, but for its ids."""
+    tools = {**os.environ, "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))}
+    told = [part.partition("\n") for block in SHELL for part in block.split("$ ")[1:]]
+    assert len(told) == 3
+    for command, _, shown in told:
+        ran = subprocess.run(
+            ["sh", "-c", command], cwd=reader, env=tools, capture_output=True, text=True, check=False, timeout=120
+        )
+        assert ran.returncode == 1, ran.stderr
+        assert ID.sub("ID", ran.stdout).startswith(ID.sub("ID", shown)), ran.stdout
+
+
+def test_the_suite_is_a_suite(reader: Path) -> None:
+    """The five lines are a test file that passes on our own implementation in another language."""
+    (source,) = SUITE
+    (reader / "test_it.py").write_text(source)
+    ran = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--missionfsm-examples=5", "test_it.py"],
+        cwd=reader,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert (ran.returncode, " passed" in ran.stdout) == (0, True), ran.stdout
 
 
 def test_every_command_in_the_table_exists() -> None:

@@ -117,7 +117,7 @@ EMERGENCY_STOP: Chart[Emergency] = Chart(
         ("engage", Emergency.EMERGENCY_DISENGAGED, Emergency.EMERGENCY_ENGAGED),
         ("disengage", Emergency.EMERGENCY_ENGAGED, Emergency.EMERGENCY_DISENGAGED),
     ),
-    {"of": "the software stop and the button, each by itself (AS-16)"},
+    {"two of them": "the software stop and the button, each by itself (AS-16)"},
 )
 STUCK: Chart[Stuck] = Chart(
     "stuck",

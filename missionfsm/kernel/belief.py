@@ -25,8 +25,10 @@ from missionfsm.kernel.history import (
     Returned,
     Settled,
 )
-from missionfsm.kernel.oracle import Oracle, surviving_names
+from missionfsm.kernel.moves import Moves
+from missionfsm.kernel.oracle import Oracle
 from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.sifting import surviving_names
 from missionfsm.kernel.spec import Spec
 
 _NO_MARKS: dict[Hashable, int] = {}
@@ -82,7 +84,8 @@ class Automaton:
     def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
         self.spec = spec
         self.assumed = assumed
-        self.oracle = Oracle(spec, driven)
+        self.moves = Moves(spec, driven)
+        self.oracle = Oracle(self.moves)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges: list[Edge] = []
         self._times: dict[str, int] = {}
@@ -108,7 +111,7 @@ class Automaton:
             node.next.clear()
         self._nodes.clear()
         self._edges.clear()
-        self.oracle.forget()
+        self.moves.forget()
 
     def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""

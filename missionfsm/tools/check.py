@@ -11,7 +11,7 @@ from attrs import evolve
 from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event, Returned
-from missionfsm.kernel.oracle import ExhaustedError
+from missionfsm.kernel.moves import ExhaustedError
 from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec

@@ -34,8 +34,8 @@ from missionfsm.tools.verdict import Experiment
 EFFORT = 8_000
 """How many steps of references the search on one ambiguity may take where its experiments are to be tried."""
 
-THOUGHT = 3
-"""How many all searches together may take where experiments are only told, for each step that the run took."""
+THOUGHT, LEAST = 3, 6_000
+"""How many all searches may take where experiments are only told, for each step that the run took, and in any case."""
 
 ASIDE = 2
 """How many steps one counts for that is not among those that bring the system on."""
@@ -119,6 +119,9 @@ class Lab:
         automaton: judges the conversations; it assumes what has been decided.
         readings: ambiguity id to the letters that are still possible, as far as any were ruled out.
         effort: how many steps of references one search may take.
+
+    Attributes:
+        spent: how many the last one took.
     """
 
     def __init__(
@@ -130,13 +133,14 @@ class Lab:
         effort: int = EFFORT,
     ) -> None:
         self.effort = effort
+        self.spent = 0
         self.guide = guide
         self.about = about
         self.automaton = automaton
         self.readings = readings
-        spec, oracle = guide.system.spec, automaton.oracle
-        # What the spec says is remembered by the oracle for all references.
-        self.system = evolve(guide.system, spec=evolve(spec, outcomes=oracle.outcomes, urgent=oracle.urgent))
+        spec, moves = guide.system.spec, automaton.moves
+        # What the spec says is remembered for all references.
+        self.system = evolve(guide.system, spec=evolve(spec, outcomes=moves.outcomes, urgent=moves.urgent))
         self.choice = {
             one.id: one.default if one.default in readings.get(one.id, (one.default,)) else readings[one.id][0]
             for one in spec.ambiguities
@@ -147,7 +151,10 @@ class Lab:
 
     def trials(self, ambiguity: Ambiguity, letters: tuple[str, ...]) -> tuple[Trial, ...]:
         """Experiments that tell some of these readings from others, the shortest first."""
-        return tuple(_Search(self, ambiguity, letters).run())
+        search = _Search(self, ambiguity, letters)
+        found = tuple(search.run())
+        self.spent = search.spent
+        return found
 
     def play(self, letter: tuple[str, str], world: JSON, actions: Iterable[Action]) -> Conversation:
         """The conversation with the reference that follows a reading besides what has been decided."""
@@ -171,6 +178,7 @@ class _Search:
         self.wanted = set(itertools.permutations(letters, 2))
         self.doubts = dict.fromkeys(letters, 0)
         self.effort = lab.effort
+        self.spent = 0
         self._seen: set[Hashable] = set()
         self._once: set[Hashable] = set()
         self._thorough: set[Hashable] = set()
@@ -182,6 +190,7 @@ class _Search:
         for some in (worlds[:1], worlds[1:]):
             self.effort = self.lab.effort // 2
             yield from self._nearest_first(some)
+            self.spent += self.lab.effort // 2 - self.effort
 
     def _nearest_first(self, worlds: Iterable[int]) -> Iterator[Trial]:
         todo: list[tuple[int, int, _Node]] = []
@@ -391,8 +400,14 @@ def lab_of(run: Run, effort: int = EFFORT) -> Lab:
 def proposed(run: Run) -> tuple[Trial, ...]:
     """For every reading that a run has left open, the experiments that would tell it from others."""
     questions = open_questions(run)
-    lab = lab_of(run, THOUGHT * run.steps // max(1, len(questions)))
-    return tuple(trial for ambiguity, letters in questions for trial in lab.trials(ambiguity, letters))
+    lab = lab_of(run)
+    left, found = max(LEAST, THOUGHT * run.steps), list[Trial]()
+    for position, (ambiguity, letters) in enumerate(questions):
+        # What one search does not need is there for those after it.
+        lab.effort = left // (len(questions) - position)
+        found += lab.trials(ambiguity, letters)
+        left -= lab.spent
+    return tuple(found)
 
 
 def distinguish(run: Run, only: str | None = None) -> bool:

@@ -10,7 +10,7 @@ from attrs import frozen
 from missionfsm.kernel.belief import Belief
 from missionfsm.kernel.explanation import Explanation
 from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
-from missionfsm.kernel.oracle import ExhaustedError, Oracle
+from missionfsm.kernel.moves import ExhaustedError, Moves
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Mismatch, Spec
@@ -65,23 +65,23 @@ def violation(belief: Belief, event: Event, calls: dict[Any, Any]) -> Violation:
     Args:
         calls: the requests of the calls that are in flight, by the name of the call.
     """
-    spec, oracle = belief.automaton.spec, belief.automaton.oracle
-    oracle.reset()
+    spec, moves = belief.automaton.spec, belief.automaton.moves
+    moves.reset()
     observed = event_words(spec, event)
     if isinstance(event, Returned):
         if event.call in calls:
             observed = f"{spec.describe(calls[event.call])} was {observed}"
-        options = list(_answers(belief, oracle, event))
+        options = list(_answers(belief, moves, event))
         rules, notes = _against_answer(spec, event, options, calls.get(event.call))
     elif isinstance(event, Received):
-        options, rules, notes = _against_message(belief, oracle, event)
+        options, rules, notes = _against_message(belief, moves, event)
     elif isinstance(event, Settled):
-        options, rules, notes = _still_due(belief, oracle)
+        options, rules, notes = _still_due(belief, moves)
     elif isinstance(event, Ended):
         options, rules, notes = [], _following(spec), ("the stream had to go on",)
     else:
-        moves = [rule.id for rule in spec.rules if LIFECYCLE in rule.id]
-        options, rules, notes = [], moves, ("nothing that is in a state for it was there",)
+        lifecycle = [rule.id for rule in spec.rules if LIFECYCLE in rule.id]
+        options, rules, notes = [], lifecycle, ("nothing that is in a state for it was there",)
     merged: dict[str, _Option] = {}
     for option in options:
         before = merged.get(option.what)
@@ -93,18 +93,18 @@ def violation(belief: Belief, event: Event, calls: dict[Any, Any]) -> Violation:
     return Violation(told(spec, rules), observed, expected, tuple(dict.fromkeys(notes))[:MOST])
 
 
-def _reachable(oracle: Oracle, explanation: Explanation, besides: int | None = None) -> Iterator[Explanation]:
+def _reachable(moves: Moves, explanation: Explanation, besides: int | None = None) -> Iterator[Explanation]:
     try:
-        for sighting in oracle.closure(explanation, besides):
+        for sighting in moves.closure(explanation, besides):
             yield sighting.explanation
     except ExhaustedError:
         return
 
 
-def _answers(belief: Belief, oracle: Oracle, event: Returned) -> Iterator[_Option]:
+def _answers(belief: Belief, moves: Moves, event: Returned) -> Iterator[_Option]:
     number = belief.symbol(event)[0][3]
     for explanation in belief.node.explanations:
-        for here in _reachable(oracle, explanation, besides=number):
+        for here in _reachable(moves, explanation, besides=number):
             call = next((one for one in here.calls if one.name == number), None)
             if call is None:
                 continue
@@ -112,7 +112,7 @@ def _answers(belief: Belief, oracle: Oracle, event: Returned) -> Iterator[_Optio
                 yield _Option(_known(belief, call.done.answer, call.done.names), call.done.rules, ())
                 continue
             refs = tuple(here.ref(arg) for arg in call.args)
-            for step in oracle.outcomes(here.state, call.request, refs):
+            for step in moves.outcomes(here.state, call.request, refs):
                 if step.answer is None or not _compatible(here, step.assumes):
                     continue
                 names = tuple(here.names[ref] if ref < len(here.names) else -2 for ref in step.refs)
@@ -152,9 +152,7 @@ def _against_answer(
     return rules, ()
 
 
-def _against_message(
-    belief: Belief, oracle: Oracle, event: Received
-) -> tuple[list[_Option], list[str], tuple[str, ...]]:
+def _against_message(belief: Belief, moves: Moves, event: Received) -> tuple[list[_Option], list[str], tuple[str, ...]]:
     spec = belief.automaton.spec
     symbol, _ = belief.symbol(event)
     _, content, _, relations, channel_name = symbol
@@ -167,14 +165,14 @@ def _against_message(
             return [], [wrong.rule], (wrong.says,)
     for explanation in belief.node.explanations:
         found = False
-        for here in _reachable(oracle, explanation):
+        for here in _reachable(moves, explanation):
             for channel in here.channels:
                 if channel.name != channel_name and channel.name >= 0:
                     continue
                 found = True
                 for owed in channel.owed:
                     options.append(_Option(spec.describe(owed.view), (), ()))
-                    matched = oracle.matches(owed, content)
+                    matched = moves.matches(owed, content)
                     if isinstance(matched, Mismatch):
                         rules.append(matched.rule)
                         notes.append(matched.says)
@@ -203,12 +201,12 @@ def _following(spec: Spec) -> list[str]:
     return [rule.id for rule in spec.rules if rule.id.endswith(FOLLOWS)]
 
 
-def _still_due(belief: Belief, oracle: Oracle) -> tuple[list[_Option], list[str], tuple[str, ...]]:
+def _still_due(belief: Belief, moves: Moves) -> tuple[list[_Option], list[str], tuple[str, ...]]:
     spec = belief.automaton.spec
     options: list[_Option] = []
     notes: list[str] = []
     for explanation in belief.node.explanations:
-        for here in _reachable(oracle, explanation):
+        for here in _reachable(moves, explanation):
             for channel in here.channels:
                 due = [owed for owed in channel.owed if not owed.passing]
                 if due:

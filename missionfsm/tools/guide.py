@@ -17,7 +17,7 @@ from attrs import frozen
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.explanation import Explanation
-from missionfsm.kernel.oracle import Oracle
+from missionfsm.kernel.moves import Moves
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
@@ -131,7 +131,7 @@ class Guide:
             rare: look at all of them, and put first what the rules have said least often in the whole run.
         """
         belief = conversation.judge.belief
-        here = _rested(conversation.judge.automaton.oracle, belief.node.explanations[0])
+        here = _rested(conversation.judge.automaton.moves, belief.node.explanations[0])
         shape, phase = self.system.spec.shape(here.state), self.system.spec.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
         wrong = self.alphabets[world].wrong_names[:1]
@@ -212,8 +212,8 @@ class Guide:
         size = self.system.spec.size or self.system.spec.names
         key = (here.state if exact else shape, request, self._places(here, refs))
         if key not in self._edges:
-            oracle = conversation.judge.automaton.oracle
-            steps = [step for step in oracle.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)]
+            moves = conversation.judge.automaton.moves
+            steps = [step for step in moves.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)]
             operation = self.system.spec.request_operation(request)
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)
@@ -257,10 +257,10 @@ class Guide:
         return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
 
 
-def _rested(oracle: Oracle, here: Explanation) -> Explanation:
+def _rested(moves: Moves, here: Explanation) -> Explanation:
     """Where an explanation comes to rest."""
-    while step := next((one for one in oracle.urgent(here.state) if meet(here.assumed, one.assumes)), None):
-        taken = oracle.advance(here, step)
+    while step := next((one for one in moves.urgent(here.state) if meet(here.assumed, one.assumes)), None):
+        taken = moves.advance(here, step)
         if taken is None:
             break
         here = taken[0]

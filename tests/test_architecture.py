@@ -17,6 +17,7 @@ HOUSE = {
     "isaac": KERNEL | {"missionfsm.isaac"},
     "tools": KERNEL | {"missionfsm.tools", "missionfsm.systems"},
     "systems": KERNEL | VENDORS,
+    "pages": KERNEL | {"missionfsm.tools", "missionfsm.pages"},
     "embedding": KERNEL | VENDORS | {"missionfsm.tools", "missionfsm.embedding"},
     "adapters": KERNEL | VENDORS | {"missionfsm.adapters", "missionfsm.systems"},
 }
@@ -26,6 +27,7 @@ GUESTS = {
     "isaac": {"attr", "attrs", "cattrs"},
     "tools": {"attrs", "graphviz", "transitions"},
     "systems": {"attrs"},
+    "pages": {"attrs", "jinja2", "markupsafe"},
     "embedding": {"attrs"},
     "adapters": {"attrs", "orjson"},
 }
@@ -33,7 +35,7 @@ PARTICULAR = {"kernel/chart.py": {"transitions"}, "tools/conform.py": {"hypothes
 LAZY = {"adapters": {"grpc"}}
 WORLD = {"time", "random", "socket", "os", "subprocess", "asyncio", "threading"}
 SEEDED = {"tools"}  # may hold a random.Random that somebody seeded, and nothing else of chance
-PURE = {"kernel", "bear", "isaac", "tools", "systems", "embedding"}
+PURE = {"kernel", "bear", "isaac", "tools", "systems", "pages", "embedding"}
 
 
 def imports(tree: ast.AST) -> Iterator[tuple[str, bool]]:

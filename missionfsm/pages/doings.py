@@ -35,6 +35,7 @@ class Doing:
         line: the line that it is in a history, as a template; empty for what nobody sees.
         refs: positions of the names that it is about, among those of the state and then those that it brings along;
             None for a name that nothing has.
+        kinds: of each of these names the kind.
         brings: the kinds of the names that an event brings along.
     """
 
@@ -43,6 +44,7 @@ class Doing:
     words: str
     line: str = ""
     refs: tuple[int | None, ...] = ()
+    kinds: tuple[str, ...] = ()
     brings: tuple[str, ...] = ()
 
 
@@ -60,12 +62,14 @@ class _Filled:
     """A prompt or a drive with names in it: the params, the positions of the names, and the names.
 
     Attributes:
+        kinds: of each name its kind.
         fixed: of each name whether it stood there from the start.
     """
 
     params: JSON
     refs: tuple[int | None, ...]
     names: tuple[Name, ...]
+    kinds: tuple[str, ...]
     fixed: tuple[bool, ...]
 
 
@@ -110,8 +114,13 @@ class Doings:
                 one.made[brought] = self._driven(one, len(kinds), brought)
             yield Tried(one.made[brought], steps)
         for step in (*spec.urgent(here), *spec.spontaneous(here)):
-            says = step.label or next((spec.rules_by_id[one].says for one in step.rules), "something happens unseen")
-            yield Tried(Doing(ITSELF, BY_ITSELF, says), (step,))
+            yield Tried(Doing(ITSELF, BY_ITSELF, self._unasked(step)), (step,))
+
+    def _unasked(self, step: Step) -> str:
+        """What a system does by itself, in words."""
+        says = (self.system.spec.rules_by_id[one].says for one in step.rules)
+        opens = (f"a {opening.kind} opens" for opening in step.opens)
+        return step.label or next(itertools.chain(says, opens), "something happens unseen")
 
     def _requests(self, kinds: tuple[str, ...]) -> Iterator[_Asked]:
         codec, spec = self.system.codec, self.system.spec
@@ -124,7 +133,9 @@ class Doings:
                     continue
                 seen.add((request, filled.refs))
                 line = self.writer.text({"call": 0, "method": method, "params": filled.params})
-                doing = Doing(CALL, spec.request_operation(request), spec.describe(request), line, filled.refs)
+                doing = Doing(
+                    CALL, spec.request_operation(request), spec.describe(request), line, filled.refs, filled.kinds
+                )
                 yield _Asked(doing, method, request)
 
     def _names_asked(self, method: str, params: JSON) -> tuple[Name, ...]:
@@ -150,7 +161,7 @@ class Doings:
             *range(first, first + len(opened)),
         )
         brings = (*(kind_of(filled.names[at]) or TEXT for at in fixed), *opened)
-        return Doing(DRIVE, ENVIRONMENT, one.words, line, refs, brings)
+        return Doing(DRIVE, ENVIRONMENT, one.words, line, refs, (*filled.kinds, *opened), brings)
 
     def _filled(
         self, params: JSON, kinds: tuple[str, ...], names_in: Callable[[JSON], tuple[Name, ...]]
@@ -176,4 +187,5 @@ class Doings:
                 for slot, at in picked
             }
             told = put(params, chosen, naming)
-            yield _Filled(told, refs, names_in(told), tuple(name not in stand_ins for name in order))
+            sorts = tuple(wanted[stand_ins[name]] if name in stand_ins else kind_of(name) or TEXT for name in order)
+            yield _Filled(told, refs, names_in(told), sorts, tuple(name not in stand_ins for name in order))

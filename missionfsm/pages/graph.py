@@ -135,7 +135,8 @@ class Graph:
             "assumes": [[[one.of.id, "".join(one.letters)] for one in some] for some in self._assumptions.values],
             "groups": [*self._groups()],
             "doings": [
-                [one.kind, one.group, one.words, one.line, one.refs, len(one.brings)] for one in self._doings.values
+                [one.kind, one.group, one.words, one.line, one.refs, one.kinds, len(one.brings)]
+                for one in self._doings.values
             ],
             "effects": [
                 [

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import functools
+import re
 from importlib import resources
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
+
+_MARKED = re.compile(r"`(?P<code>[^`]+)`|\*(?P<stressed>[^*\s](?:[^*]*[^*\s])?)\*")
 
 
 @functools.cache
@@ -30,13 +33,14 @@ def rendered(template: str, **values: object) -> str:
 
 
 def prose(text: str) -> Markup:
-    """Text whose parts between backticks are code, as in the written specifications."""
-    parts = text.split("`")
-    if len(parts) % 2 == 0:  # a backtick without its partner is just that
-        return escape(text)
-    return Markup("").join(
-        Markup("<code>{}</code>").format(part) if number % 2 else escape(part) for number, part in enumerate(parts)
-    )
+    """Text of the written specifications: what stands between backticks is code, between asterisks emphasis."""
+    found = Markup("")
+    end = 0
+    for match in _MARKED.finditer(text):
+        element = Markup("<code>{}</code>") if match["code"] else Markup("<em>{}</em>")
+        found += escape(text[end : match.start()]) + element.format(match["code"] or match["stressed"])
+        end = match.end()
+    return found + escape(text[end:])
 
 
 def specification_page(system: str) -> str:

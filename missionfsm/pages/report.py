@@ -22,7 +22,7 @@ from missionfsm.pages.outline import (
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
 from missionfsm.tools.story import as_pytest
-from missionfsm.tools.verdict import Experiment, Outcome, Verdict
+from missionfsm.tools.verdict import Broken, Experiment, Outcome, Verdict
 
 _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
 
@@ -111,6 +111,15 @@ class Story:
     history: str
     test: str
 
+    @property
+    def against(self) -> tuple[Broken, ...]:
+        """The rules that are broken and are not told with what was allowed."""
+        violation = self.judged.verdict.violation
+        if violation is None:
+            return ()
+        told = {rule for one in violation.expected for rule in one.rules}
+        return tuple(rule for rule in violation.rules if rule not in told)
+
 
 @frozen
 class Chapter:
@@ -156,7 +165,8 @@ def report(judged: Sequence[Judged], system: Callable[[str], System]) -> str:
 def _story(system: System, judged: Judged) -> Story:
     violation = judged.verdict.violation
     history = violation.history if violation else ()
-    told = rows(system, history) if history else ()
+    # One that follows no single reading is wrong in no one place.
+    told = rows(system, history, violation=bool(violation and violation.at))
     return Story(
         judged,
         told[:-SHOWN],

@@ -60,7 +60,7 @@ _KINDS = {
 }
 
 
-def rows(system: System, history: Sequence[JSON], *, violation: bool = True) -> tuple[Row, ...]:
+def rows(system: System, history: Sequence[JSON], *, violation: bool) -> tuple[Row, ...]:
     """The rows of a history, its first line left out. In the history of a violation the last is the wrong one."""
     found = tuple(_rows(system, history[1:]))
     return (*found[:-1], evolve(found[-1], wrong=True)) if found and violation else found

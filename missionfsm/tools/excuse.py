@@ -16,13 +16,17 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
-from missionfsm.kernel.spec import Emission, Mismatch, Step
+from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
 from missionfsm.tools.model import Model
 
 BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=2))
-"""Within which it is shown; the first only sort out quickly what is forbidden already there."""
+"""Within which it is shown: the first in every world, the others in the first few, one for each kind of robot."""
+FEW = 3
+
+TIMED = (Bounds(missions=1),)
+"""The same for systems with clocks, which make many states of one (see `Spec.outline`)."""
 
 Assumed = tuple[Assumption, ...]
 Options = frozenset[Assumed]
@@ -48,6 +52,8 @@ class Honest:
         self.model = model
         self._sets: dict[frozenset[str], frozenset[str]] = {}
         self._known: dict[Any, tuple[Step, Options, frozenset[str]]] = {}
+        self._urgent: dict[Any, tuple[tuple[Step, ...], Step | None]] = {}
+        self._shown: dict[Any, tuple[tuple[Match, ...], ...] | Mismatch] = {}
 
     def answers(
         self,
@@ -59,15 +65,29 @@ class Honest:
         key = (here, request, refs)
         found = self._known.get(key)
         if found is None:
-            step = self.model.outcome(here, request, refs)
-            options = _explaining(self.model.system, here, request, refs, step)
-            found = self._known[key] = (step, options, self._rules(here, request, refs))
+            allowed = self.model.system.spec.outcomes(here, request, refs)
+            step = next(one for one in allowed if meet(self.model.choice, one.assumes))
+            options = _explaining(self.model.system, here, request, allowed, step)
+            rules = frozenset(rule for one in allowed for rule in one.rules)
+            found = self._known[key] = (step, options, self._sets.setdefault(rules, rules))
         return found
 
-    def _rules(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> frozenset[str]:  # noqa: ANN401
-        outcomes = self.model.system.spec.outcomes(here, request, refs)
-        rules = frozenset(rule for one in outcomes for rule in one.rules)
-        return self._sets.setdefault(rules, rules)
+    def urgent(self, here: Any) -> tuple[tuple[Step, ...], Step | None]:  # noqa: ANN401 - of any system
+        """What may happen at once in a state, and what of it the reference does."""
+        found = self._urgent.get(here)
+        if found is None:
+            allowed = self.model.system.spec.urgent(here)
+            own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
+            found = self._urgent[here] = (allowed, own)
+        return found
+
+    def shows(self, emission: Emission, named: int) -> tuple[tuple[Match, ...], ...] | Mismatch:
+        """Ways to explain each part of the message that the reference makes of an emission."""
+        key = (emission, named)
+        found = self._shown.get(key)
+        if found is None:
+            found = self._shown[key] = shown(self.model, emission, named)
+        return found
 
 
 def excuse(  # noqa: PLR0913 - what an implementation is made of
@@ -90,12 +110,14 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
         worlds: those that it is explored in.
     """
     system = honest.model.system
-    for bounds in BOUNDS:
+    states, came_up = 0, False
+    for bounds in TIMED if system.spec.outline else BOUNDS:
         explorer = _Explorer(system, model, honest, rule, operation, bend, bounds)
-        states = sum(map(explorer.run, worlds))
+        states += sum(map(explorer.run, worlds[:FEW] if bounds is BOUNDS[1] else worlds))
+        came_up |= explorer.came_up
         if not explorer.alternatives:
             return ""
-    return _words(system, model, explorer.alternatives, states) if explorer.came_up else ""
+    return _words(system, model, explorer.alternatives, states) if came_up else ""
 
 
 def _words(system: System, model: Model, alternatives: tuple[int, ...], states: int) -> str:
@@ -120,6 +142,8 @@ class _Explorer:
     Attributes:
         alternatives: sets of readings, of which none holds another; empty once nothing explains the model.
         came_up: whether the broken rule did.
+        follows_all: whether it goes on from everything that the operation does, and not just from the plain requests.
+        rules_differ: whether the model differs in the rules of the operation, and not just in a twist.
     """
 
     def __init__(  # noqa: PLR0913 - what an exploration is made of
@@ -142,6 +166,8 @@ class _Explorer:
         self.bounds = bounds
         self.alternatives: tuple[int, ...] = (ANYTHING,)
         self.came_up = bend is not straight
+        self.follows_all = bounds is not BOUNDS[1]
+        self.rules_differ = model.system.spec is not system.spec
         self._required: set[Options] = {_FREE}
         self._judged: set[Any] = set()
 
@@ -158,21 +184,22 @@ class _Explorer:
     def _walk(self, world: JSON) -> int:
         alphabet = self.system.alphabet(world, self.bounds)
         plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
-        own = [one for one in alphabet.prompts if one.method == self.operation]
+        own = Labels.of(self.system, (one for one in alphabet.prompts if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
-        thorough = Labels.of(self.system, (*alphabet.plain, *own), alphabet.plain_drives)
         start = self.spec.initial(self.system.codec.world(world))
+        extent = self.spec.extent or self.spec.names
         found, todo, situations = {start}, [start], set()
         for here in todo:
-            situation = self.spec.situation(here)
-            labels = plain if situation in situations else thorough
-            situations.add(situation)
-            for taken, options in self._taken(here, labels):
-                self._require(options)
-                after = taken.after
-                if after not in found and self.spec.names(after) <= self.bounds.missions:
-                    found.add(after)
-                    todo.append(after)
+            taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.bounds.missions]
+            # Where clocks tell states apart, what answers calls is in the shape.
+            situation = (self.spec.shape if self.spec.outline else self.spec.situation)(here)
+            if situation not in situations and not self._passes(here):
+                situations.add(situation)
+                asked = [step for step in self._asked_all(here, own) if extent(step.after) <= self.bounds.missions]
+                taken += asked if self.follows_all else ()
+            new = dict.fromkeys(step.after for step in taken if step.after not in found)
+            found.update(new)
+            todo += new
         return len(found)
 
     def _require(self, options: Options) -> None:
@@ -184,32 +211,44 @@ class _Explorer:
         if not self.alternatives:
             raise _GuiltyError
 
-    def _taken(self, here: Any, labels: Labels) -> Iterator[tuple[Step, Options]]:  # noqa: ANN401
-        """Every step that the model takes in a state and what explains it; urgent ones come first."""
-        taken = self.model.urgent(here)
+    def _taken(self, here: Any, labels: Labels) -> Iterator[Step]:  # noqa: ANN401
+        """Every step that the model takes in a state, each explained; urgent ones come first."""
+        allowed, own = self.honest.urgent(here)
+        taken = self.model.twist(here, own)
         if taken is not None:
-            yield taken, self._explained(here, taken, self.spec.urgent(here))
+            self._require(self._explained(here, taken, allowed))
+            yield taken
             return
-        if any(meet(self.model.choice, step.assumes) for step in self.spec.urgent(here)):
+        if own is not None:
             raise _GuiltyError
-        for request, free in labels.requests:
-            for refs in references(self.spec, here, free):
-                yield self._asked(here, request, refs)
+        yield from self._asked_all(here, labels)
         for event, free in labels.events:
             for refs in references(self.spec, here, free):
-                own = self.honest.model.happening(here, event, refs)
+                allowed = self.spec.drives[event.name].steps(here, event, refs)
+                own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
                 self.came_up = self.came_up or (own is not None and self.rule in own.rules)
-                happened = self.model.happening(here, event, refs)
+                happened = self.model.twist(here, own)
                 if happened is not None:
-                    allowed = self.spec.drives[event.name].steps(here, event, refs)
-                    yield happened, self._explained(here, happened, allowed)
+                    self._require(self._explained(here, happened, allowed))
+                    yield happened
+
+    def _asked_all(self, here: Any, labels: Labels) -> Iterator[Step]:  # noqa: ANN401 - of any system
+        for request, free in labels.requests:
+            for refs in references(self.spec, here, free):
+                step, options = self._asked(here, request, refs)
+                self._require(options)
+                yield step
+
+    def _passes(self, here: Any) -> bool:  # noqa: ANN401 - of any system
+        """Whether a state of the model does not last."""
+        return self.model.twist(here, self.honest.urgent(here)[1]) is not None
 
     def _asked(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
         own, options, rules = self.honest.answers(here, request, refs)
         self.came_up = self.came_up or self.rule in rules
         try:
-            asked = self.spec.request_operation(request) == self.operation
-            step = self.model.outcome(here, request, refs) if asked else self.model.twist(here, own)
+            differs = self.rules_differ and self.spec.request_operation(request) == self.operation
+            step = self.model.outcome(here, request, refs) if differs else self.model.twist(here, own)
         except _FAILS:
             raise _GuiltyError from None
         if step is None:
@@ -220,13 +259,14 @@ class _Explorer:
         if step is own:
             return step, options
         # What shows a state that does not last may be left out.
-        silent = not step.emits and self.model.urgent(step.after) is not None
-        return step, _explaining(self.system, here, request, refs, step, silent=silent)
+        silent = not step.emits and self._passes(step.after)
+        allowed = self.spec.outcomes(here, request, refs)
+        return step, _explaining(self.system, here, request, allowed, step, silent=silent)
 
     def _explained(self, here: Any, taken: Step, allowed: Iterable[Step]) -> Options:  # noqa: ANN401
         """What explains a step that answers nobody."""
         self.came_up = self.came_up or self.rule in taken.rules
-        passing = self.model.urgent(taken.after) is not None
+        passing = self._passes(taken.after)
         self._see(taken, passing=passing)
         # What shows a state that does not last may be left out.
         silent = passing and not taken.emits
@@ -242,29 +282,47 @@ class _Explorer:
             key = (emission, names)
             if key not in self._judged:
                 self._judged.add(key)
-                for options in self._shown(emission, names):
-                    self._require(options)
+                self._require_shown(emission, names)
 
-    def _shown(self, emission: Emission, named: int) -> Iterator[Options]:
+    def _require_shown(self, emission: Emission, named: int) -> None:
         if emission.only and not meet(self.model.choice, (emission.only,)):
             return
-        count = 1 + max((*(emission.refs or ()), named - 1), default=0)
-        names = tuple(f"n{number}" for number in range(count if emission.refs is None else len(emission.refs)))
-        codec = self.system.codec
-        message = self.bend(codec.write_message(emission.view, names, self.model.choice, 1, 0.0))
-        for _, _, rest in codec.strip(message):
-            matches = self.spec.matches(emission.view, codec.content(rest))
-            if isinstance(matches, Mismatch):
-                raise _GuiltyError
+        straightforward = self.bend is straight
+        found = self.honest.shows(emission, named) if straightforward else shown(self.model, emission, named, self.bend)
+        if isinstance(found, Mismatch):
+            raise _GuiltyError
+        for matches in found:
             self.came_up = self.came_up or any(self.rule in match.rules for match in matches)
-            yield frozenset(match.assumes for match in matches)
+            self._require(frozenset(match.assumes for match in matches))
+
+
+def shown(
+    model: Model, emission: Emission, named: int, bend: Callable[[JSON], JSON] = straight
+) -> tuple[tuple[Match, ...], ...] | Mismatch:
+    """Ways to explain each part of the message that a model makes of an emission, or what is wrong with one.
+
+    Args:
+        named: how many names the state has.
+        bend: what becomes of the message.
+    """
+    system = model.system
+    count = 1 + max((*(emission.refs or ()), named - 1), default=0)
+    names = tuple(map(system.naming.shown, range(count if emission.refs is None else len(emission.refs))))
+    message = bend(system.codec.write_message(emission.view, names, model.choice, 1, 0.0))
+    found = []
+    for _, _, rest in system.codec.strip(message):
+        matches = system.spec.matches(emission.view, system.codec.content(rest))
+        if isinstance(matches, Mismatch):
+            return matches
+        found.append(matches)
+    return tuple(found)
 
 
 def _explaining(  # noqa: PLR0913 - a step and where it is taken
     system: System,
     here: Any,  # noqa: ANN401 - of any system
     request: Any,  # noqa: ANN401 - of any system
-    refs: tuple[int | None, ...],
+    allowed: tuple[Step, ...],
     taken: Step,
     *,
     silent: bool = False,
@@ -273,15 +331,15 @@ def _explaining(  # noqa: PLR0913 - a step and where it is taken
     seen = _seen(taken, here, silent=silent)
     found = {
         (*step.assumes, *also)
-        for step in system.spec.outcomes(here, request, refs)
+        for step in allowed
         if _seen(step, here, silent=silent) == seen
         for also in _agreements(system, step.answer, taken.answer)
     }
     if taken.answer is not None and not taken.refs:
         failure = system.spec.failing(request, taken.answer.code)
-        nothing = evolve(taken, after=here, names=None, emits=(), opens=())
-        if failure is not None and not failure.driven and _seen(nothing, here) == seen:
-            found.add(failure.assumes)
+        if failure is not None and not failure.driven:
+            nothing = evolve(taken, after=here, names=None, emits=(), opens=())
+            found |= {failure.assumes} if _seen(nothing, here) == seen else set()
     return frozenset(found)
 
 

@@ -197,9 +197,12 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     return Bite(mutant.name, mutant.rule, killed=True, length=len(run.found.judge.history) - 1)
 
 
-@functools.lru_cache(maxsize=1)
+@functools.lru_cache(maxsize=2)
 def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> Honest:
-    """The reference under some readings; the mutants of a rule follow each other and share it."""
+    """The reference under some readings; the mutants of a rule follow each other and share it.
+
+    Those with the readings of the reference come again and again, so that it is in nobody's way that two are kept.
+    """
     return Honest(Model(system, dict(choice)))
 
 

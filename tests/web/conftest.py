@@ -1,16 +1,14 @@
-"""What the tests of the pages need: the command line as a process, and a real browser that notices what is wrong."""
+"""A real browser that notices what is wrong with a page."""
 
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from attrs import field, frozen
+from browsing import Opener, Seen
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = (
@@ -28,39 +26,6 @@ CLIPBOARD = """
         value: { writeText: (text) => { window.clipped = text; return Promise.resolve(); } },
     });
 """
-
-
-@frozen
-class Run:
-    """How a command ended."""
-
-    status: int
-    out: str
-    err: str
-
-
-def missionfsm(*arguments: object) -> Run:
-    """Run the command line as a process of its own."""
-    command = [sys.executable, "-m", "missionfsm", *map(str, arguments)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
-    return Run(ended.returncode, ended.stdout, ended.stderr)
-
-
-@frozen
-class Seen:
-    """A page in the browser, and what it asked for and complained of."""
-
-    page: Any
-    requests: list[str] = field(factory=list)
-    complaints: list[str] = field(factory=list)
-
-    def overflows(self) -> bool:
-        """Whether the page is wider than the window."""
-        wide: bool = self.page.evaluate("document.documentElement.scrollWidth > window.innerWidth")
-        return wide
-
-
-Opener = Callable[..., Seen]
 
 
 @pytest.fixture(scope="session")

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Opener, missionfsm
+from browsing import Opener, missionfsm
 
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import ANYTHING
 from missionfsm.pages.graph import Graph
+
+pytestmark = pytest.mark.slow
 
 # One mission of a server goes through as much as two of a robot.
 MISSIONS = {"bear.mission": 2, "bear.status": 1, "isaac.server": 1, "isaac.robot": 1}
@@ -164,6 +166,19 @@ def test_a_reading_that_is_switched_off_hides_its_answers(explorers: dict[str, P
     assert set(asked_alone) == {1}
 
 
+def test_a_reading_is_explained(explorers: dict[str, Path], open_page: Opener) -> None:
+    """The name of a reading beside an answer leads to its words, also on a phone, also where they are folded away."""
+    page = open_page(explorers["bear.mission"], "phone").page
+    page.locator("#readings-card > summary").click()
+    chip = page.locator(".assumes").first
+    reading = page.locator(f"[data-ambiguity='{chip.inner_text().partition(' = ')[0]}']")
+    assert not reading.is_visible()
+    chip.click()
+    assert reading.is_visible()
+    top = reading.evaluate("(one) => one.getBoundingClientRect().top")
+    assert 0 <= top < page.evaluate("innerHeight")
+
+
 def test_a_step_rules_readings_out(explorers: dict[str, Path], open_page: Opener) -> None:
     """After a step that assumes a reading the others of its ambiguity cannot be switched on any more."""
     page = open_page(explorers["bear.mission"]).page
@@ -210,5 +225,5 @@ def test_the_bounds_are_told(explorers: dict[str, Path], open_page: Opener) -> N
     told = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
     steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
     assert told.startswith(f"{len(graph['states'])} states and {steps} steps")
-    assert "at most 1 listed missions, 2 goals each, batches of 1" in told
-    assert "more states than this page holds" not in told
+    assert "within the bounds missions 1, goals 2, batch 1" in told
+    assert "more than this page holds" not in told

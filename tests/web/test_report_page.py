@@ -8,12 +8,14 @@ from pathlib import Path
 
 import orjson
 import pytest
-from conftest import Opener, missionfsm
+from browsing import Opener, missionfsm
 
 from missionfsm.pages.outline import Standing
 from missionfsm.pages.render import specification_page
 from missionfsm.systems import system
 from missionfsm.tools.specpages import clauses
+
+pytestmark = pytest.mark.slow
 
 SUBJECT = Path(__file__).parent.parent / "subjects" / "bear_mission.mjs"
 BROKEN = "bear.mission/CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued"

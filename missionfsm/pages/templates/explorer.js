@@ -2,7 +2,8 @@
 const graph = JSON.parse(document.getElementById("graph").textContent);
 const BEYOND = -1, HERE = -2;
 const at = (id) => document.getElementById(id);
-const doings = graph.doings.map(([kind, group, words, line, refs, brings]) => ({ kind, group, words, line, refs, brings }));
+const doings = graph.doings.map(([kind, group, words, line, refs, kinds, brings]) => (
+  { kind, group, words, line, refs, kinds, brings }));
 const effects = graph.effects.map(([code, answer, result, keeps, adds, refs, rules, assumes, label, opens, closes, sends]) => (
   { code, answer, result, keeps, adds, refs, rules, assumes: graph.assumes[assumes], label, opens, closes, sends }));
 const ambiguities = new Map(graph.ambiguities.map((one) => [one.id, one]));
@@ -185,10 +186,11 @@ function test(frame) {
   const lines = frame.lines.map((line) => "    " + JSON.stringify(JSON.stringify(line)) + ",").join("\n");
   return graph.test.replace(/^.*$/gm, (line) => (line.includes(graph.standIn) ? lines : line));
 }
+// Names are shown as they are written: a mission's as its text, another's as its kind and its number.
+const named = (kind, serial) => (kind ? `${kind} ${serial}` : `mission-${serial}`);
 function about(frame, doing) {
-  const names = doing.refs.map((ref) => (ref === null ? null : frame.names[ref]));
-  if (doing.kind !== "call" || !names.length) return "";
-  return " of " + names.map((name) => (name === null ? "a mission that is not there" : `mission-${name}`)).join(", ");
+  const names = doing.refs.map((ref, i) => (ref === null ? `an unknown ${doing.kinds[i] || "mission"}` : ref < frame.names.length ? named(doing.kinds[i], frame.names[ref]) : null)).filter(Boolean);
+  return names.length ? ` of ${names.join(", ")}` : "";
 }
 function answered(frame, move) {
   const { effect } = move;
@@ -246,6 +248,14 @@ function showDoings(frame) {
       hidden ? made("div", { class: "hidden-note soft small" }, `${hidden} more under readings that are switched off or ruled out`) : null)];
   }));
 }
+// What a reading is called means little without its words.
+function explain(id) {
+  const reading = document.querySelector(`[data-ambiguity="${id}"]`);
+  for (let part = reading; part; part = part.parentElement) if (part.tagName === "DETAILS") part.open = true;
+  reading.scrollIntoView({ block: "center" });
+  reading.classList.add("shown");
+  setTimeout(() => reading.classList.remove("shown"), 2000);
+}
 function answer(frame, move) {
   const { effect } = move;
   const beyond = move.to === BEYOND;
@@ -255,7 +265,7 @@ function answer(frame, move) {
   return made("div", { class: "answer" },
     made("button", { type: "button", class: kind, disabled: beyond, "data-move": String(move.index), title: beyond ? "It leads beyond the bounds of this page." : move.to === HERE ? "Nothing changes." : "", onclick: () => take(move.index) },
       answered(frame, move) + (move.to >= 0 ? " →" : ""), detail ? made("small", {}, detail) : null, beyond ? made("small", {}, "beyond the bounds") : null),
-    made("div", { class: "why" }, ...effect.assumes.map(([id, letters]) => made("span", { class: "assumes", title: ambiguities.get(id).question + "\n" + [...letters].map((letter) => `${letter}: ${ambiguities.get(id).readings[letter]}`).join("\n") }, `${id} = ${[...letters].join(" or ")}`)),
+    made("div", { class: "why" }, ...effect.assumes.map(([id, letters]) => made("button", { type: "button", class: "assumes", onclick: () => explain(id), title: ambiguities.get(id).question + "\n" + [...letters].map((letter) => `${letter}: ${ambiguities.get(id).readings[letter]}`).join("\n") }, `${id} = ${[...letters].join(" or ")}`)),
       made("ul", {}, ...effect.rules.map((rule) => made("li", {}, graph.rules[rule].says + " ", made("span", { class: "cite" }, `[${graph.rules[rule].cite}]`))),
         ...effect.sends.map(([, sent]) => made("li", {}, "sends " + sent)))));
 }

@@ -11,9 +11,9 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import introduce
-from missionfsm.tools.distinguish import reference
 from missionfsm.tools.guide import Guide
 from missionfsm.tools.run import Run
+from missionfsm.tools.subject import Reference
 
 BOUNDS = Bounds(missions=4, goals=3)
 
@@ -43,7 +43,7 @@ def combination(system: System, seed: int) -> dict[str, str]:
 def wrong(bench: Bench, choice: Mapping[str, str], seed: int, examples: int, steps: int) -> str:
     """What is wrong with the judgement of a reference that follows a combination of readings; empty if nothing is."""
     system = bench.system
-    subject = reference(system, choice)
+    subject = Reference(system, choice)
     run = Run(system, subject, introduce(system, subject), bench.automaton, BOUNDS, guide=bench.guide.fresh())
     if not (run.play() and run.tour(random.Random(seed), examples, steps)):
         if run.found is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import secrets
 import sys
 import time
@@ -24,6 +25,7 @@ from missionfsm.cli.common import (
 )
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
 from missionfsm.cli.progress import Bar
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 from missionfsm.systems import names
 
@@ -78,13 +80,17 @@ def conform(  # noqa: PLR0913 - options of the command
         ),
     ] = None,
     tolerance: Annotated[float, typer.Option(help="Over TCP: seconds that times may be off.")] = 0.2,
-    record: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history of a violation.")] = None,
+    record: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="Write the history of a violation; as a pytest function to .py, as Mermaid to .mmd."
+        ),
+    ] = None,
     json: JsonFile = None,
     html: HtmlFile = None,
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
-    from missionfsm.adapters.historyfile import write_history  # noqa: PLC0415 - commands load what they need
-    from missionfsm.adapters.stdio import Child  # noqa: PLC0415
+    from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.bridged import Sockets, bridged  # noqa: PLC0415
     from missionfsm.tools.conform import DEFAULT_EXAMPLES, DEFAULT_TOURS  # noqa: PLC0415
     from missionfsm.tools.conform import conform as judge  # noqa: PLC0415
@@ -120,11 +126,26 @@ def conform(  # noqa: PLR0913 - options of the command
         finally:
             child.close()
         if record and verdict.violation:
-            write_history(record, verdict.violation.history)
+            _record(record, judged, verdict.violation.history)
     write_json(json, verdict.to_json())
     write_report(html, ("", None, verdict))
     say(str(verdict), json=json)
     raise typer.Exit(DONE if verdict.conforms else FAILED)
+
+
+def _record(path: str, system: System, history: tuple[JSON, ...]) -> None:
+    """Write a history in the form that the name of the file asks for."""
+    from missionfsm.adapters.historyfile import write_history, write_whole  # noqa: PLC0415
+    from missionfsm.tools.story import as_mermaid, as_pytest  # noqa: PLC0415
+
+    form = Path(path).suffix
+    if form == ".py":
+        name = re.sub(r"\W+", "_", Path(path).stem.removeprefix("test_")).strip("_") or system.name.replace(".", "_")
+        write_whole(path, as_pytest(history, name).encode())
+    elif form == ".mmd":
+        write_whole(path, as_mermaid(system, history).encode())
+    else:
+        write_history(path, history)
 
 
 def _known(path: str | None, *judged: System) -> tuple[str, ...]:

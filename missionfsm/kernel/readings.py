@@ -106,7 +106,8 @@ def meet(assumed: int, assumptions: Iterable[Assumption]) -> int:
 def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = None) -> int:
     """One reading of every ambiguity: the defaults, but for those in `choice` (ambiguity id to letter).
 
-    An id without its part (``AM-14`` for ``AM-14.paused``) speaks for every part that has the letter.
+    An id without its part (``AM-14`` for ``AM-14.paused``) speaks for every part that has the letter, unless there is
+    an ambiguity with just that id.
 
     Raises:
         ValueError: an ambiguity or a letter that does not exist.
@@ -124,7 +125,8 @@ def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> in
     ambiguities = tuple(ambiguities)
     assumed = ANYTHING
     for name, letter in choice.items():
-        named = [one for one in ambiguities if name in (one.id, one.id.partition(".")[0])]
+        named = [one for one in ambiguities if one.id == name]
+        named = named or [one for one in ambiguities if one.id.partition(".")[0] == name]
         if not named:
             known = ", ".join(one.id for one in ambiguities)
             msg = f"there is no ambiguity {name}; there are {known}"

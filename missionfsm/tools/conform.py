@@ -34,6 +34,9 @@ from missionfsm.tools.verdict import Outcome, Verdict
 DEFAULT_EXAMPLES = 100
 DEFAULT_STEPS = 40
 DEFAULT_TOURS = 60
+AGAIN = 0.6
+"""How often what the surroundings did happens once more at once: goal after goal, say."""
+
 CHOICES = 12
 """Among how many of the least walked edges a guided step draws."""
 
@@ -115,7 +118,7 @@ def search(run: Run, examples: int, steps: int, tours: int, seed: int) -> bool:
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    if not (run.play() and run.tour(random.Random(seed), tours, steps)):  # noqa: S311 - no secret
+    if not (run.play() and run.tour(random.Random(seed), tours, steps, again=AGAIN)):  # noqa: S311 - no secret
         return True
     try:
         with with_reporter(lambda _: None), contextlib.suppress(_Found):
@@ -169,13 +172,13 @@ def verdict_of(
         flagged(spec, followed),
         story(run.system, violation.history) if violation and run.found is not None else "",
         by_ambiguity(spec.ambiguities, run.rulings),
-        tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
+        tuple(trial.told(run.system) for trial in proposed(run)) if advice and not run.enough() else (),
         rare=rare(run.system, exercised, run.steps, followed) if advice else {},
         known={rule: times for rule, times in known.met.items() if times},
         notes=notes,
     )
     # A search that was stopped says nothing of what it did not come to.
-    return verdict if notes else held_against(verdict, known.stale)
+    return verdict if run.enough() else held_against(verdict, known.stale)
 
 
 def _does_anything(run: Run) -> bool:

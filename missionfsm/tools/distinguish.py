@@ -18,7 +18,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, meet
+from missionfsm.kernel.readings import Ambiguity, meet
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import WRONG_NAME, Action, Conversation, Given, Introduced, Picks
@@ -95,21 +95,6 @@ class _Move:
     plain: bool = True
 
 
-def reference(system: System, choice: Mapping[str, str]) -> Reference:
-    """The reference under a reading for each ambiguity by its own id; those that are left out follow their defaults.
-
-    In a choice that people write an id may speak for several ambiguities (``AM-53`` for ``AM-53.charge`` too).
-    """
-    subject = Reference(system)
-    _following(subject.model, choice)
-    return subject
-
-
-def _following(model: Model, choice: Mapping[str, str]) -> Model:
-    model.choice = meet(ANYTHING, (one[choice.get(one.id, one.default)] for one in model.system.spec.ambiguities))
-    return model
-
-
 class Lab:
     """Looks for experiments.
 
@@ -158,7 +143,7 @@ class Lab:
 
     def play(self, letter: tuple[str, str], world: JSON, actions: Iterable[Action]) -> Conversation:
         """The conversation with the reference that follows a reading besides what has been decided."""
-        subject = reference(self.guide.system, {**self.choice, letter[0]: letter[1]})
+        subject = Reference(self.guide.system, {**self.choice, letter[0]: letter[1]})
         conversation = Conversation(self.guide.system, subject, self.about, world, self.automaton)
         for action in actions:
             if not conversation.perform(action):
@@ -174,7 +159,7 @@ class _Search:
         self.system = lab.system
         self.ambiguity = ambiguity
         self.letters = letters
-        self.models = [_following(Model(self.system), {**lab.choice, ambiguity.id: letter}) for letter in letters]
+        self.models = [Model(self.system, {**lab.choice, ambiguity.id: letter}) for letter in letters]
         self.wanted = set(itertools.permutations(letters, 2))
         self.doubts = dict.fromkeys(letters, 0)
         self.effort = lab.effort

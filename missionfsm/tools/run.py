@@ -250,11 +250,19 @@ class Run:
             if position < len(known):
                 yield slot, known[position]
 
-    def tour(self, draw: random.Random, conversations: int, steps: int, favour: str | None = None) -> bool:
+    def tour(
+        self,
+        draw: random.Random,
+        conversations: int,
+        steps: int,
+        favour: str | None = None,
+        again: float = 0.0,
+    ) -> bool:
         """Systematic conversations: every step walks the edge that was walked least, mostly with a stream watched.
 
         Args:
             favour: an operation or drive to turn to again and again.
+            again: how often what the surroundings just did happens once more at once, where it leads elsewhere.
 
         Returns:
             whether everything could be explained.
@@ -267,7 +275,8 @@ class Run:
             self.start(self.guide.worlds[world])
             if len(streams) == 1 and number % 4 != 3 and not self.act(streams[0], {}):
                 return False
-            for _ in range(steps):
+            left = iter(range(steps))
+            for _ in left:
                 proposal = self._next(draw, world, favour if number % 2 else None)
                 if proposal is None or self.over or self.enough():
                     break
@@ -275,9 +284,23 @@ class Run:
                     return False
                 if draw.random() < SETTLED and not self._look(world):
                     return False
+                while again and draw.random() < again and not self.over:
+                    more = self._once_more(proposal, world)
+                    if more is None or next(left, None) is None:
+                        break
+                    if not (self.take_up(more) and self.act("settle")):
+                        return False
             if not self.act("settle") or not self.gather():
                 return False
         return True
+
+    def _once_more(self, done: Proposal, world: int) -> Proposal | None:
+        """The same drive again, if it leads elsewhere: some of what can go wrong is many goals away."""
+        if done.method != "drive" or self.last is None:
+            return None
+        found = self.guide.proposals(self.last, world, done.params["event"])
+        same = (one for one in found if one.params == done.params and one.leads_to != one.edge[0])
+        return next(same, None)
 
     def _look(self, world: int) -> bool:
         """Wait for everything to settle and see where things stand."""

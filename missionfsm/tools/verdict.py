@@ -12,6 +12,9 @@ from missionfsm.kernel.codec import JSON
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
 
+MOST_RARE = 10
+"""How many of the rules that came up seldom a person is told."""
+
 SHORT = 72
 """How much of an event a line of the verdict has room for."""
 
@@ -183,6 +186,7 @@ class Verdict:
             "stale": list(self.stale),
             "notes": list(self.notes),
             "because": self.because,
+            "story": self.story.splitlines(),
             "violation": None
             if self.violation is None
             else {
@@ -216,10 +220,20 @@ class Verdict:
         total = len(self.exercised) + len(self.uncovered)
         if total:
             lines += ["", f"rules exercised: {len(self.exercised)} of {total}"]
-        if self.rare:
-            lines.append(f"fewer than {RATE} times in {PER:,} steps:")
-            lines += [f"  {rule}: {why}" for rule, why in self.rare.items()]
+        lines += self._rarely()
         return "\n".join(lines)
+
+    def _rarely(self) -> list[str]:
+        """The rules that came up least, but for those that belong to readings that are not followed."""
+        least = sorted(
+            (rule for rule in self.rare if rule in self.exercised or rule in self.uncovered),
+            key=lambda rule: self.exercised.get(rule, 0),
+        )
+        if not least:
+            return []
+        lines = [f"fewer than {RATE} times in {PER:,} steps: {len(least)} rules, the rarest of them"]
+        lines += [f"  {rule}, {self.exercised.get(rule, 0)} times: {self.rare[rule]}" for rule in least[:MOST_RARE]]
+        return lines
 
     def _told(self, name: str, letters: tuple[str, ...]) -> str:
         """The readings of an ambiguity that are left, and what ruled out the others."""

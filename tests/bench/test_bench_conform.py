@@ -25,8 +25,8 @@ from missionfsm.kernel.subject import Exchange
 from missionfsm.systems import names, system
 from missionfsm.tools.conform import conform, search
 from missionfsm.tools.conversation import introduce
-from missionfsm.tools.distinguish import reference
 from missionfsm.tools.run import Run
+from missionfsm.tools.subject import Reference
 
 MISSION = system("bear.mission")
 NODE = shutil.which("node")
@@ -48,7 +48,7 @@ class _Recorded:
 
 
 def _recording(exchanges: list[Exchange]) -> Any:
-    subject = reference(MISSION, {})
+    subject = Reference(MISSION, {})
     ask = subject.exchange
 
     def exchange(method: str, params: JSON) -> Exchange:
@@ -72,24 +72,24 @@ def _seconds(work: Callable[[], object]) -> float:
 def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
     """Steps a second with the reference in process; the same actions had again show what Hypothesis is of it."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
-    search(_run(reference(MISSION, {}), automaton), TIMES, 30, 0, 1)  # the automaton knows the way from here on
+    search(_run(Reference(MISSION, {}), automaton), TIMES, 30, 0, 1)  # the automaton knows the way from here on
     had: list[tuple[Any, tuple[Any, ...]]] = []
 
     def note(run: Run) -> None:
         if run.last is not None:
             had.append((run.last.world, tuple(run.last.actions)))
 
-    run = _run(reference(MISSION, {}), automaton)
+    run = _run(Reference(MISSION, {}), automaton)
     run.progress = note
     whole = benchmark.pedantic(lambda: _seconds(lambda: search(run, TIMES, 30, 0, 1)), rounds=1)
-    again = _run(reference(MISSION, {}), automaton)
+    again = _run(Reference(MISSION, {}), automaton)
     alone = _seconds(lambda: [again.attempt(world, actions) for world, actions in had])
     exchanges: list[Exchange] = []
     recorder = _run(_recording(exchanges), automaton)
     exchanges.clear()
     for world, actions in had:
         recorder.attempt(world, actions)
-    player = _run(reference(MISSION, {}), automaton)
+    player = _run(Reference(MISSION, {}), automaton)
     player.subject = _Recorded(exchanges)
     judging = _seconds(lambda: [player.attempt(world, actions) for world, actions in had])
     print(
@@ -102,7 +102,7 @@ def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
 def test_bench_conform_tours(benchmark: Any) -> None:
     """Steps a second of systematic conversations, which need no Hypothesis."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
-    run = _run(reference(MISSION, {}), automaton)
+    run = _run(Reference(MISSION, {}), automaton)
     took = benchmark.pedantic(lambda: _seconds(lambda: run.tour(random.Random(1), TIMES, 30)), rounds=1)
     print(f"\n{run.steps / took:,.0f} steps a second")
 

@@ -77,6 +77,14 @@ def test_an_entry_speaks_for_all_its_parts() -> None:
     }
 
 
+def test_an_exact_id_speaks_for_itself_alone() -> None:
+    """Where an ambiguity has the id of an entry, that id decides it and not the parts."""
+    hour = Ambiguity("R-2", "Which?", {"a": "this", "b": "that"}, default="a")
+    part = Ambiguity("R-2.part", "Which part?", {"a": "this", "b": "that"}, default="a")
+    both = choose((hour, part), {"R-2": "b"})
+    assert (hour.possible(both), part.possible(both)) == (("b",), ("a",))
+
+
 @pytest.mark.parametrize(
     ("wish", "message"),
     [

@@ -11,7 +11,6 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import system
-from missionfsm.tools.distinguish import reference
 from missionfsm.tools.subject import Reference
 
 MISSION = system("bear.mission")
@@ -34,7 +33,7 @@ class Fickle:
     """Follows one reading of an ambiguity after one reset and another one after the next."""
 
     def __init__(self, name: str, letters: str) -> None:
-        self._all: list[Subject] = [reference(MISSION, {name: letter}) for letter in letters]
+        self._all: list[Subject] = [Reference(MISSION, {name: letter}) for letter in letters]
         self._resets = 0
 
     def exchange(self, method: str, params: JSON) -> Exchange:

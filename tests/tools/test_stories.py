@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import functools
+import sys
 from pathlib import Path
 
+import orjson
 import pytest
 from broken import BUSY, EMPTY, MISSION, Fickle, answering
+from commandline import CommandLine
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.kernel.transcript import head
 from missionfsm.tools.check import check
 from missionfsm.tools.conform import conform
-from missionfsm.tools.distinguish import reference
 from missionfsm.tools.story import as_mermaid, as_pytest, story, suspects
+from missionfsm.tools.subject import Reference
 from missionfsm.tools.verdict import Verdict
 
 HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
@@ -131,7 +134,7 @@ def test_the_pytest_function_fails_for_what_was_found(tmp_path: Path) -> None:
     wrong = history(found("NOT_FOUND", BUSY))
     first, *lines = wrong
     done = [line for line in lines if "call" in line or "drive" in line or "settled" in line]
-    subject = reference(MISSION, {})
+    subject = Reference(MISSION, {})
     right = [first]
     subject.exchange("reset", {"world": first["world"]})
     for line in done:
@@ -185,3 +188,16 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     assert [note.partition(" is ruled out: ")[0] for note in notes] == ["a", "b", "c"]
     assert any("was answered INVALID_ARGUMENT" in note for note in notes)
     assert any("was answered FAILED_PRECONDITION" in note for note in notes)
+
+
+def test_a_violation_is_recorded_in_the_form_that_is_asked_for(tmp_path: Path, command_line: CommandLine) -> None:
+    """A history that `check` reads, a pytest function, a sequence diagram: by the name of the file."""
+    for name in ("found.jsonl", "test_found.py", "found.mmd"):
+        ended = command_line(
+            *("conform", "bear.mission", "--seed", 1, "--examples", 1, "--record", tmp_path / name, "--json", "-"),
+            *("--", sys.executable, Path(__file__).parent / "wrong_adapter.py"),
+        )
+        assert (ended.status, orjson.loads(ended.out)["story"][-1].endswith("→ NOT_FOUND")) == (1, True)
+    assert command_line("check", tmp_path / "found.jsonl").status == 1
+    assert "def test_found() -> None:" in (tmp_path / "test_found.py").read_text()
+    assert (tmp_path / "found.mmd").read_text().startswith("sequenceDiagram\n")

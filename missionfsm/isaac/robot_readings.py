@@ -1,4 +1,4 @@
-"""Where the page can be read in more than one way as to the robot's side; ``specs/isaac-missions.md`` argues each."""
+"""Where the page can be read in more than one way as to the robot's side; ``specs/isaac-robot.md`` argues each."""
 
 from __future__ import annotations
 

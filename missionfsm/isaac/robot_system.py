@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from missionfsm.isaac.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
+from missionfsm.isaac.robot_breaks import BENDS, TWISTS
 from missionfsm.isaac.robot_json import CODEC
 from missionfsm.isaac.robot_sketches import SKETCHES
 from missionfsm.isaac.robot_spec import SPEC
@@ -87,7 +88,7 @@ def _make(kind: str, serial: int) -> Any:  # noqa: ANN401 - a name
     return new_uuid(serial) if kind == "uuid" else (kind, serial)
 
 
-NAMING = Naming(_write, _make)
+NAMING = Naming(_write, _make, new_uuid)
 """Identifiers as two decimal strings, all other names by their number."""
 
 _PLAIN: JSON = {
@@ -96,4 +97,4 @@ _PLAIN: JSON = {
         '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"{}"}}}'
     ),
 }
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, sketches=SKETCHES)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, sketches=SKETCHES)

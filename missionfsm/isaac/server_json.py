@@ -14,7 +14,7 @@ from missionfsm.isaac.server_links import BAD, FOREIGN, NAME, NOISE, STATUS, Hea
 from missionfsm.isaac.server_readings import AI_25_HEADER, AI_28_CONFIG
 from missionfsm.isaac.server_rules import Submission
 from missionfsm.isaac.server_spec import SPEC, Connects, Drops, Passes, Statuses
-from missionfsm.isaac.server_state import Sends
+from missionfsm.isaac.server_state import Sends, World
 from missionfsm.isaac.sight import MICROSECONDS, canonical, from_json, new_uuid, see, to_json, uuid_name
 from missionfsm.isaac.wire import WireError, decode_line, encode
 from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
@@ -31,15 +31,23 @@ def _refuse(says: str) -> UnreadableError:
     return UnreadableError(says)
 
 
-def world(given: JSON) -> str:
-    """The name channel of a world."""
+def world(given: JSON) -> World:
+    """The name channel of a world, and by how many seconds the times of a history may be off."""
     given = given or {}
-    if not isinstance(given, dict) or not set(given) <= {"nameChannel"}:
-        raise _refuse(f"world: isaac.server has nameChannel only, not {brief(given)}")
-    channel = given.get("nameChannel", "name")
+    if not isinstance(given, dict) or not set(given) <= {"nameChannel", "tolerance"}:
+        raise _refuse(f"world: isaac.server has nameChannel and tolerance only, not {brief(given)}")
+    channel, tolerance = given.get("nameChannel", "name"), given.get("tolerance", 0)
     if not isinstance(channel, str) or not channel:
         raise _refuse(f"world.nameChannel: {brief(channel)} is not the name of a channel")
-    return channel
+    if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not 0 <= tolerance < math.inf:
+        raise _refuse(f"world.tolerance: {brief(tolerance)} is no number of seconds from 0 on")
+    return World(channel, round(tolerance * MICROSECONDS))
+
+
+def write_world(given: World) -> JSON:
+    """The parameters of a world."""
+    exact: JSON = {"nameChannel": given.name_channel}
+    return {**exact, "tolerance": given.tolerance / MICROSECONDS} if given.tolerance else exact
 
 
 # Calls.
@@ -91,7 +99,7 @@ class _Reader:
         config = self._config()
         defects = tuple(one for one in rules.DEFECTS if one in self.defects)
         channel = "mission" if channel is None else channel
-        return Submission(robot or None, channel, status_channel, config, start, run, upstream, defects)
+        return Submission(robot, channel, status_channel, config, start, run, upstream, defects)
 
     def _text(self, key: str) -> str | None:
         value = self.mission.get(key)
@@ -305,7 +313,7 @@ CODEC = Codec(
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
-    write_world=lambda channel: {"nameChannel": channel},
+    write_world=write_world,
     write_drive=write_drive,
     write_happened=write_happened,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.isaac import server_rules as rules
 from missionfsm.isaac.server_moves import Moves, acknowledged, closed, ends, lost, started
@@ -34,12 +34,13 @@ from missionfsm.isaac.server_state import (
     split,
     ways,
 )
+from missionfsm.kernel.values import value
 
 STATUS_CHANNEL = "mission_status"
 NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Heard:
     """A line that a robot sends.
 

@@ -52,7 +52,7 @@ Moves = Iterator[Move]
 
 def slack(state: Server) -> int:
     """How much later than it is due something is noticed at the latest, in microseconds."""
-    return LOOK if state.letters(AI_39) == "b" else 0
+    return state.tolerance + (LOOK if state.letters(AI_39) == "b" else 0)
 
 
 def looks(move: Move) -> Move:
@@ -77,7 +77,8 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     rest = tuple(one for one in mission.clocks if (one.kind, one.since) != (kind, since))
     low, high = move.at
     hi = None if kind == SILENT else time + high + slack(move.state)
-    clocks = sorted((*rest, Clock(kind, since, time + low, hi)), key=lambda one: (one.kind, one.since))
+    lo = max(0, time + low - move.state.tolerance)
+    clocks = sorted((*rest, Clock(kind, since, lo, hi)), key=lambda one: (one.kind, one.since))
     return move.mission(index, clocks=tuple(clocks))
 
 
@@ -162,7 +163,10 @@ def dispatches_to(move: Move, link: Link) -> Moves:
             yield anybody
             yield nobody
             return
-    for index, chosen in _choices(move, link):
+    choices = list(_choices(move, link))
+    # Where it is decided whether anything may be sent, that it may be is decided although nothing is sent yet.
+    decides = any(index is None and chosen is not move for index, chosen in choices)
+    for index, chosen in choices:
         if index is None:
             if chosen is not move:
                 yield chosen
@@ -172,6 +176,8 @@ def dispatches_to(move: Move, link: Link) -> Moves:
             yield from sends(now, link, index)
         if later is not None and later.state.letters(AI_39) != chosen.state.letters(AI_39):
             yield looks(later)
+        elif later is not None and decides and later.state != move.state:
+            yield later
 
 
 def possible(state: Server, link: Link) -> list[tuple[int, Move]]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from attrs import frozen
-
 from missionfsm.isaac.server_readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_33_NULL
 from missionfsm.isaac.server_state import SYSTEM, Server
 from missionfsm.isaac.sight import MISSION_SUBMISSION as PAGE
 from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, rule
+from missionfsm.kernel.values import value
 
 KEYS = PAGE["Sample Usage", "Key"]
 SERVER = PAGE["MissionServer Class"]
@@ -16,7 +15,7 @@ NAMES = PAGE["Robot Identification"]
 CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Submission:
     """A mission that is submitted, or what is wrong with it; `upstream` says how many handles it names.
 
@@ -48,7 +47,7 @@ MALFORMED, HANDLE, NEGATIVE, KEY, NULL, EMPTY, NO_NAME, NULL_CONFIG = DEFECTS = 
 )
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Ask:
     """A submission with the missions that its handles mean; None for a handle that is nobody's."""
 

@@ -1,7 +1,7 @@
 """Conversations worth having with a mission server, whole: each goes where chance seldom does.
 
-After everything that may have consequences there is a second's pause, for servers that look about once a second
-(AI-39 b), and the statuses are asked for.
+After everything that may have consequences there is a pause of more than a second, for servers that look about once a
+second (AI-39 b), and the statuses are asked for.
 """
 
 from __future__ import annotations
@@ -11,6 +11,9 @@ from missionfsm.kernel.alphabet import Line, as_text, pick, upcoming
 from missionfsm.kernel.codec import JSON
 
 A, B = "carter-01", "carter-02"
+PAUSE = 1.3
+"""Seconds: more than a server takes that looks about once a second, and no part of any timeout."""
+
 MISSION, OTHER, LINK, UUID = 0, 1, 2, 3
 """The slots: two missions that are named as upstreams, a connection, and the mission that a status is about."""
 
@@ -47,7 +50,7 @@ class _Script:
         self.lines += [Line("settle"), Line("statuses", {})]
         return self
 
-    def wait(self, seconds: float = 1) -> _Script:
+    def wait(self, seconds: float = PAUSE) -> _Script:
         self.lines.append(Line("drive", {"event": "advance", "seconds": seconds}))
         return self.look()
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.isaac import server_rules as rules
 from missionfsm.isaac.server_links import Heard, connects, drops, hears
@@ -25,6 +25,7 @@ from missionfsm.isaac.server_readings import (
     AMBIGUITIES,
 )
 from missionfsm.isaac.server_rules import OPERATIONS, RULES, Ask, Submission
+from missionfsm.isaac.server_shapes import extent, idle_shape, outline, shape, size
 from missionfsm.isaac.server_state import (
     ENDED,
     FAILURES,
@@ -45,15 +46,16 @@ from missionfsm.isaac.server_state import (
     topic,
 )
 from missionfsm.isaac.server_time import at_any_time, passes
-from missionfsm.isaac.sight import MICROSECONDS, Said
+from missionfsm.isaac.sight import Said
 from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.rules import OK, decide
+from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.values import value
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Passes:
     """Time passes, in microseconds."""
 
@@ -61,21 +63,21 @@ class Passes:
     name: str = "advance"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Connects:
     """A robot connects; the event's name is the connection's."""
 
     name: str = "connect"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Drops:
     """A connection drops; the event's name is the connection's."""
 
     name: str = "disconnect"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Statuses:
     """The statuses of all missions are asked for."""
 
@@ -111,10 +113,15 @@ def _step(
 # Calls.
 
 
-def _outcomes(server: Server, request: Submission | Statuses, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _outcomes(
+    operations: Mapping[str, Operation],
+    server: Server,
+    request: Submission | Statuses,
+    refs: tuple[int | None, ...],
+) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
         return tuple(_shown(server))
-    return _submitted(server, request, tuple(_mission_at(server, ref) for ref in refs))
+    return _submitted(operations["submit"], server, request, tuple(_mission_at(server, ref) for ref in refs))
 
 
 def _mission_at(server: Server, ref: int | None) -> int | None:
@@ -123,8 +130,9 @@ def _mission_at(server: Server, ref: int | None) -> int | None:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _submitted(server: Server, request: Submission, upstream: tuple[int | None, ...]) -> tuple[Step, ...]:
-    operation = OPERATIONS["submit"]
+def _submitted(
+    operation: Operation, server: Server, request: Submission, upstream: tuple[int | None, ...]
+) -> tuple[Step, ...]:
     ask = Ask(request, upstream)
     found: list[Step] = []
     for decision in decide(operation.blocking(server, ask)):
@@ -224,7 +232,14 @@ def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple
 
 @functools.lru_cache(maxsize=20_000)
 def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for move in merged(passes(server, event.time)))
+    return tuple(_step(server, _quiet(server, move)) for move in merged(passes(server, event.time)))
+
+
+def _quiet(before: Server, move: Move) -> Move:
+    """The move with what it shows of missions that go on though their robots say nothing."""
+    pairs = zip(before.missions, move.state.missions, strict=True)
+    goes_on = any(one.status is Status.RUNNING is other.status for one, other in pairs)
+    return move.to(move.state, rules.SILENCE.id) if goes_on else move
 
 
 def _urgent(server: Server) -> tuple[Step, ...]:
@@ -345,37 +360,6 @@ POSSIBILITIES = tuple(
 )
 
 
-def _shape(server: Server) -> object:
-    """What a search tells a server apart by: how each robot's missions stand and who is connected, not the times."""
-    robots = dict.fromkeys((*(one.robot for one in server.missions), *(one.name for one in server.links)))
-    return tuple(sorted((_robot_shape(server, robot) for robot in robots), key=repr))
-
-
-def _robot_shape(server: Server, robot: str | None) -> object:
-    own = [one for one in server.missions if one.robot == robot]
-    under_way = tuple(
-        (one.status.value, one.run is not None, one.channel, one.link is None) for one in own if one.status in UNDER_WAY
-    )
-    queued = [one for one in own if one.status is Status.QUEUED]
-    ready = min(2, sum(one.ready for one in queued))
-    waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
-    doomed = any(one.doomed for one in queued)
-    ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
-    links = tuple(one.serves for one in server.links if one.name == robot)
-    return under_way, ready, waiting, doomed, ended, links
-
-
-def _idle_shape(server: Server) -> object:
-    """The same for what has no effect: whether something is under way, and whether a robot is there."""
-    return any(one.status in UNDER_WAY for one in server.missions), any(one.serves for one in server.links)
-
-
-def _size(server: Server) -> int:
-    """How many missions have not ended; or connections, or half of all missions, if that is more."""
-    open_ones = sum(one.status not in ENDED for one in server.missions)
-    return max(open_ones, (len(server.missions) + 1) // 2, len(server.links))
-
-
 def describe(value: object) -> str:
     """A state, an event, a request, a view or a line in a few words."""
     from missionfsm.isaac.server_words import describe as words  # noqa: PLC0415 - words are for people and seldom needed
@@ -383,37 +367,44 @@ def describe(value: object) -> str:
     return words(value)
 
 
-SPEC = Spec(
-    system=SYSTEM,
-    title="a mission server",
-    initial=Server,
-    operations=OPERATIONS,
-    outcomes=_outcomes,
-    drives={
-        one.name: one
-        for one in (
-            Drive("connect", _connect),
-            Drive("line", _line),
-            Drive("disconnect", _disconnect, ends=True),
-            Drive("advance", _advance),
-        )
-    },
-    urgent=_urgent,
-    spontaneous=_spontaneous,
-    matches=_matches,
-    delivery=lambda _: Delivery(),
-    sequence=lambda _: (),
-    names=lambda server: 2 * len(server.missions) + len(server.links),
-    request_operation=lambda request: str(request.operation),
-    ambiguities=AMBIGUITIES,
-    describe=describe,
-    rules=RULES,
-    charts=(LIFECYCLE,),
-    invariants=INVARIANTS,
-    possibilities=POSSIBILITIES,
-    answers=_agrees,
-    shape=_shape,
-    idle_shape=_idle_shape,
-    size=_size,
-)
-SECONDS = MICROSECONDS
+def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
+    """The mission server with the rules of these operations."""
+    return Spec(
+        system=SYSTEM,
+        title="a mission server",
+        initial=lambda world: Server(world.name_channel, tolerance=world.tolerance),
+        operations=operations,
+        outcomes=functools.partial(_outcomes, operations),
+        drives={
+            one.name: one
+            for one in (
+                Drive("connect", _connect),
+                Drive("line", _line),
+                Drive("disconnect", _disconnect, ends=True),
+                Drive("advance", _advance),
+            )
+        },
+        urgent=_urgent,
+        spontaneous=_spontaneous,
+        matches=_matches,
+        delivery=lambda _: Delivery(),
+        sequence=lambda _: (),
+        names=lambda server: 2 * len(server.missions) + len(server.links),
+        request_operation=lambda request: str(request.operation),
+        ambiguities=AMBIGUITIES,
+        describe=describe,
+        rules=RULES,
+        charts=(LIFECYCLE,),
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        answers=_agrees,
+        shape=shape,
+        idle_shape=idle_shape,
+        size=size,
+        extent=extent,
+        outline=outline,
+        rebuilt=specification,
+    )
+
+
+SPEC = specification()

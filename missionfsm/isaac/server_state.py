@@ -13,13 +13,14 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.isaac.server_readings import AMBIGUITIES
 from missionfsm.isaac.sight import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.spec import Emission
+from missionfsm.kernel.values import value
 
 SYSTEM = "isaac.server"
 LOOK = MICROSECONDS
@@ -76,7 +77,7 @@ ENDED = frozenset(LIFECYCLE.final)
 START, RUN, SILENT = "start", "run", "silent"
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Clock:
     """A clock of a mission that runs.
 
@@ -93,7 +94,7 @@ class Clock:
     hi: int | None
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Mission:
     """A submitted mission.
 
@@ -128,7 +129,7 @@ class Mission:
         return self.status is Status.QUEUED and not self.waits and not self.doomed
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Report:
     """A status message: what it says, where, and which missions its identifiers name.
 
@@ -141,7 +142,7 @@ class Report:
     header: int | None
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Link:
     """A connection that is open.
 
@@ -161,18 +162,28 @@ class Link:
 Left = tuple[tuple[str, str], ...]
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
+class World:
+    """What a server is given: the channel for names, and by how much times may be off, in microseconds."""
+
+    name_channel: str = "name"
+    tolerance: int = 0
+
+
+@value(cache_hash=True)
 class Server:
     """A mission server.
 
     Attributes:
         left: for the questions that mattered: the letters that are left, by id.
+        tolerance: by how much times may be off in either direction, in microseconds.
     """
 
     name_channel: str = "name"
     missions: tuple[Mission, ...] = ()
     links: tuple[Link, ...] = ()
     left: Left = ()
+    tolerance: int = 0
 
     def letters(self, question: Ambiguity) -> str:
         """The readings of a question that are left."""
@@ -190,7 +201,7 @@ class Server:
         return next((one for one in self.links if one.serves and one.name == robot), None)
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Sends:
     """A MissionProto that is owed: its channel and its configuration."""
 
@@ -198,7 +209,7 @@ class Sends:
     config: str
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class Move:
     """Where something leads: the state, what was sent on the way, and why.
 
@@ -219,7 +230,7 @@ class Move:
         server = self.state
         missions = list(server.missions)
         missions[index] = evolve(missions[index], **changes)
-        after = Server(server.name_channel, tuple(missions), server.links, server.left)
+        after = Server(server.name_channel, tuple(missions), server.links, server.left, server.tolerance)
         return Move(after, self.sent, self.rules, self.at)
 
     def link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
@@ -246,7 +257,7 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
     left = dict(move.state.left)
     left[question.id] = letters
     server = move.state
-    after = Server(server.name_channel, server.missions, server.links, tuple(sorted(left.items())))
+    after = Server(server.name_channel, server.missions, server.links, tuple(sorted(left.items())), server.tolerance)
     return Move(after, move.sent, move.rules, move.at)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from missionfsm.isaac.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
 from missionfsm.isaac.plans import PLANS
 from missionfsm.isaac.robot_system import NAMING
+from missionfsm.isaac.server_breaks import BENDS, TWISTS
 from missionfsm.isaac.server_json import CODEC
 from missionfsm.isaac.server_scripts import SCRIPTS
 from missionfsm.isaac.server_sketches import SKETCHES
@@ -161,4 +162,4 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, sketches=SKETCHES, plans=PLANS)
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, sketches=SKETCHES, plans=PLANS)

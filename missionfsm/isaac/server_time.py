@@ -11,17 +11,18 @@ import functools
 import math
 from collections.abc import Iterator
 
-from attrs import evolve, frozen
+from attrs import evolve
 
-from missionfsm.isaac.server_moves import possible, sends, strikes, urgent
+from missionfsm.isaac.server_moves import possible, sends, slack, strikes, urgent
 from missionfsm.isaac.server_readings import AI_39
-from missionfsm.isaac.server_state import LOOK, Clock, Move, Server, Status
+from missionfsm.isaac.server_state import Clock, Move, Server, Status
+from missionfsm.kernel.values import value
 
 Look = tuple[int, int, int]
 """AI-39 b: a connection's slot, and since when a mission can be sent on it, at the earliest and at the latest."""
 
 
-@frozen(cache_hash=True)
+@value(cache_hash=True)
 class _Here:
     """A moment on the way: what was done until then, and what the server has yet to look at."""
 
@@ -47,7 +48,7 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
         latest = _latest(here)
         later = list(_next(here, min(latest, time)))
         todo += reversed(later)
-        if latest >= time:
+        if latest >= time and all(last + slack(here.move.state) > time for _, _, last in here.looks):
             after = _shifted(here.move, time)
             found.setdefault((after.state, after.sent), after)
     return tuple(sorted(found.values(), key=lambda one: -_done(state, one.state)))
@@ -91,7 +92,7 @@ def _looking(here: _Here) -> _Here:
 def _latest(here: _Here) -> float:
     """Until when something has to have happened, at the latest."""
     due = [clock.hi for mission in here.move.state.missions for clock in mission.clocks if clock.hi is not None]
-    due += [last + LOOK for _, _, last in here.looks]
+    due += [last + slack(here.move.state) for _, _, last in here.looks]
     return min(due, default=math.inf)
 
 
@@ -104,7 +105,7 @@ def _next(here: _Here, until: float) -> Iterator[_Here]:
                 yield from _strike(here, index, clock, until)
     for slot, first, last in here.looks:
         link = here.move.state.link(slot)
-        when = (max(low, first), int(min(last + LOOK, until)))
+        when = (max(low, first), int(min(last + slack(here.move.state), until)))
         if link is None or when[0] > when[1]:
             continue
         for index, chosen in possible(here.move.state, link):

@@ -9,6 +9,7 @@ shown by exploring it together with the oracle), or the oracle lacks a tooth.
 from __future__ import annotations
 
 import functools
+import math
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
@@ -39,8 +40,8 @@ from missionfsm.tools.model import Model, Twist, straight
 from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 
-FIRST, TOURS, STEPS = 16, 160, 40
-"""Conversations before it is asked whether an implementation is allowed; before it survives; steps of each."""
+FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
+"""Conversations before it is asked whether an implementation is allowed; after it, until it survives; steps of each."""
 BLOCK = 8
 """How many mutants are judged one after the other in the same part: those of a rule share what they remember."""
 
@@ -106,6 +107,11 @@ class Teeth:
         return tuple(bite for bite in self.bites if not bite.killed and not bite.because)
 
     @property
+    def percent(self) -> int:
+        """The score in whole per cent, rounded down: 100 is all and nothing less."""
+        return math.floor(100 * self.score)
+
+    @property
     def score(self) -> float:
         """Noticed, of those that break something; 1.0 is all."""
         guilty = len(self.bites) - len(self.allowed)
@@ -125,7 +131,7 @@ class Teeth:
 
     def __str__(self) -> str:
         lines = [
-            f"{self.system}: {self.killed} of {len(self.bites) - len(self.allowed)} mutants killed ({self.score:.0%}), "
+            f"{self.system}: {self.killed} of {len(self.bites) - len(self.allowed)} mutants killed ({self.percent}%), "
             f"{len(self.allowed)} more do nothing that is forbidden"
         ]
         lines += [f"missed: {bite.mutant}" for bite in self.missed]
@@ -183,18 +189,23 @@ class _Broken(Reference):
 
 def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
     broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
-    run = Run(system, broken, introduce(system, broken), automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
-    chance = random.Random(seed)  # noqa: S311 - no secret
-    try:
-        if run.play() and run.tour(chance, FIRST, STEPS, mutant.favour):
+    because = ""
+    for fresh, conversations in enumerate((FIRST, *ROUNDS)):
+        about = introduce(system, broken)
+        run = Run(system, broken, about, automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
+        try:
+            # Every round is a run of its own: what was walked least in the last one has been walked by now.
+            right = run.play() and run.tour(random.Random(seed + fresh), conversations, STEPS, mutant.favour)  # noqa: S311
+        except UnreadableError:  # it does not even speak the protocol any more
+            return Bite(mutant.name, mutant.rule, killed=True)
+        if not right:
+            length = len(run.found.judge.history) - 1 if run.found else 0
+            return Bite(mutant.name, mutant.rule, killed=True, length=length)
+        if not fresh:
             because = _excuse(system, mutant, broken.model, guide.worlds)
-            if because or run.tour(chance, TOURS - FIRST, STEPS, mutant.favour):
-                return Bite(mutant.name, mutant.rule, killed=False, because=because)
-    except UnreadableError:
-        pass  # it does not even speak the protocol any more
-    if run.found is None:
-        return Bite(mutant.name, mutant.rule, killed=True)
-    return Bite(mutant.name, mutant.rule, killed=True, length=len(run.found.judge.history) - 1)
+        if because:
+            break
+    return Bite(mutant.name, mutant.rule, killed=False, because=because)
 
 
 @functools.lru_cache(maxsize=2)

@@ -1,0 +1,127 @@
+"""What is worth trying where time is real: the alphabets of both systems without their long waits.
+
+Times are never known exactly then. The server's world says by how much they may be off (`tolerance`); the robot is owed
+nothing that a little less time would not have brought.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+
+from attrs import evolve
+
+from missionfsm.isaac.messages import MissionStatusProto, TextProto
+from missionfsm.isaac.missionfile import MissionEntry, MissionFile
+from missionfsm.isaac.server_scripts import header
+from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, pick
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.system import System
+
+LONGEST = 6.0
+"""Seconds that are waited at most at a time: a little more than start_timeout, and than a robot may be silent."""
+
+_STATUSES = ("running", "success", "failure")
+
+
+def in_real_time(system: System, tolerance: float = 0.0, scripts: int = 0) -> System:
+    """A system to be tried in real time.
+
+    Args:
+        tolerance: seconds by which times may be off, where the system's world says so.
+        scripts: how many of the written conversations to have.
+    """
+
+    def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
+        whole = system.alphabet(world, bounds)
+        return evolve(
+            whole,
+            drives=tuple(one for one in whole.drives if one.get("seconds", 0) <= LONGEST),
+            worlds=({"tolerance": tolerance} if tolerance else {},),
+            scripts=whole.scripts[:scripts],
+        )
+
+    return evolve(system, alphabet=alphabet)
+
+
+def with_file(system: System, file: MissionFile, name_channel: str, tolerance: float) -> System:
+    """The mission server where all that is submitted is a mission file: what its robots can do."""
+
+    def alphabet(_: JSON, __: Bounds) -> Alphabet:
+        drives: list[JSON] = [{"event": "connect"}, {"event": "disconnect", "connection": pick("connection", 0)}]
+        drives += _waits(file)
+        for _ in range(3):
+            drives += _lines(file, name_channel)
+        return Alphabet(
+            prompts=(),
+            plain=(),
+            drives=tuple(drives),
+            plain_drives=(),
+            worlds=({"nameChannel": name_channel, "tolerance": tolerance},),
+        )
+
+    return evolve(system, alphabet=alphabet)
+
+
+def _waits(file: MissionFile) -> list[JSON]:
+    """Some short times, and for every timeout that is not too long a little more than that."""
+    timeouts = {time + 0.5 for one in file.missions for time in (one.start_timeout, one.timeout)}
+    times = sorted({0.5, 1.5, *(time for time in timeouts if time <= LONGEST)})
+    return [{"event": "advance", "seconds": time} for time in times]
+
+
+def _lines(file: MissionFile, name_channel: str) -> Iterable[JSON]:
+    robots = dict.fromkeys(one.robot for one in file.missions if one.robot is not None)
+    for robot in robots:
+        yield _line(header(TextProto, name_channel), {"text": robot})
+    channels = dict.fromkeys(
+        name
+        for one in file.missions
+        for name in ((one.status_channel,) if one.status_channel else ("mission_status", f"{one.channel}_status"))
+    )
+    for channel in channels:
+        for status in _STATUSES:
+            uuid = pick("uuid", 1)
+            head = header(MissionStatusProto, channel, uuid=uuid)
+            yield _line(head, {"uuid": uuid, "missionStatus": status})
+
+
+def _line(head: JSON, payload: JSON) -> JSON:
+    text = as_text({"header": head, "payload": payload})
+    return {"event": "line", "connection": pick("connection", 0), "line": text}
+
+
+def submissions(file: MissionFile) -> tuple[JSON, ...]:
+    """The lines of a history that submit the missions of a file; the handle of each is its place there, from 1.
+
+    Raises:
+        ValueError: a mission names a later one as upstream, so that nobody knows in which order they are submitted.
+    """
+    lines: list[JSON] = []
+    for index, mission in enumerate(file.missions):
+        later = next((one for one in mission.upstream if one >= index), None)
+        if later is not None:
+            raise ValueError(
+                f"missions[{index}].upstream: mission {later} is not before it, so that the order of submission, which "
+                "decides what is sent first, is the server's affair; put upstreams first"
+            )
+        number = -1 - index
+        lines.append({"call": number, "method": "submit", "params": {"mission": _submitted(mission)}})
+        lines.append({"return": number, "result": {"mission": index + 1}})
+    return tuple(lines)
+
+
+def _submitted(mission: MissionEntry) -> JSON:
+    told: dict[str, JSON] = {
+        "robot": mission.robot,
+        "channel": mission.channel,
+        "config": json.loads(mission.config),
+        "start_timeout": mission.start_timeout,
+        "upstream": [one + 1 for one in mission.upstream],
+    }
+    if mission.status_channel is not None:
+        told["status_channel"] = mission.status_channel
+    if mission.timeout < math.inf:
+        told["timeout"] = mission.timeout
+    return told

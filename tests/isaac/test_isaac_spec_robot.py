@@ -1,0 +1,200 @@
+"""The oracle for ``isaac.robot``: who passes, who is caught, and what a recorded history comes to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+import pytest
+from spec_helpers import breaks, explained, needs_node, node, run_of
+
+from missionfsm.adapters.isaac_subjects import RobotSubject
+from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
+from missionfsm.isaac.robot_readings import AMBIGUITIES
+from missionfsm.isaac.wire import encode
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.transcript import Head
+from missionfsm.systems import system
+from missionfsm.tools.check import check
+from missionfsm.tools.conform import conform
+from missionfsm.tools.subject import Reference
+from missionfsm.tools.teeth import teeth
+from missionfsm.tools.verdict import Verdict
+
+ROBOT = system("isaac.robot")
+ONE, TWO = Uuid(1, 1 << 60 | 1), Uuid(2, 1 << 60 | 2)
+SUCCEEDED, SETTLED = {"drive": {"event": "behaviorSucceeded"}}, {"settled": True}
+
+
+def arrives(uuid: Uuid, config: str = "{}") -> Any:
+    """A mission arrives."""
+    line = encode(Message(Header("mission"), MissionProto(uuid, config))).decode().strip()
+    return {"drive": {"event": "line", "line": line}}
+
+
+def says(status: str, uuid: Uuid = ONE, channel: str = "mission_status") -> Any:
+    """The robot reports."""
+    message = Message(Header(channel, 1, 1, TWO), MissionStatusProto(uuid, WireStatus(status)))
+    return {"connection": 1, "line": encode(message).decode().strip()}
+
+
+def passes(seconds: float) -> Any:
+    return {"drive": {"event": "advance", "seconds": seconds}}
+
+
+def judged(*lines: Any) -> Verdict:
+    """The verdict on a history of a robot whose drives are all commanded."""
+    head = Head("isaac.robot", {}, ("line", "behaviorSucceeded", "behaviorFailed", "advance"))
+    return check(ROBOT, head, lines)
+
+
+def rules(verdict: Verdict) -> list[str]:
+    assert verdict.violation is not None
+    return [rule.id.removeprefix("isaac.robot/") for rule in verdict.violation.rules]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        (arrives(ONE), says("running"), SUCCEEDED, says("success"), SETTLED),
+        (arrives(ONE), SUCCEEDED, says("success"), SETTLED),
+        (arrives(ONE), says("running"), says("running"), SUCCEEDED, says("running"), says("success"), SETTLED),
+        (arrives(ONE), arrives(TWO), says("failure"), says("running", TWO), SETTLED),
+        (arrives(ONE, "no json"), says("failure"), SETTLED, arrives(TWO), says("running", TWO), SETTLED),
+        (arrives(ONE), passes(5), says("running"), SETTLED, says("running"), SETTLED),
+        (arrives(ONE), passes(4.9), SETTLED),
+    ],
+    ids=["all", "short", "often", "preempted", "unusable", "settled", "within the bound"],
+)
+def test_what_a_codelet_may_say(lines: tuple[Any, ...]) -> None:
+    """RUNNING as often as it likes while a tree runs, one final status, FAILURE for what is preempted."""
+    assert judged(*lines).conforms
+
+
+@pytest.mark.parametrize(
+    ("lines", "rule"),
+    [
+        ((arrives(ONE), SUCCEEDED, says("failure")), "status/one-success-at-the-end"),
+        ((arrives(ONE), SUCCEEDED, says("success", channel="mission")), "status/statuses-go-to-the-status-channel"),
+        ((arrives(ONE), arrives(TWO), says("running", TWO)), "status/one-failure-at-the-end"),
+        ((arrives(ONE), SUCCEEDED, {"connection": 1, "line": "{}"}), "line/a-line-is-one-message"),
+    ],
+)
+def test_what_is_wrong_is_said_by_its_rule(lines: tuple[Any, ...], rule: str) -> None:
+    """A violation names the rule that it is against."""
+    verdict = judged(*lines)
+    assert (verdict.conforms, rule in rules(verdict)) == (False, True)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        (says("running"),),
+        (arrives(ONE), SUCCEEDED, says("success"), says("success")),
+        (arrives(ONE), SUCCEEDED, says("success"), says("running")),
+        (arrives(ONE), says("success")),
+        (arrives(ONE), says("running", TWO)),
+        (arrives(ONE), arrives(TWO), says("failure"), says("running")),
+        (arrives(ONE), SUCCEEDED, SETTLED),
+        (arrives(ONE), passes(5), SETTLED),
+    ],
+    ids=["no mission", "twice", "after the end", "too early", "another", "preempted", "never", "beyond the bound"],
+)
+def test_what_no_reading_allows(lines: tuple[Any, ...]) -> None:
+    """Reports without a mission, after its end, before it, about another, or none at all."""
+    assert not judged(*lines).conforms
+
+
+def test_an_integer_that_is_a_number_is_told_by_its_place() -> None:
+    """The header's uuid may be numbers, which departs from the text; the payload's may not."""
+    line = json.loads(says("success")["line"])
+    line["header"]["uuid"] = {"lower": 5, "upper": 6}
+    verdict = judged(arrives(ONE), SUCCEEDED, {"connection": 1, "line": json.dumps(line)}, SETTLED)
+    assert (verdict.conforms, verdict.readings["AI-25.header"], len(verdict.flagged)) == (True, ("n",), 1)
+    line["payload"]["uuid"] = {"lower": ONE.lower, "upper": ONE.upper}
+    wrong = judged(arrives(ONE), SUCCEEDED, {"connection": 1, "line": json.dumps(line)})
+    assert rules(wrong) == ["line/64-bit-integers-are-strings"]
+
+
+def test_nobody_has_to_drive_the_tree() -> None:
+    """Where the tester cannot stop the behavior tree, it may stop at any time by itself."""
+    head = Head("isaac.robot", {}, ("line", "advance"))
+    assert check(ROBOT, head, (arrives(ONE), says("running"), says("failure"), SETTLED)).conforms
+
+
+def test_the_robot_that_ships_conforms() -> None:
+    """The codelet that runs under the sockets follows one set of readings, and every rule is exercised on it."""
+    verdict = conform(ROBOT, RobotSubject(), examples=10, steps=30, seed=1, tours=20)
+    assert verdict.conforms
+    assert verdict.uncovered == ()
+    assert {name: letters for name, letters in verdict.readings.items() if name.startswith("AI-33")} == {
+        "AI-33.null": ("b",),
+        "AI-33.unusable": ("a",),
+    }
+
+
+@pytest.mark.parametrize(
+    ("entry", "letter"), [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
+)
+def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
+    """The reference under a single other reading conforms, and is found to follow it."""
+    run = run_of("isaac.robot", Reference(ROBOT, {entry: letter}))
+    assert (explained(run, 12, 30), run.readings[entry]) == (True, (letter,))
+
+
+@needs_node
+def test_an_independent_robot_conforms() -> None:
+    """The Node.js robot, written from the page alone, can be explained."""
+    with node("isaac.robot") as subject:
+        assert explained(run_of("isaac.robot", subject), 15, 30)
+
+
+COMMON_BREAKS = (
+    "running-missing",
+    "running-after-final",
+    "success-missing",
+    "final-twice",
+    "failure-as-success",
+    "deaf-after-failure",
+    "bad-config-succeeds",
+    "preempted-silently",
+    "preempted-too-late",
+    "preemption-ignored",
+    "status-on-mission-channel",
+    "uuid-rounded",
+)
+"""One of each kind; the others are tried where there is time."""
+
+
+def uncaught(names: Iterable[str]) -> list[str]:
+    """Which breaks of the Node.js robot are not found."""
+    automaton = Automaton(ROBOT.spec, tuple(ROBOT.spec.drives))
+    missed = []
+    for one in names:
+        with node("isaac.robot", "--break", one) as subject:
+            if explained(run_of("isaac.robot", subject, automaton), 8, 25):
+                missed.append(one)
+    return missed
+
+
+@needs_node
+def test_breaks_of_the_independent_robot_are_caught() -> None:
+    """What the Node.js robot does wrong on purpose no reading explains."""
+    assert set(COMMON_BREAKS) < set(breaks("isaac.robot"))
+    assert uncaught(COMMON_BREAKS) == []
+
+
+@needs_node
+@pytest.mark.slow
+def test_every_other_break_of_the_independent_robot_is_caught() -> None:
+    """So it is with all the others."""
+    others = [one for one in breaks("isaac.robot") if one not in COMMON_BREAKS]
+    assert len(others) > 15
+    assert uncaught(others) == []
+
+
+def test_every_broken_rule_is_noticed() -> None:
+    """Whichever rule the reference breaks, in whichever way, the oracle notices."""
+    found = teeth(ROBOT)
+    assert (found.killed, found.missed, found.allowed, found.untested) == (24, (), (), ())

@@ -1,0 +1,334 @@
+"""The oracle for ``isaac.server``: who passes, who is caught, who is told apart, and what a history comes to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import attrs
+import pytest
+from spec_helpers import breaks, explained, needs_node, node, run_of
+
+from missionfsm.adapters.isaac_subjects import ServerSubject
+from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid, WireStatus
+from missionfsm.isaac.profile import AS_SHIPPED, DOCUMENTED, Profile
+from missionfsm.isaac.server_readings import AMBIGUITIES
+from missionfsm.isaac.wire import encode
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.readings import choose
+from missionfsm.kernel.transcript import Head
+from missionfsm.systems import system
+from missionfsm.tools.check import check
+from missionfsm.tools.conform import conform
+from missionfsm.tools.explore import explore
+from missionfsm.tools.subject import Reference
+from missionfsm.tools.teeth import teeth
+from missionfsm.tools.verdict import Verdict
+
+SERVER = system("isaac.server")
+SETTLED = {"settled": True}
+AUTOMATON = Automaton(SERVER.spec, tuple(SERVER.spec.drives))
+"""Walked by all tests: what one has worked out the next only looks up."""
+
+
+class History:
+    """Writes a history down: what is done, and what the server is seen to do."""
+
+    def __init__(self) -> None:
+        self.lines: list[Any] = []
+        self.calls = 0
+
+    def submit(self, handle: int, *, refused: bool = False, **mission: Any) -> History:
+        self.calls += 1
+        self.lines.append({"call": self.calls, "method": "submit", "params": {"mission": {"robot": "r", **mission}}})
+        answer = {"error": {"status": "INVALID_ARGUMENT"}} if refused else {"result": {"mission": handle}}
+        self.lines.append({"return": self.calls, **answer})
+        return self
+
+    def shows(self, *statuses: str) -> History:
+        self.calls += 1
+        missions = {str(handle): status for handle, status in enumerate(statuses, 1)}
+        self.lines.append({"call": self.calls, "method": "statuses", "params": {}})
+        self.lines.append({"return": self.calls, "result": {"missions": missions}})
+        return self
+
+    def drive(self, event: str, **fields: Any) -> History:
+        self.lines.append({"drive": {"event": event, **fields}})
+        return self
+
+    def robot(self, connection: int, name: str = "r") -> History:
+        line = encode(Message(Header("name"), TextProto(name))).decode().strip()
+        return self.drive("connect", connection=connection).drive("line", connection=connection, line=line)
+
+    def sends(self, connection: int, mission: int, config: str = "{}", channel: str = "mission") -> History:
+        message = Message(Header(channel, 1, 1, Uuid(9, 9)), MissionProto(_uuid(mission), config))
+        self.lines.append({"connection": connection, "line": encode(message).decode().strip()})
+        return self
+
+    def reports(self, connection: int, mission: int, status: str) -> History:
+        payload = MissionStatusProto(_uuid(mission), WireStatus(status))
+        line = encode(Message(Header("mission_status"), payload)).decode().strip()
+        return self.drive("line", connection=connection, line=line)
+
+    def waits(self, seconds: float) -> History:
+        return self.drive("advance", seconds=seconds)
+
+    @property
+    def settles(self) -> History:
+        self.lines.append(SETTLED)
+        return self
+
+    def judged(self, **options: Any) -> Verdict:
+        head = Head("isaac.server", {}, ("connect", "line", "disconnect", "advance"))
+        return check(SERVER, head, self.lines, **options)
+
+
+def _uuid(mission: int) -> Uuid:
+    return Uuid(mission, 1 << 61 | mission)
+
+
+def readings(verdict: Verdict, *names: str) -> tuple[str, ...]:
+    """The letters that are left of some ambiguities, together."""
+    return tuple("".join(verdict.readings[name]) for name in names)
+
+
+# Recorded histories.
+
+
+def test_a_downstream_waits_for_success() -> None:
+    """A mission is sent when its upstream has succeeded, and not when that only runs."""
+    begun = (
+        History()
+        .submit(1)
+        .submit(2, robot="s", upstream=[1])
+        .robot(1)
+        .robot(2, "s")
+        .sends(1, 1)
+        .reports(1, 1, "running")
+    )
+    early = History()
+    early.lines, early.calls = list(begun.lines), begun.calls
+    assert not early.sends(2, 2).judged().conforms
+    assert begun.settles.reports(1, 1, "success").sends(2, 2).settles.shows("SUCCESS", "STARTED").judged().conforms
+
+
+def test_a_downstream_is_not_sent_after_a_failure() -> None:
+    """AI-01 b, any end will do, is a violation, whatever the statuses say."""
+    begun = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).reports(1, 1, "failure")
+    assert not begun.sends(1, 2).judged().conforms
+
+
+def test_statuses_tell_names_apart() -> None:
+    """AI-02: the names of what was cancelled and aborted tell the reading; names that no reading has are refused."""
+    for names, letter in ((("ABORTED", "CANCELED"), "a"), (("FAILED", "FAILED"), "b"), (("TIMEOUT", "CANCELLED"), "c")):
+        history = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).waits(6).settles.shows(*names)
+        assert readings(history.judged(), "AI-02") == (letter,)
+    mixed = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).waits(6).settles.shows("ABORTED", "FAILED")
+    assert not mixed.judged().conforms
+
+
+@pytest.mark.parametrize(
+    ("seconds", "statuses"), [(4.9, "STARTED"), (5, "STARTED FAILED_TIMEDOUT"), (5.1, "FAILED_TIMEDOUT")]
+)
+def test_a_timeout_has_a_moment(seconds: float, statuses: str) -> None:
+    """Before its moment a timeout may not strike, after it it must have; at the very moment either is right."""
+    seen = [
+        status
+        for status in ("STARTED", "FAILED_TIMEDOUT")
+        if History()
+        .submit(1)
+        .robot(1)
+        .sends(1, 1)
+        .settles.waits(seconds)
+        .settles.shows(status)
+        .judged(readings={"AI-39": "a", "AI-07": "a"})
+        .conforms
+    ]
+    assert seen == statuses.split()
+
+
+def test_a_server_that_looks_now_and_then_has_a_second() -> None:
+    """AI-39 b: nothing is owed at once, and within a second of time that passes it is."""
+    late = History().submit(1).robot(1).settles.waits(1).sends(1, 1).settles
+    assert readings(late.judged(), "AI-39") == ("b",)
+    assert not History().submit(1).robot(1).settles.waits(1).settles.judged().conforms
+    assert History().submit(1).robot(1).settles.waits(0.9).settles.judged().conforms
+
+
+def test_what_happens_within_one_stretch_of_time() -> None:
+    """An abort frees the robot at its moment, so the next mission's time begins there and not later."""
+    history = History().submit(1, start_timeout=2).submit(2, start_timeout=3).robot(1).sends(1, 1).settles
+    history = history.waits(4).sends(1, 2).settles.shows("FAILED_TIMEDOUT", "STARTED").waits(1.5).settles
+    assert history.shows("FAILED_TIMEDOUT", "FAILED_TIMEDOUT").judged(readings={"AI-05": "a"}).conforms
+
+
+def test_the_names_of_a_mission_belong_together() -> None:
+    """A status about the identifier of one mission cannot end the other."""
+    history = History().submit(1).submit(2).robot(1).sends(1, 1).reports(1, 1, "success").sends(1, 2).settles
+    assert history.shows("SUCCESS", "STARTED").judged().conforms
+    wrong = History().submit(1).submit(2).robot(1).sends(1, 1).reports(1, 1, "success").sends(1, 1)
+    assert not wrong.judged().conforms
+
+
+@pytest.mark.parametrize(
+    ("mission", "rule"),
+    [
+        ({"upstream": [-1]}, "an-upstream-is-no-handle"),
+        ({"upstream": [7]}, "an-upstream-is-unknown"),
+        ({"timeout": -1}, "a-timeout-is-negative"),
+        ({"config": [1]}, "the-mission-is-malformed"),
+        ({"robot": ""}, "the-robots-name-is-empty"),
+    ],
+)
+def test_a_defective_submission_is_refused(mission: dict[str, Any], rule: str) -> None:
+    """What is wrong with a submission is refused, and taking it is against the rule that says so."""
+    assert History().submit(1, refused=True, **mission).submit(1).judged().conforms
+    violation = History().submit(1, **mission).judged().violation
+    assert violation is not None
+    assert [one.id for one in violation.rules] == [f"isaac.server/submit/INVALID_ARGUMENT/{rule}"]
+
+
+def test_a_sound_submission_is_not_refused() -> None:
+    """A refusal needs a reason."""
+    assert not History().submit(1, refused=True).judged().conforms
+
+
+# Live servers.
+
+
+@pytest.fixture(scope="module")
+def shipped() -> dict[str, Verdict]:
+    """The verdicts on the server that ships, under both profiles."""
+    profiles = {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
+    return {
+        name: conform(SERVER, ServerSubject(profile), examples=2, steps=20, seed=1, tours=6)
+        for name, profile in profiles.items()
+    }
+
+
+def test_both_profiles_conform(shipped: dict[str, Verdict]) -> None:
+    """The server that runs under the sockets conforms as documented and as shipped, and exercises almost every rule."""
+    assert {name: verdict.conforms for name, verdict in shipped.items()} == {"documented": True, "as-shipped": True}
+    assert [rule for rule in shipped["documented"].uncovered if "/submit/" not in rule] == []
+
+
+def test_profiles_are_told_apart(shipped: dict[str, Verdict]) -> None:
+    """The readings that are reported tell one profile from the other."""
+    names = ("AI-10", "AI-12", "AI-14.status", "AI-22.started", "AI-25.header", "AI-39")
+    told = {name: readings(verdict, *names) for name, verdict in shipped.items()}
+    assert told == {"documented": ("a", "a", "a", "a", "s", "a"), "as-shipped": ("b", "b", "b", "i", "n", "b")}
+    assert shipped["documented"].flagged == ()
+    assert [one.partition(":")[0] for one in shipped["as-shipped"].flagged] == [
+        "AI-14.status=b",
+        "AI-22.started=i",
+        "AI-25.header=n",
+    ]
+
+
+def _difference(profile: Profile) -> str:
+    return next(
+        f"{field.name}-{getattr(profile, field.name)}"
+        for field in attrs.fields(Profile)
+        if getattr(profile, field.name) != getattr(DOCUMENTED, field.name)
+    )
+
+
+PROFILES = [
+    attrs.evolve(DOCUMENTED, **{field.name: letter})
+    for field in attrs.fields(Profile)
+    for letter in field.metadata.get("letters", "")
+    if letter != getattr(DOCUMENTED, field.name) and (field.name, letter) != ("ai_37", "c")
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("profile", PROFILES, ids=_difference)
+def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
+    """The server under any single other reading conforms; only names in any case are nobody's reading (AI-37 c)."""
+    run = run_of("isaac.server", ServerSubject(profile), AUTOMATON)
+    assert explained(run, 1, 20), run.contradiction or (run.found and run.found.judge.violation)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("entry", "letter"), [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
+)
+def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
+    """The reference under a single other reading conforms, and that reading is not ruled out."""
+    run = run_of("isaac.server", Reference(SERVER, {entry: letter}), AUTOMATON)
+    assert (explained(run, 1, 20), letter in run.readings.get(entry, (letter,))) == (True, True)
+
+
+@needs_node
+def test_an_independent_server_conforms() -> None:
+    """The Node.js server, written from the page alone, can be explained."""
+    with node("isaac.server") as subject:
+        assert explained(run_of("isaac.server", subject, AUTOMATON), 5, 25)
+
+
+COMMON_BREAKS = (
+    "downstream-early",
+    "any-upstream-suffices",
+    "cancel-missing",
+    "wrong-robot",
+    "unnamed-served",
+    "sent-twice",
+    "two-at-once",
+    "queue-lost-on-disconnect",
+    "config-of-first",
+    "terminal-revived",
+    "start-timeout-halved",
+    "timeout-never",
+    "payload-integers-bare",
+)
+"""One of each kind; the others are tried where there is time."""
+
+
+def uncaught(names: Iterable[str]) -> list[str]:
+    """Which breaks of the Node.js server the scripts do not find."""
+    missed = []
+    for one in names:
+        with node("isaac.server", "--break", one) as subject:
+            if explained(run_of("isaac.server", subject, AUTOMATON), 0, 0):
+                missed.append(one)
+    return missed
+
+
+@needs_node
+def test_breaks_of_the_independent_server_are_caught() -> None:
+    """What the Node.js server does wrong on purpose no reading explains; the scripts suffice to find it."""
+    assert set(COMMON_BREAKS) < set(breaks("isaac.server"))
+    assert uncaught(COMMON_BREAKS) == []
+
+
+@needs_node
+@pytest.mark.slow
+def test_every_other_break_of_the_independent_server_is_caught() -> None:
+    """So it is with all the others."""
+    others = [one for one in breaks("isaac.server") if one not in COMMON_BREAKS]
+    assert len(others) > 30
+    assert uncaught(others) == []
+
+
+# The specification itself.
+
+UNDER_OTHER_READINGS = ("a-key-is-unknown", "a-channel-is-empty", "the-configuration-is-null")
+"""Reasons to refuse that the default readings do not know."""
+
+
+def test_every_state_of_two_missions_and_one_connection() -> None:
+    """Under the default readings every status is reached, every invariant holds, and every reason to refuse matters."""
+    found = explore(SERVER, Bounds(missions=2), assumed=choose(SERVER.spec.ambiguities))
+    assert (found.states, found.holds, found.constant) == (133, True, ())
+    others = {f"isaac.server/submit/INVALID_ARGUMENT/{rule}" for rule in UNDER_OTHER_READINGS}
+    assert set(found.idle) == others
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("topic", ["dispatch", "dependencies", "connection", "status", "timeout", "line"])
+def test_every_broken_promise_is_noticed(topic: str) -> None:
+    """Whichever promise about lines, time and robots the reference breaks, in whichever way, the oracle notices."""
+    found = teeth(SERVER, only=f"isaac.server/{topic}/")
+    assert len(found.bites) > 1
+    assert (found.missed, found.allowed, found.untested) == ((), (), ())

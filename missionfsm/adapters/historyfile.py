@@ -5,7 +5,6 @@ A history is read once and never held: what is kept is one judge for every robot
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -77,8 +76,7 @@ def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
                 raise wrong_line(path, number, f"not JSON: {error}{short}") from None
 
 
-_CALLS = re.compile(rb'\n\{"call": ?(\d+),')
-_RETURNS = re.compile(rb'\n\{"return": ?(\d+),')
+_CALL, _RETURN = b'\n{"call":', b'\n{"return":'
 """How the commonest lines that call or return begin; what they say can be told without reading all of them."""
 
 
@@ -102,13 +100,13 @@ def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
 def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
     """Take the calls and the returns of some lines into account."""
     block = b"\n".join((b"", *found))
-    calls, returns = _CALLS.findall(block), _RETURNS.findall(block)
-    plain = b'"robot"' not in block and b'"cancel"' not in block
-    if plain and (len(calls), len(returns)) == (block.count(b'"call"'), block.count(b'"return"')):
-        known = waiting.setdefault(None, set())
-        known.update(map(int, calls))
-        known.difference_update(map(int, returns))
-        return
+    if b'"robot"' not in block and b'"cancel"' not in block:
+        calls, returns = _numbers(block, _CALL), _numbers(block, _RETURN)
+        if (len(calls), len(returns)) == (block.count(b'"call"'), block.count(b'"return"')):
+            known = waiting.setdefault(None, set())
+            known.update(map(int, calls))
+            known.difference_update(map(int, returns))
+            return
     for line in found:
         if b'"call"' not in line and b'"return"' not in line:
             continue
@@ -120,6 +118,12 @@ def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
             known.add(one["call"])
         else:
             known.discard(one["return"])
+
+
+def _numbers(block: bytes, begins: bytes) -> list[bytes]:
+    """The numbers of the lines that begin so; those that are none are left out."""
+    numbers = [line.partition(b",")[0].strip() for line in block.split(begins)[1:]]
+    return numbers if b"".join(numbers).isdigit() else list(filter(bytes.isdigit, numbers))
 
 
 def fingerprint(value: JSON) -> bytes:

@@ -67,12 +67,16 @@ def check_file(
             nobody = new_judge(None)
         except UnreadableError as error:
             raise wrong_line(path, number, error) from None
+        feed = nobody.feed  # nearly all lines name neither a time nor a robot
         judges: dict[str | None, Judge] = {}
         stopped: dict[str | None, int] = {}
         for number, line in numbered:
             try:
-                plain = type(line) is dict and "at" not in line and "robot" not in line
-                robot = None if plain else stamps.robot(line)
+                if type(line) is dict and "at" not in line and "robot" not in line and None in judges:
+                    if not feed(line):
+                        stopped.setdefault(None, number)
+                    continue
+                robot = stamps.robot(line)
                 judge = judges.get(robot)
                 if judge is None:
                     judge = judges[robot] = nobody if robot is None else new_judge(robot)

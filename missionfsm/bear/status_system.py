@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from missionfsm.bear.status import GET, Endpoint
 from missionfsm.bear.status import SYSTEM as NAME
@@ -10,7 +10,7 @@ from missionfsm.bear.status_breaks import BENDS, TWISTS
 from missionfsm.bear.status_json import CODEC
 from missionfsm.bear.status_sketches import SKETCHES
 from missionfsm.bear.status_spec import SPEC
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Line, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -265,6 +265,29 @@ def _plain() -> Iterator[Prompt]:
         yield from (Prompt(endpoint.value, params) for params in _DEFECTIVE)
 
 
+_SHOWN: Mapping[Endpoint, tuple[str, tuple[JSON, ...]]] = {
+    Endpoint.BATTERY: ("battery", _BATTERIES[:2]),
+    Endpoint.ERRORS: ("errorCodes", _ERRORS[:2]),
+    Endpoint.NAVIGATION: ("navigationState", _NAVIGATIONS[:2]),
+    Endpoint.NETWORK: ("wifi", _NETWORKS[:2]),
+    Endpoint.ONLINE: ("connection", _CONNECTIONS[::-1]),
+    Endpoint.ROBOT: ("battery", _BATTERIES[:2]),
+}
+"""For each subscription a part of the state that it shows, and two values of it."""
+
+
+def _scripts() -> Iterator[tuple[Line, ...]]:
+    """Every subscription to several robots, and changes of each: chance seldom watches the second one change."""
+    for endpoint, (part, values) in _SHOWN.items():
+        for selection in (_at("L1"), _ids("r1", "r2")):
+            reports = (
+                Line("drive", {"event": "report", "robotId": robot, "part": part, "value": value})
+                for robot in ("r2", "r1")
+                for value in values
+            )
+            yield (Line(endpoint.value, selection), *(line for one in reports for line in (Line("settle"), one)))
+
+
 def alphabet(_: JSON, __: Bounds) -> Alphabet:
     """What is worth trying on a fleet; the same robots are there in every world but the smallest."""
     return Alphabet(
@@ -273,6 +296,7 @@ def alphabet(_: JSON, __: Bounds) -> Alphabet:
         drives=tuple(_drives(("r1", "r2", "r3"))),
         plain_drives=tuple(_plain_drives()),
         worlds=_WORLDS,
+        scripts=tuple(_scripts()),
     )
 
 

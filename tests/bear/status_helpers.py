@@ -88,8 +88,9 @@ class Walk:
         stream = self.streams.pop(self.random.randrange(len(self.streams)))
         self.serial += 1
         self.feed({"call": self.serial, "method": "cancel", "params": {"stream": stream}})
-        self.subject.exchange("cancel", {"stream": stream})
-        self.feed({"return": self.serial, "result": {}})
+        exchange = self.subject.exchange("cancel", {"stream": stream})
+        # What other streams showed in the meantime counts.
+        self.feed(*lines_of(exchange.before), {"return": self.serial, "result": {}}, *lines_of(exchange.after))
 
     def turn(self) -> None:
         dice = self.random.random()

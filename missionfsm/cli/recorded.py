@@ -94,7 +94,7 @@ def check_file(
 
 def _retold(verdict: Verdict, path: str, robot: str | None) -> Verdict:
     """The verdict with the last lines before its violation, read again."""
-    if verdict.violation is None or verdict.violation.at is None:
+    if verdict.violation is None:
         return verdict
     kept: deque[JSON] = deque(maxlen=KEPT)
     with open_history(path) as source:

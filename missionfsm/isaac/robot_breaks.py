@@ -9,9 +9,8 @@ from attrs import evolve
 from missionfsm.isaac import robot_rules as rules
 from missionfsm.isaac.line_breaks import changed, line_bends, swapped
 from missionfsm.isaac.robot_spec import Codelet, Report
-from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Emission, Step
-from missionfsm.kernel.system import Bend, Break
+from missionfsm.kernel.system import Bend, Break, breaks
 
 Twist = Callable[[Codelet, Step], Step | None]
 
@@ -78,31 +77,27 @@ def _ends_what_runs(before: Codelet, step: Step) -> Step:
     return evolve(step, after=idle, names=(), emits=(report,))
 
 
-def _breaks(rule: Rule, **twists: Twist) -> tuple[Break, ...]:
-    return tuple(Break(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in twists.items())
-
-
 TWISTS = (
-    *_breaks(rules.STARTS, is_not_run=_never_run),
-    *_breaks(rules.LISTENS, is_not_run=_never_run),
-    *_breaks(
+    *breaks(rules.STARTS, is_not_run=_never_run),
+    *breaks(rules.LISTENS, is_not_run=_never_run),
+    *breaks(
         rules.PREEMPTS,
         is_not_run=_never_run,
         drops_the_old_one_silently=_without_final,
         says_that_the_old_one_succeeded=_said_as("success"),
         reports_the_old_one_last=_final_first,
     ),
-    *_breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
-    *_breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
-    *_breaks(rules.RUNNING, is_never_reported=_silent),
+    *breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
+    *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
+    *breaks(rules.RUNNING, is_never_reported=_silent),
     Break(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
-    *_breaks(
+    *breaks(
         rules.SUCCESS,
         is_not_reported=_without_final,
         is_reported_twice=_final_twice,
         is_reported_as_a_failure=_said_as("failure"),
     ),
-    *_breaks(
+    *breaks(
         rules.FAILURE,
         is_not_reported=_without_final,
         is_reported_twice=_final_twice,

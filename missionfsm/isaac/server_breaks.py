@@ -9,9 +9,8 @@ from attrs import evolve
 from missionfsm.isaac import server_rules as rules
 from missionfsm.isaac.line_breaks import changed, line_bends
 from missionfsm.isaac.server_state import ENDED, UNDER_WAY, Mission, Server, Status, topic
-from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Step
-from missionfsm.kernel.system import Bend, Break
+from missionfsm.kernel.system import Bend, Break, breaks
 
 Twist = Callable[[Server, Step], Step | None]
 
@@ -88,12 +87,8 @@ def _revived(_: Server, step: Step) -> Step:
     return evolve(step, after=evolve(after, missions=tuple(missions)))
 
 
-def _breaks(rule: Rule, **twists: Twist) -> tuple[Break, ...]:
-    return tuple(Break(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in twists.items())
-
-
 TWISTS = (
-    *_breaks(rules.SENT, is_sent_twice=_sent_twice, is_not_sent=_unsent),
+    *breaks(rules.SENT, is_sent_twice=_sent_twice, is_not_sent=_unsent),
     Break(rules.UNNAMED.id, "goes to whoever connected first", _sent_elsewhere, at=rules.SENT.id),
     Break(
         rules.UPSTREAM.id,
@@ -101,39 +96,39 @@ TWISTS = (
         _each(_freed),
         at=rules.OPERATIONS["submit"].promises[0].id,
     ),
-    *_breaks(
+    *breaks(
         rules.CANCELED,
         is_not_cancelled=_became(Status.CANCELED, lambda old, _: evolve(old, waits=(), doomed=())),
         counts_as_a_success=_became(Status.CANCELED, _has(Status.SUCCESS)),
     ),
-    *_breaks(rules.NAMED, is_not_heard=_nothing),
-    *_breaks(
+    *breaks(rules.NAMED, is_not_heard=_nothing),
+    *breaks(
         rules.OTHER,
         fails_what_is_under_way=_each(lambda _, new: _failing(new) if new.status in UNDER_WAY else new),
     ),
-    *_breaks(
+    *breaks(
         rules.DROPPED,
         fails_what_is_queued=_each(lambda _, new: _failing(new) if new.status is Status.QUEUED else new),
     ),
-    *_breaks(rules.RUNNING, is_not_heard=_nothing, counts_as_a_success=_became(Status.RUNNING, _has(Status.SUCCESS))),
-    *_breaks(
+    *breaks(rules.RUNNING, is_not_heard=_nothing, counts_as_a_success=_became(Status.RUNNING, _has(Status.SUCCESS))),
+    *breaks(
         rules.FINAL,
         is_not_heard=_nothing,
         counts_success_as_failure=_became(Status.SUCCESS, _has(Status.FAILED)),
         counts_failure_as_success=_became(Status.FAILED, _has(Status.SUCCESS)),
     ),
-    *_breaks(rules.LATE, revives_the_mission=_revived),
-    *_breaks(
+    *breaks(rules.LATE, revives_the_mission=_revived),
+    *breaks(
         rules.ABORTED,
         never_strikes=_became(Status.ABORTED, _goes_on),
         counts_as_a_success=_became(Status.ABORTED, _has(Status.SUCCESS)),
     ),
-    *_breaks(
+    *breaks(
         rules.OVERRUN,
         never_strikes=_became(Status.ABORTED, _goes_on),
         counts_as_a_success=_became(Status.ABORTED, _has(Status.SUCCESS)),
     ),
-    *_breaks(
+    *breaks(
         rules.SILENCE,
         is_a_loss_at_once=_each(lambda _, new: _failing(new) if new.status is Status.RUNNING else new),
     ),

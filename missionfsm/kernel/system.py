@@ -9,6 +9,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
+from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.sketch import Plan, Sketch
 from missionfsm.kernel.spec import Spec, Step
 
@@ -34,6 +35,11 @@ class Break:
     says: str
     twist: Callable[[Any, Step], Step | None]
     at: str = ""
+
+
+def breaks(rule: Rule, **twists: Callable[[Any, Step], Step | None]) -> tuple[Break, ...]:
+    """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the twist."""
+    return tuple(Break(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in twists.items())
 
 
 @frozen(eq=False)

@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import meet
+from missionfsm.kernel.readings import ANYTHING, choose, meet
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Mismatch, Spec, Step
 from missionfsm.kernel.system import System
@@ -53,7 +53,7 @@ class Survey:
         self.ways: Counter[str] = Counter()
         self.worlds: dict[str, set[int]] = {}
         spec = system.spec
-        self._assumed = meet(-1, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
+        self._assumed = meet(ANYTHING, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
         self._shown: dict[Hashable, tuple[str, ...]] = {}
         self._all = system.alphabet({}, BOUNDS).worlds
         for world, params in enumerate(self._all):
@@ -131,7 +131,7 @@ class Survey:
 def _rules_of(system: System, view: Any, count: int) -> Iterator[str]:  # noqa: ANN401 - of any system
     spec: Spec = system.spec
     names = tuple(f"n{number}" for number in range(count))
-    choice = meet(-1, (one[one.default] for one in spec.ambiguities))
+    choice = choose(spec.ambiguities)
     message = system.codec.write_message(view, names, choice, 1, 0.0)
     for _, _, rest in system.codec.strip(message):
         matches = spec.matches(view, system.codec.content(rest))

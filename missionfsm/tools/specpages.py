@@ -35,6 +35,8 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
+from missionfsm.tools.diagrams.picture import state_name
+from missionfsm.tools.diagrams.tables import markdown
 from missionfsm.tools.teeth import mutants
 
 _PART = re.compile(
@@ -132,11 +134,10 @@ def regenerate(text: str, system: System, waived: Mapping[str, str] | None = Non
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    """The lines of a table; none where it has no rows."""
     rows = tuple(rows)
     if rows:
-        yield "| " + " | ".join(head) + " |"
-        yield "|" + " --- |" * len(head)
-        yield from ("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows)
+        yield from markdown(head, rows).splitlines()
 
 
 def _operations(spec: Spec) -> Iterator[str]:
@@ -180,12 +181,8 @@ def _picture(system: System, name: str) -> Iterator[str]:
 def _chart(spec: Spec, name: str) -> Iterator[str]:
     (chart,) = (one for one in spec.charts if one.name == name)
     notes: Mapping[str, str] = chart.notes
-    moves = ((move, _state(source), _state(after), notes.get(move, "")) for move, source, after in chart.table)
+    moves = ((move, state_name(source), state_name(after), notes.get(move, "")) for move, source, after in chart.table)
     return _table(("move", "from", "to", "note"), moves)
-
-
-def _state(state: object) -> str:
-    return str(getattr(state, "name", state))
 
 
 def _readings(ambiguities: Iterable[Ambiguity]) -> Iterator[str]:

@@ -14,20 +14,18 @@ from hypothesis.reporting import with_reporter
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check import flagged, uncovered
-from missionfsm.tools.conversation import Conversation, Given, Picks, introduce
+from missionfsm.tools.conversation import Conversation, Given, Picks
 from missionfsm.tools.coverage import rare
 from missionfsm.tools.distinguish import distinguish as tell_apart
 from missionfsm.tools.distinguish import proposed
 from missionfsm.tools.expected import Expected, held_against
 from missionfsm.tools.picking import is_template, kind_of, slots
 from missionfsm.tools.rulings import by_ambiguity
-from missionfsm.tools.run import Run
+from missionfsm.tools.run import BOUNDS, Run
 from missionfsm.tools.story import inconsistent, story, with_suspects
 from missionfsm.tools.verdict import Outcome, Verdict
 
@@ -92,10 +90,8 @@ def conform(  # noqa: PLR0913 - every one has a default
         SubjectError: the adapter failed.
         ValueError: `readings` names something that does not exist.
     """
-    about = introduce(system, subject)
-    automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
     known = Expected(expected)
-    run = Run(system, subject, about, automaton, bounds or Bounds(missions=4, goals=3), progress, known, enough)
+    run = Run.of(system, subject, readings, bounds or BOUNDS, progress=progress, expects=known, enough=enough)
     ended = search(run, examples, steps, tours, seed)
     if distinguish and ended and run.found is None and run.contradiction is None:
         tell_apart(run)

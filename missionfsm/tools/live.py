@@ -10,13 +10,9 @@ from collections.abc import Callable, Mapping
 
 from attrs import define
 
-from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.tools.conform import verdict_of
-from missionfsm.tools.conversation import introduce
 from missionfsm.tools.expected import Expected
 from missionfsm.tools.run import Run
 from missionfsm.tools.verdict import Verdict
@@ -58,10 +54,8 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         SubjectError: the implementation failed.
         ValueError: `readings` names something that does not exist.
     """
-    about = introduce(system, subject)
-    automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
     known = Expected(expected)
-    run = _LiveRun(system, subject, about, automaton, Bounds(missions=4, goals=3), progress, known, enough)
+    run = _LiveRun.of(system, subject, readings, progress=progress, expects=known, enough=enough)
     if run.play():
         run.tour(random.Random(seed), conversations - run.examples, steps)  # noqa: S311 - no secret
     return verdict_of(run, seed, known, notes)

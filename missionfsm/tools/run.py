@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import functools
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Self
 
 from attrs import define, field
 
 from missionfsm.kernel.alphabet import Bounds, Prompt
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import meet
+from missionfsm.kernel.readings import constrain, meet
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
-from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks
+from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks, introduce
 from missionfsm.tools.guide import Guide, Proposal
 from missionfsm.tools.picking import kind_of, slots
 from missionfsm.tools.rulings import Ruling
 from missionfsm.tools.shrink import shrink
 from missionfsm.tools.story import inconsistent
 from missionfsm.tools.verdict import Violation
+
+BOUNDS = Bounds(missions=4, goals=3)
+"""What a run tries, unless it is told otherwise."""
 
 SETTLED = 0.6
 """How often a tour waits for everything to settle after a step."""
@@ -79,6 +83,28 @@ class Run:
     narrowed: Automaton | None = None
     _widest: int = 0
     _before: dict[str, int] = field(factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        system: System,
+        subject: Subject,
+        readings: Mapping[str, str] | None = None,
+        bounds: Bounds = BOUNDS,
+        **options: Any,  # noqa: ANN401 - the other attributes
+    ) -> Self:
+        """A run against an implementation that nobody knows yet.
+
+        Args:
+            readings: readings that it has to follow.
+
+        Raises:
+            SubjectError: the adapter failed.
+            ValueError: `readings` names something that does not exist.
+        """
+        about = introduce(system, subject)
+        automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
+        return cls(system, subject, about, automaton, bounds, **options)
 
     def __attrs_post_init__(self) -> None:
         if self.guide is not None:

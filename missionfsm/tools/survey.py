@@ -6,14 +6,10 @@ from collections.abc import Mapping
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.tools.conform import search, verdict_of
-from missionfsm.tools.conversation import introduce
 from missionfsm.tools.run import Run
 from missionfsm.tools.story import story, with_suspects
 from missionfsm.tools.verdict import Verdict, Violation
@@ -79,9 +75,7 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
         SubjectError: the adapter failed.
         ValueError: `readings` names something that does not exist.
     """
-    about = introduce(system, subject)
-    automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
-    run = Run(system, subject, about, automaton, Bounds(missions=4, goals=3))
+    run = Run.of(system, subject, readings)
     findings: dict[frozenset[str], Finding] = {}
 
     def keep(violation: Violation) -> bool:

@@ -16,7 +16,6 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Answer
@@ -37,7 +36,7 @@ from missionfsm.tools.excuse import Honest, excuse
 from missionfsm.tools.excuse import straight as as_it_is
 from missionfsm.tools.guide import Guide
 from missionfsm.tools.model import Model, Twist, straight
-from missionfsm.tools.run import Run
+from missionfsm.tools.run import BOUNDS, Run
 from missionfsm.tools.subject import Reference
 
 FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
@@ -156,8 +155,7 @@ def teeth(
         progress: told of every mutant when it has been judged.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
-    bounds = Bounds(missions=4, goals=3)
-    guide = Guide(system, system.alphabet({}, bounds).worlds, bounds, tuple(system.spec.drives))
+    guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS, tuple(system.spec.drives))
     bites, tested = [], set()
     which, parts = part
     for number, mutant in enumerate(mutants(system)):
@@ -192,7 +190,7 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     because = ""
     for fresh, conversations in enumerate((FIRST, *ROUNDS)):
         about = introduce(system, broken)
-        run = Run(system, broken, about, automaton, Bounds(missions=4, goals=3), guide=guide.fresh())
+        run = Run(system, broken, about, automaton, BOUNDS, guide=guide.fresh())
         try:
             # Every round is a run of its own: what was walked least in the last one has been walked by now.
             right = run.play() and run.tour(random.Random(seed + fresh), conversations, STEPS, mutant.favour)  # noqa: S311

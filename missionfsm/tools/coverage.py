@@ -10,9 +10,10 @@ from typing import Any
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import ANYTHING, choose, meet
 from missionfsm.kernel.rules import Rule
-from missionfsm.kernel.spec import Mismatch, Spec, Step
+from missionfsm.kernel.spec import Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
+from missionfsm.tools.model import recognised
 from missionfsm.tools.verdict import PER, RATE
 
 BOUNDS = Bounds(missions=2, goals=2, batch=2)
@@ -129,11 +130,7 @@ class Survey:
 
 
 def _rules_of(system: System, view: Any, count: int) -> Iterator[str]:  # noqa: ANN401 - of any system
-    spec: Spec = system.spec
     names = tuple(f"n{number}" for number in range(count))
-    choice = choose(spec.ambiguities)
-    message = system.codec.write_message(view, names, choice, 1, 0.0)
-    for _, _, rest in system.codec.strip(message):
-        matches = spec.matches(view, system.codec.content(rest))
+    for matches in recognised(system, view, names, choose(system.spec.ambiguities)):
         if not isinstance(matches, Mismatch):
             yield from dict.fromkeys(rule for match in matches for rule in match.rules)

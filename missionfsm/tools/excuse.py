@@ -19,7 +19,7 @@ from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
-from missionfsm.tools.model import Model
+from missionfsm.tools.model import Model, recognised
 
 BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=2))
 """Within which it is shown: the first in every world, the others in the first few, one for each kind of robot."""
@@ -308,10 +308,8 @@ def shown(
     system = model.system
     count = 1 + max((*(emission.refs or ()), named - 1), default=0)
     names = tuple(map(system.naming.shown, range(count if emission.refs is None else len(emission.refs))))
-    message = bend(system.codec.write_message(emission.view, names, model.choice, 1, 0.0))
-    found = []
-    for _, _, rest in system.codec.strip(message):
-        matches = system.spec.matches(emission.view, system.codec.content(rest))
+    found: list[tuple[Match, ...]] = []
+    for matches in recognised(system, emission.view, names, model.choice, bend):
         if isinstance(matches, Mismatch):
             return matches
         found.append(matches)

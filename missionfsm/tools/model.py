@@ -12,9 +12,10 @@ from typing import Any
 
 from attrs import evolve, frozen
 
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
-from missionfsm.kernel.spec import Emission, Mismatch, Step
+from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 
 
@@ -80,6 +81,24 @@ Twist = Callable[[Any, Step | None], Step | None]
 def straight(_: Any, step: Step | None) -> Step | None:  # noqa: ANN401 - a state of any system
     """The step itself: nothing is broken."""
     return step
+
+
+def recognised(
+    system: System,
+    view: Any,  # noqa: ANN401 - of any system
+    names: tuple[Name, ...],
+    choice: int,
+    bend: Callable[[JSON], JSON] = lambda message: message,
+) -> tuple[tuple[Match, ...] | Mismatch, ...]:
+    """For each part of the message that is made of a view: the ways in which it shows the view, or what is wrong.
+
+    Args:
+        choice: the readings under which it is made.
+        bend: what becomes of it on the way.
+    """
+    codec = system.codec
+    message = bend(codec.write_message(view, names, choice, 1, 0.0))
+    return tuple(system.spec.matches(view, codec.content(rest)) for _, _, rest in codec.strip(message))
 
 
 class Model:
@@ -236,9 +255,7 @@ class Model:
 
     def _would_show(self, view: object, names: tuple[Name, ...]) -> bool:
         """Whether the readings allow that a state which does not last is shown."""
-        codec = self.system.codec
-        message = codec.write_message(view, names, self.choice, 1, 0.0)
-        matches = self.system.spec.matches(view, codec.content(codec.strip(message)[0][2]))
+        matches = recognised(self.system, view, names, self.choice)[0]
         return not isinstance(matches, Mismatch) and any(meet(self.choice, match.assumes) for match in matches)
 
     def _delivered(self, sent: list[Sent]) -> list[Sent]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from attrs import evolve
+from attrs import evolve, frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
@@ -21,12 +21,29 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.explore import Labels, references
 from missionfsm.tools.model import Model, recognised
 
-BOUNDS = (Bounds(missions=2, goals=1, batch=2), Bounds(missions=2, goals=2, batch=2))
-"""Within which it is shown: the first in every world, the others in the first few, one for each kind of robot."""
-FEW = 3
 
-TIMED = (Bounds(missions=1),)
-"""The same for systems with clocks, which make many states of one (see `Spec.outline`)."""
+@frozen
+class Scope:
+    """How far a model is explored.
+
+    Attributes:
+        worlds: in how many of the worlds, the first ones; None is all.
+        follows_all: whether it goes on from everything that the operation in question does, and not just from the
+            plain requests.
+    """
+
+    bounds: Bounds
+    worlds: int | None = None
+    follows_all: bool = True
+
+
+SCOPES = (
+    Scope(Bounds(missions=2, goals=1, batch=2)),
+    # One world for each kind of robot.
+    Scope(Bounds(missions=2, goals=2, batch=2), worlds=3, follows_all=False),
+)
+TIMED = (Scope(Bounds(missions=1)),)
+"""Those for systems with clocks, which make many states of one (see `Spec.outline`)."""
 
 Assumed = tuple[Assumption, ...]
 Options = frozenset[Assumed]
@@ -111,9 +128,9 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
     """
     system = honest.model.system
     states, came_up = 0, False
-    for bounds in TIMED if system.spec.outline else BOUNDS:
-        explorer = _Explorer(system, model, honest, rule, operation, bend, bounds)
-        states += sum(map(explorer.run, worlds[:FEW] if bounds is BOUNDS[1] else worlds))
+    for scope in TIMED if system.spec.outline else SCOPES:
+        explorer = _Explorer(system, model, honest, rule, operation, bend, scope)
+        states += sum(map(explorer.run, worlds[: scope.worlds]))
         came_up |= explorer.came_up
         if not explorer.alternatives:
             return ""
@@ -142,7 +159,6 @@ class _Explorer:
     Attributes:
         alternatives: sets of readings, of which none holds another; empty once nothing explains the model.
         came_up: whether the broken rule did.
-        follows_all: whether it goes on from everything that the operation does, and not just from the plain requests.
         rules_differ: whether the model differs in the rules of the operation, and not just in a twist.
     """
 
@@ -154,7 +170,7 @@ class _Explorer:
         rule: str,
         operation: str | None,
         bend: Callable[[JSON], JSON],
-        bounds: Bounds,
+        scope: Scope,
     ) -> None:
         self.system = system
         self.spec = system.spec
@@ -163,10 +179,9 @@ class _Explorer:
         self.rule = rule
         self.operation = operation
         self.bend = bend
-        self.bounds = bounds
+        self.scope = scope
         self.alternatives: tuple[int, ...] = (ANYTHING,)
         self.came_up = bend is not straight
-        self.follows_all = bounds is not BOUNDS[1]
         self.rules_differ = model.system.spec is not system.spec
         self._required: set[Options] = {_FREE}
         self._judged: set[Any] = set()
@@ -182,7 +197,7 @@ class _Explorer:
             return 0
 
     def _walk(self, world: JSON) -> int:
-        alphabet = self.system.alphabet(world, self.bounds)
+        alphabet = self.system.alphabet(world, self.scope.bounds)
         plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
         own = Labels.of(self.system, (one for one in alphabet.prompts if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
@@ -190,13 +205,15 @@ class _Explorer:
         extent = self.spec.extent or self.spec.names
         found, todo, situations = {start}, [start], set()
         for here in todo:
-            taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.bounds.missions]
+            taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.scope.bounds.missions]
             # Where clocks tell states apart, what answers calls is in the shape.
             situation = (self.spec.shape if self.spec.outline else self.spec.situation)(here)
             if situation not in situations and not self._passes(here):
                 situations.add(situation)
-                asked = [step for step in self._asked_all(here, own) if extent(step.after) <= self.bounds.missions]
-                taken += asked if self.follows_all else ()
+                asked = [
+                    step for step in self._asked_all(here, own) if extent(step.after) <= self.scope.bounds.missions
+                ]
+                taken += asked if self.scope.follows_all else ()
             new = dict.fromkeys(step.after for step in taken if step.after not in found)
             found.update(new)
             todo += new

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from missionfsm.bear.mission_breaks import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission_json import CODEC
+from missionfsm.bear.mission_scripts import COMMANDS, SCRIPTS
 from missionfsm.bear.mission_sketches import SKETCHES
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
@@ -109,11 +110,10 @@ _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
     {"cartiWorkflow": {"traverse": {"goals": _goals(_TABLES[0])}}},
     {"serviWorkflow": {"hosting": {"goals": _goals(_TABLES[0])}}},
 )
-_COMMANDS = ("COMMAND_CANCEL", "COMMAND_PAUSE", "COMMAND_RESUME", "COMMAND_FINISH")
 
 
 def _updates() -> Iterator[Prompt]:
-    for command in _COMMANDS:
+    for command in COMMANDS:
         yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
@@ -181,7 +181,7 @@ def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
         yield Prompt(
             "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": _goals(*goals)}}}}
         )
-    for command in _COMMANDS:
+    for command in COMMANDS:
         yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
         yield Prompt(method, {})
@@ -226,6 +226,7 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
         plain_drives=_DRIVES[:3],
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
+        scripts=SCRIPTS,
     )
 
 

@@ -15,7 +15,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import constrain, meet
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
-from missionfsm.tools.conversation import Action, Conversation, Given, Introduced, Picks, introduce
+from missionfsm.tools.conversation import WRONG_NAME, Action, Conversation, Given, Introduced, Picks, introduce
 from missionfsm.tools.guide import Guide, Proposal
 from missionfsm.tools.picking import kind_of, slots
 from missionfsm.tools.rulings import Ruling
@@ -262,8 +262,11 @@ class Run:
             for line in script:
                 if line.method == "drive" and line.params["event"] not in self.about.drives:
                     break
-                picks = tuple(self._found(slots(line.params), line.picks))
-                if not self.act(line.method, line.params, None, picks):
+                wanted = slots(line.params)
+                picks = tuple(self._found(wanted, line.picks))
+                # A name without a kind goes where `ANY_NAME` stands, not into a slot.
+                name = None if wanted or not line.picks else picks[0][1] if picks else WRONG_NAME
+                if not self.act(line.method, line.params, name, picks if wanted else ()):
                     return False
             if not self.act("settle") or not self.gather():
                 return False

@@ -181,7 +181,7 @@ class _Broken(Reference):
     def _call(self, method: str, params: JSON) -> Exchange:
         try:
             return super()._call(method, params)
-        except (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+        except (LookupError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
             return Exchange({})
 
 
@@ -193,7 +193,8 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
         run = Run(system, broken, about, automaton, BOUNDS, guide=guide.fresh())
         try:
             # Every round is a run of its own: what was walked least in the last one has been walked by now.
-            right = run.play() and run.tour(random.Random(seed + fresh), conversations, STEPS, mutant.favour)  # noqa: S311
+            played = bool(fresh) or run.play()
+            right = played and run.tour(random.Random(seed + fresh), conversations, STEPS, mutant.favour)  # noqa: S311
         except UnreadableError:  # it does not even speak the protocol any more
             return Bite(mutant.name, mutant.rule, killed=True)
         if not right:

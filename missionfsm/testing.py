@@ -28,7 +28,8 @@ class Suite:
     Attributes:
         system: which system it implements.
         command: the adapter to start; where `subject` is overridden it is not looked at.
-        examples: conversations of the search; ``--missionfsm-examples`` goes before it.
+        examples: conversations of the search; ``--missionfsm-examples`` goes before it. At most as many are had
+            besides, of those that are written down for the system.
         steps: calls and drives in a conversation, at most.
         seed: the same seed asks the same.
         timeout: seconds that an answer may take.

@@ -92,7 +92,7 @@ def conform(  # noqa: PLR0913 - options of the command
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.bridged import Sockets, bridged  # noqa: PLC0415
-    from missionfsm.tools.conform import DEFAULT_EXAMPLES, DEFAULT_TOURS  # noqa: PLC0415
+    from missionfsm.tools.conform import DEFAULT_EXAMPLES, planned  # noqa: PLC0415
     from missionfsm.tools.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
@@ -109,7 +109,7 @@ def conform(  # noqa: PLR0913 - options of the command
         child = bridge.subject if bridge else Child(command or own, timeout)
         examples = examples or DEFAULT_EXAMPLES
         try:
-            with Bar("conversations", bridge.conversations if bridge else examples + DEFAULT_TOURS) as bar:
+            with Bar("conversations", bridge.conversations if bridge else planned(judged, examples)) as bar:
                 asked: dict[str, Any] = {
                     "seed": secrets.randbits(32) if seed is None else seed,
                     "readings": readings,

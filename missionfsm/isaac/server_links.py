@@ -5,6 +5,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac import server_rules as rules
+from missionfsm.isaac.server_choices import split, ways
 from missionfsm.isaac.server_moves import Moves, acknowledged, closed, ends, lost, started
 from missionfsm.isaac.server_readings import (
     AI_07,
@@ -31,8 +32,6 @@ from missionfsm.isaac.server_state import (
     Report,
     Server,
     Status,
-    split,
-    ways,
 )
 from missionfsm.kernel.values import value
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac import server_rules as rules
+from missionfsm.isaac.server_choices import counts, split, ways
 from missionfsm.isaac.server_readings import (
     AI_03,
     AI_05,
@@ -43,8 +44,6 @@ from missionfsm.isaac.server_state import (
     Sends,
     Server,
     Status,
-    split,
-    ways,
 )
 
 Moves = Iterator[Move]
@@ -72,7 +71,7 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     """A clock of a mission starts anew now, if the mission has that timeout and some reading that is left wants it."""
     mission = move.state.missions[index]
     time = {START: mission.start, RUN: mission.run, SILENT: SILENCE}[kind]
-    if time is None or not _wanted(move.state, kind, since):
+    if time is None or not counts(move.state, kind, since):
         return move
     rest = tuple(one for one in mission.clocks if (one.kind, one.since) != (kind, since))
     low, high = move.at
@@ -80,16 +79,6 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     lo = max(0, time + low - move.state.tolerance)
     clocks = sorted((*rest, Clock(kind, since, lo, hi)), key=lambda one: (one.kind, one.since))
     return move.mission(index, clocks=tuple(clocks))
-
-
-def _wanted(state: Server, kind: str, since: str) -> bool:
-    if kind == SILENT:
-        return "a" in state.letters(AI_31)
-    if kind == START:
-        return {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[since] in state.letters(AI_05)
-    if since == "send":
-        return "b" in state.letters(AI_06) or ("a" in state.letters(AI_06) and "c" in state.letters(AI_07))
-    return {"status": "a", "submit": "c"}[since] in state.letters(AI_06)
 
 
 def stopped(move: Move, index: int, *kinds: tuple[str, str]) -> Move:

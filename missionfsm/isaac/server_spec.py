@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.isaac import server_rules as rules
+from missionfsm.isaac.server_choices import assumed, merged, split
 from missionfsm.isaac.server_links import Heard, connects, drops, hears
 from missionfsm.isaac.server_moves import started, urgent, zero_means
 from missionfsm.isaac.server_readings import (
@@ -39,10 +40,7 @@ from missionfsm.isaac.server_state import (
     Sends,
     Server,
     Status,
-    assumed,
     emissions,
-    merged,
-    split,
     topic,
 )
 from missionfsm.isaac.server_time import at_any_time, passes

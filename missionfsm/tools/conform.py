@@ -25,7 +25,7 @@ from missionfsm.tools.distinguish import proposed
 from missionfsm.tools.expected import Expected, held_against
 from missionfsm.tools.picking import is_template, kind_of, slots
 from missionfsm.tools.rulings import by_ambiguity
-from missionfsm.tools.run import BOUNDS, Run
+from missionfsm.tools.run import BOUNDS, Run, some
 from missionfsm.tools.story import inconsistent, story, with_suspects
 from missionfsm.tools.verdict import Outcome, Verdict
 
@@ -73,9 +73,10 @@ def conform(  # noqa: PLR0913 - every one has a default
     """Judge an implementation.
 
     Args:
-        examples: conversations, each from a reset on.
+        examples: conversations that are drawn, each from a reset on.
         steps: calls and drives in a conversation, at most.
-        tours: conversations before those that walk systematically where the run has been least.
+        tours: conversations before those that walk systematically where the run has been least. Before both, at most
+            as many are had that the system's alphabet has written down.
         seed: the same seed asks the same of the same implementation.
         readings: readings that the implementation has to follow; the others are found out.
         expected: ids of rules that are known to be broken: such a violation does not end the search, and one that is
@@ -99,6 +100,11 @@ def conform(  # noqa: PLR0913 - every one has a default
     return verdict_of(run, seed, known, notes, advice=advice)
 
 
+def planned(system: System, examples: int = DEFAULT_EXAMPLES, tours: int = DEFAULT_TOURS) -> int:
+    """How many conversations a run has that finds nothing."""
+    return len(some(system.alphabet({}, BOUNDS).scripts, examples + tours)) + tours + examples
+
+
 def search(run: Run, examples: int, steps: int, tours: int, seed: int) -> bool:
     """Have all conversations, or until something is found; False if it was stopped before."""
     machine = with_seed(seed)(_machine(run))
@@ -114,7 +120,7 @@ def search(run: Run, examples: int, steps: int, tours: int, seed: int) -> bool:
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    if not (run.play() and run.tour(random.Random(seed), tours, steps, again=AGAIN)):  # noqa: S311 - no secret
+    if not (run.play(examples + tours) and run.tour(random.Random(seed), tours, steps, again=AGAIN)):  # noqa: S311 - no secret
         return True
     try:
         with with_reporter(lambda _: None), contextlib.suppress(_Found):

@@ -50,7 +50,7 @@ Options = frozenset[Assumed]
 """Ways to explain one step: one of them has to be assumed."""
 
 _FREE: Options = frozenset([()])
-_FAILS = (IndexError, AssertionError, AttributeError, TypeError, ValueError, StopIteration)
+_FAILS = (LookupError, AssertionError, AttributeError, TypeError, ValueError, StopIteration)
 """What a broken model may raise."""
 
 

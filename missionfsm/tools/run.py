@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from attrs import define, field
 
-from missionfsm.kernel.alphabet import Bounds, Prompt
+from missionfsm.kernel.alphabet import Bounds, Line, Prompt
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import constrain, meet
@@ -22,6 +22,8 @@ from missionfsm.tools.rulings import Ruling
 from missionfsm.tools.shrink import shrink
 from missionfsm.tools.story import inconsistent
 from missionfsm.tools.verdict import Violation
+
+Scripts = tuple[tuple[Line, ...], ...]
 
 BOUNDS = Bounds(missions=4, goals=3)
 """What a run tries, unless it is told otherwise."""
@@ -252,10 +254,14 @@ class Run:
             self.narrowed = None
         return True
 
-    def play(self) -> bool:
-        """Have the conversations that the system's alphabet has written down; whether all could be explained."""
+    def play(self, most: int | None = None) -> bool:
+        """Have the conversations that the system's alphabet has written down; whether all could be explained.
+
+        Args:
+            most: how many of them, from everywhere among them; all by default.
+        """
         world = self.guide.worlds[0]
-        for script in self.guide.alphabets[0].scripts:
+        for script in some(self.guide.alphabets[0].scripts, most):
             if self.enough():
                 break
             self.start(world)
@@ -385,3 +391,8 @@ class Run:
 
     def _simpler(self, world: JSON, method: str) -> tuple[Prompt, ...]:
         return tuple(one for one in self.system.alphabet(world, self.bounds).plain if one.method == method)
+
+
+def some(scripts: Scripts, most: int | None) -> Scripts:
+    """All, or at most so many from everywhere among them."""
+    return scripts if most is None else scripts[:: max(1, -(-len(scripts) // most))]

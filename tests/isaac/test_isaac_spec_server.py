@@ -202,7 +202,7 @@ def shipped() -> dict[str, Verdict]:
     """The verdicts on the server that ships, under both profiles."""
     profiles = {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
     return {
-        name: conform(SERVER, ServerSubject(profile), examples=2, steps=20, seed=1, tours=6)
+        name: conform(SERVER, ServerSubject(profile), examples=12, steps=20, seed=1, tours=12)
         for name, profile in profiles.items()
     }
 
@@ -320,7 +320,7 @@ UNDER_OTHER_READINGS = ("a-key-is-unknown", "a-channel-is-empty", "the-configura
 def test_every_state_of_two_missions_and_one_connection() -> None:
     """Under the default readings every status is reached, every invariant holds, and every reason to refuse matters."""
     found = explore(SERVER, Bounds(missions=2), assumed=choose(SERVER.spec.ambiguities))
-    assert (found.states, found.holds, found.constant) == (133, True, ())
+    assert (found.states, found.holds, found.constant) == (143, True, ())
     others = {f"isaac.server/submit/INVALID_ARGUMENT/{rule}" for rule in UNDER_OTHER_READINGS}
     assert set(found.idle) == others
 

@@ -62,18 +62,43 @@ def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bo
         yield number, [last], False
 
 
+class Lines:
+    """The lines of a history with their numbers, as they come; empty ones are left out."""
+
+    def __init__(self, source: IO[bytes], path: str) -> None:
+        self._source = source
+        self._path = path
+        self._cut = False
+
+    def __iter__(self) -> Iterator[tuple[int, bytes]]:
+        for before, found, whole in _chunks(self._source, self._path):
+            self._cut = not whole
+            for number, text in enumerate(found, before + 1):
+                if text and not text.isspace():
+                    yield number, text
+
+    def json(self, text: bytes) -> JSON:
+        """What the line that came last says. Raises UnreadableError, which says what is wrong."""
+        try:
+            return orjson.loads(text)
+        except orjson.JSONDecodeError as error:
+            short = " (the file ends in the middle of it)" if self._cut else ""
+            message = f"not JSON: {error}{short}"
+            raise UnreadableError(message) from None
+
+    def parsed(self, numbered: Iterator[tuple[int, bytes]]) -> Iterator[tuple[int, JSON]]:
+        """The JSON of lines with their numbers. Raises UnreadableError, which says where and what is wrong."""
+        for number, text in numbered:
+            try:
+                yield number, self.json(text)
+            except UnreadableError as error:
+                raise wrong_line(self._path, number, error) from None
+
+
 def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
     """The JSON of every line with its number. Raises UnreadableError, which says where and what is wrong."""
-    loads = orjson.loads
-    for before, found, whole in _chunks(source, path):
-        for number, line in enumerate(found, before + 1):
-            try:
-                yield number, loads(line)
-            except orjson.JSONDecodeError as error:
-                if not line or line.isspace():
-                    continue
-                short = "" if whole else " (the file ends in the middle of it)"
-                raise wrong_line(path, number, f"not JSON: {error}{short}") from None
+    found = Lines(source, path)
+    return found.parsed(iter(found))
 
 
 _CALL, _RETURN = b'\n{"call":', b'\n{"return":'

@@ -247,13 +247,9 @@ def strip(message: JSON) -> tuple[Part, ...]:
 
     What is not of the documented form is left in, for `content` to find.
     """
-    return (_stripped(message),)
-
-
-def _stripped(message: JSON) -> Part:
     if not isinstance(message, dict):
-        return (), (), message
-    rest = dict(message)
+        return (((), (), message),)
+    rest = message.copy()
     marks: tuple[Mark, ...] = ()
     metadata = message.get("metadata")
     if isinstance(metadata, dict):
@@ -264,34 +260,28 @@ def _stripped(message: JSON) -> Part:
     key = "missionStates" if "missionStates" in message else "mission_states"
     states = message.get(key)
     missions = states.get("missions") if isinstance(states, dict) else None
-    if not isinstance(missions, list):
-        return (), marks, rest
-    found = _nameless(missions)
+    found = _nameless(missions) if isinstance(missions, list) else None
     if found is None:
-        return (), marks, rest
+        return (((), marks, rest),)
     ids, bare = found
-    rest[key] = {**states, "missions": bare}  # type: ignore[dict-item]
-    return ids, marks, rest
+    rest[key] = states = states.copy()  # type: ignore[union-attr]
+    states["missions"] = bare
+    return ((ids, marks, rest),)
 
 
 def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | None:
     """The ids of missions, and the missions without them; None where one of them is no object."""
-    try:
-        ids = tuple([mission["missionId"] for mission in missions])
-    except (KeyError, TypeError):
-        ids = ()
-    if ids and all([type(one) is str and one for one in ids]):  # noqa: C419 - nearly always so, and faster so
-        return ids, [{**mission, "missionId": "-"} for mission in missions]
     named: list[Name] = []
     bare: list[JSON] = []
     for mission in missions:
-        if not isinstance(mission, dict):
+        if type(mission) is not dict:
             return None
         name = "missionId" if "missionId" in mission else "mission_id"
         given = mission.get(name)
-        if isinstance(given, str) and given:
+        if type(given) is str and given:
             named.append(given)
-            mission = {**mission, name: "-"}  # noqa: PLW2901 - the same mission without its id
+            mission = mission.copy()  # noqa: PLW2901 - the same mission without its id
+            mission[name] = "-"
         bare.append(mission)
     return tuple(named), bare
 

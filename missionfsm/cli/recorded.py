@@ -11,6 +11,7 @@ from attrs import evolve
 
 from missionfsm.adapters.historyfile import (
     STDIN,
+    Lines,
     Stamps,
     fingerprint,
     lines,
@@ -27,6 +28,9 @@ from missionfsm.systems import system
 from missionfsm.tools.check import KEPT, Judge
 from missionfsm.tools.verdict import Verdict
 
+Lost = Mapping[str | None, frozenset[int]]
+"""For each robot the ids of the calls that are never answered."""
+
 
 def check_file(
     path: str, readings: Mapping[str, str] | None = None, tell: Callable[[str], None] = lambda _: None
@@ -40,56 +44,117 @@ def check_file(
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
         ValueError: `readings` names something that does not exist.
     """
-    lost = lost_calls(path)
+    if not Path(path).is_file():  # it can be read only once
+        return _judged(path, readings, tell, {})
+    try:
+        return _judged(path, readings, tell, None)
+    except _UndecidedError:
+        return _judged(path, readings, tell, lost_calls(path))
+
+
+class _UndecidedError(Exception):
+    """Calls wait for answers that may never come: it pays to know beforehand which."""
+
+
+LOOK = 64
+"""How many lines a call may wait for its answer before the file is looked through for such as never get one."""
+
+
+def _judged(
+    path: str, readings: Mapping[str, str] | None, tell: Callable[[str], None], lost: Lost | None
+) -> list[tuple[str | None, Verdict]]:
+    """See `check_file`. `lost` says which calls are never answered; None: hope that all are, or raise."""
     # What can be read again is not kept while it is read.
     keep = 0 if Path(path).is_file() else KEPT
     source = open_history(path)
     try:
-        numbered = lines(source, path)
-        number, line = next(numbered, (0, None))
+        texts = Lines(source, path)
+        numbered = iter(texts)
+        number, text = next(numbered, (0, b""))
         if not number:
             message = f"{'stdin' if path == STDIN else path}: the history is empty"
             raise UnreadableError(message)
-        watched = subscription(line)
-        if watched:
-            return [(None, watch_messages(watched, itertools.chain([(number, line)], numbered), tell))]
         try:
-            first = head(line)
-            stamps = Stamps()
-            stamps.robot(line)
-            judged = system(first.system)
-            automaton = Automaton(judged.spec, first.drives, constrain(judged.spec.ambiguities, readings or {}))
-
-            def new_judge(robot: str | None) -> Judge:
-                calls = lost.get(robot, frozenset())
-                return Judge(judged, first, automaton, fingerprint=fingerprint, lost=calls, keep=keep)
-
-            nobody = new_judge(None)
+            line = texts.json(text)
+            watched = subscription(line)
+            if not watched:
+                judges = _Judges(line, readings, lost, keep)
+                for number, text in numbered:
+                    judges.take(number, texts, text)
         except UnreadableError as error:
             raise wrong_line(path, number, error) from None
-        feed = nobody.feed  # nearly all lines name neither a time nor a robot
-        judges: dict[str | None, Judge] = {}
-        stopped: dict[str | None, int] = {}
-        for number, line in numbered:
-            try:
-                if type(line) is dict and "at" not in line and "robot" not in line and None in judges:
-                    if not feed(line):
-                        stopped.setdefault(None, number)
-                    continue
-                robot = stamps.robot(line)
-                judge = judges.get(robot)
-                if judge is None:
-                    judge = judges[robot] = nobody if robot is None else new_judge(robot)
-                if not judge.feed(line):
-                    stopped.setdefault(robot, number)
-            except UnreadableError as error:
-                raise wrong_line(path, number, error) from None
+        if watched:
+            messages = itertools.chain([(number, line)], texts.parsed(numbered))
+            return [(None, watch_messages(watched, messages, tell))]
     finally:
         if path != STDIN:
             source.close()
-    verdicts = ((robot, judge.verdict()) for robot, judge in (judges or {None: nobody}).items())
-    found = [(robot, located(verdict, stopped.get(robot))) for robot, verdict in verdicts]
+    found = judges.verdicts()
     return found if keep else [(robot, _retold(verdict, path, robot)) for robot, verdict in found]
+
+
+class _Judges:
+    """The judges of a file, one for each robot that it speaks of.
+
+    Args:
+        line: the first line.
+        keep: how many lines are kept to be shown; with none, lines that come again are known by their text.
+
+    Raises:
+        UnreadableError: that is no first line.
+    """
+
+    def __init__(self, line: JSON, readings: Mapping[str, str] | None, lost: Lost | None, keep: int) -> None:
+        self._head = head(line)
+        self._stamps = Stamps()
+        self._stamps.robot(line)
+        self._system = system(self._head.system)
+        assumed = constrain(self._system.spec.ambiguities, readings or {})
+        self._automaton = Automaton(self._system.spec, self._head.drives, assumed)
+        self._lost = lost
+        self._keep = keep
+        self._nobody = self._new(None)
+        self._again = self._nobody.texts.again
+        self._judges: dict[str | None, Judge] = {}
+        self._stopped: dict[str | None, int] = {}
+        self._waiting: dict[Judge, int] = {}
+
+    def _new(self, robot: str | None) -> Judge:
+        calls = (self._lost or {}).get(robot, frozenset())
+        return Judge(self._system, self._head, self._automaton, fingerprint=fingerprint, lost=calls, keep=self._keep)
+
+    def take(self, number: int, texts: Lines, text: bytes) -> None:
+        """Take the next line into account. Raises UnreadableError for one that is not of the format."""
+        if self._lost is None and not number % LOOK:
+            self._look()
+        known = None if self._keep else self._again(text)
+        if known is not None:  # it names neither a time nor a robot, as nearly all lines
+            if not self._nobody.take(known):
+                self._stopped.setdefault(None, number)
+            return
+        line = texts.json(text)
+        robot = self._stamps.robot(line)
+        judge = self._judges.get(robot)
+        if judge is None:
+            judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
+        plain = not self._keep and "at" not in line and "robot" not in line
+        if not judge.feed(line, text if plain else None):
+            self._stopped.setdefault(robot, number)
+
+    def _look(self) -> None:
+        """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""
+        pending = {judge: judge.transcript.pending for judge in self._judges.values()}
+        waiting = {judge: next(iter(calls)) for judge, calls in pending.items() if calls}
+        if any(self._waiting.get(judge) == call for judge, call in waiting.items()):
+            raise _UndecidedError
+        self._waiting = waiting
+
+    def verdicts(self) -> list[tuple[str | None, Verdict]]:
+        """What each judge says of its robot, in the order of their first lines."""
+        judges = self._judges or {None: self._nobody}
+        if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
+            raise _UndecidedError
+        return [(robot, located(judge.verdict(), self._stopped.get(robot))) for robot, judge in judges.items()]
 
 
 def _retold(verdict: Verdict, path: str, robot: str | None) -> Verdict:

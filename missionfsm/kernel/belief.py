@@ -32,6 +32,7 @@ from missionfsm.kernel.sifting import surviving_names
 from missionfsm.kernel.spec import Spec
 
 _NO_MARKS: dict[Hashable, int] = {}
+_LARGER = ("larger",)
 REMEMBERED = 100_000
 """How many names that are gone are remembered, so that one that comes again is noticed."""
 
@@ -215,10 +216,13 @@ class Belief:
             return False
         if kind is Received and event.marks:  # type: ignore[union-attr]
             self._mark(event.channel, event.marks)  # type: ignore[union-attr]
-        self._walk(edge, new)
+        self.node = edge.node
+        self.touched |= edge.touched
+        if edge.keep is not None:
+            self._rename(edge, edge.keep, new)
         if kind is Driven:
             self._start_over(event.event)  # type: ignore[union-attr]
-        if kind is Cancelled:
+        elif kind is Cancelled:
             self._given_up[event.channel] = None  # type: ignore[union-attr]
             self._marks.pop(event.channel, None)  # type: ignore[union-attr]
             if len(self._given_up) > REMEMBERED:
@@ -229,12 +233,6 @@ class Belief:
         """The event with numbers for names, as the automaton knows it, and the names that are new."""
         numbers = self._numbers
         new: list[Name] = []
-        if type(event) is Received:
-            channel = numbers.get(event.channel)
-            if channel is None:
-                channel = self._number_anew(event.channel, new)
-            relations = self._relations(event.channel, event.marks) if event.marks else ()
-            return (Received, event.content, self._number(event.names, new), relations, channel), new
         if type(event) is Called:
             args = self._number(event.names, new) if event.names else ()
             call = GONE if event.lost else numbers.get(event.call)
@@ -242,8 +240,15 @@ class Belief:
                 call = self._number_anew(event.call, new)
             return (Called, event.request, args, event.lost, call), new
         if type(event) is Returned:
-            call = numbers.get(event.call, GONE)
-            return (Returned, event.answer, self._number(event.names, new) if event.names else (), call), new
+            args = self._number(event.names, new) if event.names else ()
+            return (Returned, event.answer, args, numbers.get(event.call, GONE)), new
+        if type(event) is Received:
+            channel = numbers.get(event.channel)
+            if channel is None:
+                channel = self._number_anew(event.channel, new)
+            args = self._number(event.names, new) if event.names else ()
+            relations = self._relations(event.channel, event.marks) if event.marks else ()
+            return (Received, event.content, args, relations, channel), new
         if type(event) is Settled:
             return (Settled,), new
         if type(event) is Driven:
@@ -276,6 +281,8 @@ class Belief:
     def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
         """How the numbers of a message compare with those before; asking changes nothing."""
         tracks = self._marks.get(channel, _NO_MARKS)
+        if len(marks) == 1 and marks[0][1] > tracks.get(marks[0][0], marks[0][1]) and marks[0][1] > 0:
+            return _LARGER  # nearly always, and faster so
         relations = []
         for track, number in marks:
             found = relation(tracks.get(track), number)
@@ -286,6 +293,9 @@ class Belief:
 
     def _mark(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> None:
         tracks = self._marks.setdefault(channel, {})
+        if not self._renumbered:
+            tracks.update(marks)
+            return
         for track, number in marks:
             # A number that is smaller is the first since the numbers started over; an equal one may be the last before.
             if number < tracks.get(track, number):
@@ -297,24 +307,20 @@ class Belief:
         for track in renumbers(event) if renumbers else ():
             self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)
 
-    def _walk(self, edge: Edge, new: list[Name]) -> None:
-        self.node = edge.node
-        self.touched |= edge.touched
-        if edge.keep is None:
-            return
-        if edge.appends and len(edge.keep) == len(self._names) + len(new):
-            self._numbers.update(zip(new, range(len(self._names), len(self._names) + len(new)), strict=True))
-            self._names += new
+    def _rename(self, edge: Edge, keep: tuple[int, ...], new: list[Name]) -> None:
+        if edge.appends and len(keep) == len(self._names) + len(new):
+            for name in new:
+                self._numbers[name] = len(self._names)
+                self._names.append(name)
             return
         if edge.cuts:
-            for name in self._names[len(edge.keep) :]:
-                del self._numbers[name]
-            del self._names[len(edge.keep) :]
+            while len(self._names) > len(keep):
+                del self._numbers[self._names.pop()]
             return
         names = self._names + new
         for number in edge.retired:
             self._retire(names[number])
-        self._names = [names[number] for number in edge.keep]
+        self._names = [names[number] for number in keep]
         self._numbers = {name: number for number, name in enumerate(self._names)}
 
     def _retire(self, name: Name) -> None:

@@ -126,6 +126,15 @@ def fresh(explanation: Explanation) -> Iterator[int]:
 def mentioned(explanation: Explanation) -> Iterator[int]:
     """Every name that an explanation mentions, in a fixed order; some come more than once."""
     yield from explanation.names
+    for channel in explanation.channels:
+        yield channel.name
+        if channel.last:
+            yield from channel.last.names
+        for owed in channel.owed:
+            yield from owed.names
+    for _, args in explanation.lost:
+        yield from args
+    # Calls come and go most often: with the highest numbers they leave those of the others alone.
     for call in explanation.calls:
         yield call.name
         yield from call.args
@@ -133,14 +142,6 @@ def mentioned(explanation: Explanation) -> Iterator[int]:
             yield from call.done.names
         for ready in call.ready:
             yield from ready.names
-    for _, args in explanation.lost:
-        yield from args
-    for channel in explanation.channels:
-        yield channel.name
-        if channel.last:
-            yield from channel.last.names
-        for owed in channel.owed:
-            yield from owed.names
 
 
 def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:

@@ -18,7 +18,7 @@ Mark = tuple[Hashable, int]
 """A number that is only ever compared with its predecessor on the same track: (track, number)."""
 
 
-@value
+@value(cache_hash=True)
 class Answer:
     """What came back: a status name, and for OK the shape of the result without its names.
 

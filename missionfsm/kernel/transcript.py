@@ -83,9 +83,15 @@ class Ids:
 
     def __init__(self) -> None:
         self._blocks: dict[int, int] = {}
+        self._next = 1  # all from 1 up to this one are in the set: most clients count
 
     def add(self, number: int) -> bool:
         """Add a number; whether it is new."""
+        if number == self._next and not self._blocks:
+            self._next += 1
+            return True
+        if 0 < number < self._next:
+            return False
         block, bit = number >> 8, 1 << (number & 255)
         bits = self._blocks.get(block, 0)
         if bits & bit:
@@ -116,6 +122,9 @@ class Transcript:
         codec: how the system's JSON is read.
         fingerprint: JSON to something hashable that tells it from other JSON; a fast one makes reading fast.
         lost: ids of calls that are known to have no answer.
+
+    Attributes:
+        answered: the request that the answer is to that was read last.
     """
 
     def __init__(
@@ -127,7 +136,8 @@ class Transcript:
         self.codec = codec
         self._fingerprint = fingerprint
         self._lost = lost
-        self._open: dict[int, str] = {}
+        self._open: dict[int, tuple[str, Any]] = {}
+        self.answered: Any = None
         self._sent = Ids()
         self._errors: dict[str, Answer] = {}
         self._requests: dict[Hashable, Any] = {}
@@ -162,13 +172,13 @@ class Transcript:
         raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
 
     @property
-    def pending(self) -> tuple[int, ...]:
-        """Ids of the calls that have no answer yet."""
-        return tuple(self._open)
+    def pending(self) -> Mapping[int, tuple[str, Any]]:
+        """The calls that have no answer yet: their ids, in the order of sending, to the method and the request."""
+        return self._open
 
     def _number(self, line: dict[str, Any], key: str) -> int:
         number = line[key]
-        if isinstance(number, bool) or not isinstance(number, int):
+        if type(number) is not int:  # a bool is none
             raise _wrong(f"{key}: {brief(number)} is not a whole number")
         return number
 
@@ -182,13 +192,33 @@ class Transcript:
             stream = params.get("stream") if isinstance(params, dict) else None
             if isinstance(stream, bool) or not isinstance(stream, int):
                 raise _wrong(f"cancel: {brief(params)} names no stream")
-            self._open[number] = method
+            self._open[number] = method, None
             return (Cancelled(("stream", stream)),)
         request, names = self._request(method, params)
+        return self._sends(number, method, request, names)
+
+    def sends(self, number: int, method: str, request: Any) -> tuple[Event, ...]:  # noqa: ANN401 - of any system
+        """The event of a call whose params are known already and have no names. Raises UnreadableError."""
+        if not self._sent.add(number):
+            raise _wrong(f"call {number} was sent before; ids are unique within a file")
+        return self._sends(number, method, request, ())
+
+    def _sends(
+        self,
+        number: int,
+        method: str,
+        request: Any,  # noqa: ANN401 - of any system
+        names: tuple[Name, ...],
+    ) -> tuple[Event, ...]:
         if number in self._lost:
             return (Called(("call", number), request, names, lost=True),)
-        self._open[number] = method
+        self._open[number] = method, request
         return (Called(("call", number), request, names),)
+
+    def answers(self, number: int, answer: Answer) -> tuple[Event, ...]:
+        """The event of an answer without names to a call that is open."""
+        _, self.answered = self._open.pop(number)
+        return (Returned(("call", number), answer),)
 
     def _request(self, method: str, params: JSON) -> tuple[Any, tuple[Any, ...]]:
         names, rest = self.codec.split(method, params)
@@ -205,9 +235,10 @@ class Transcript:
 
     def _return(self, line: dict[str, Any]) -> tuple[Event, ...]:
         number = self._number(line, "return")
-        method = self._open.pop(number, None)
-        if method is None:
+        waiting = self._open.pop(number, None)
+        if waiting is None:
             raise _wrong(f"return {number}: no call with this id is waiting for an answer")
+        method, self.answered = waiting
         if ("result" in line) == ("error" in line):
             raise _wrong(f"return {number}: expected either a result or an error")
         if method == "cancel":
@@ -229,6 +260,8 @@ class Transcript:
 
     def _stream(self, line: dict[str, Any]) -> tuple[Event, ...]:
         stream = ("stream", self._number(line, "stream"))
+        if "message" in line and "closed" not in line:  # nearly always
+            return self._received(stream, line["message"])
         if line.get("closed") is True:
             return (Ended(stream, self._status(line["error"]) if line.get("error") else OK),)
         if "message" not in line:

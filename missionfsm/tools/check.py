@@ -10,12 +10,13 @@ from attrs import evolve
 
 from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Called, Event, Returned
+from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.moves import ExhaustedError
 from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
+from missionfsm.kernel.texts import Texts
 from missionfsm.kernel.transcript import Head, Transcript
 from missionfsm.tools.explain import violation
 from missionfsm.tools.rulings import Rulings, by_ambiguity
@@ -60,6 +61,8 @@ class Judge:
         self.rulings = Rulings(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost)
+        self.texts = Texts(self.transcript)
+        self._keeps = keep > 0
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0
@@ -67,25 +70,30 @@ class Judge:
         self.exhausted = False
         self._unexplained: Event | None = None
         self._violation: Violation | None = None
-        self._calls: dict[Any, Any] = {}
+        self._asked: Any = None
 
-    def feed(self, line: JSON) -> bool:
+    def feed(self, line: JSON, text: bytes | None = None) -> bool:
         """Take a line into account; False once the verdict cannot get better.
+
+        Args:
+            text: the line as it stands in a file, where lines that say it once more should be known by their text.
 
         Raises:
             UnreadableError: the line is not of the format.
         """
-        events = self.transcript.read(line)
-        self.lines.append(line)
+        events = self.transcript.read(line) if text is None else self.texts.read(text, line)
+        if self._keeps:
+            self.lines.append(line)
+        return self.take(events)
+
+    def take(self, events: tuple[Event, ...]) -> bool:
+        """Take the events of one line into account; see `feed`."""
         self.read += 1
         if self._unexplained is not None or self.exhausted:
             return False
         belief = self.belief
         for event in events:
             self.events += 1
-            kind = type(event)
-            if kind is Called:
-                self._calls[event.call] = event.request  # type: ignore[union-attr]
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
@@ -93,12 +101,12 @@ class Judge:
                 return False
             if not explained:
                 self._unexplained = event
+                self._asked = self.transcript.answered
                 return False
             if belief.node not in self._seen:
-                self.rulings.notice(event, self._calls)
-            if kind is Returned:
-                self._calls.pop(event.call, None)  # type: ignore[union-attr]
-                self.succeeded += event.answer.code == OK  # type: ignore[union-attr]
+                self.rulings.notice(event, self.transcript.answered)
+            if type(event) is Returned:
+                self.succeeded += event.answer.code == OK
         return True
 
     @property
@@ -110,7 +118,7 @@ class Judge:
     def violation(self) -> Violation | None:
         """What is wrong with the event that nothing explains; put into words when it is asked for."""
         if self._unexplained is not None and self._violation is None:
-            found = violation(self.belief, self._unexplained, self._calls)
+            found = violation(self.belief, self._unexplained, self._asked)
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 

@@ -59,20 +59,20 @@ class _Option:
     assumes: tuple[str, ...]
 
 
-def violation(belief: Belief, event: Event, calls: dict[Any, Any]) -> Violation:
+def violation(belief: Belief, event: Event, request: Any) -> Violation:  # noqa: ANN401 - of any system
     """What is wrong with the event that left a belief without explanations.
 
     Args:
-        calls: the requests of the calls that are in flight, by the name of the call.
+        request: what was asked, if the event is an answer.
     """
     spec, moves = belief.automaton.spec, belief.automaton.moves
     moves.reset()
     observed = event_words(spec, event)
     if isinstance(event, Returned):
-        if event.call in calls:
-            observed = f"{spec.describe(calls[event.call])} was {observed}"
+        if request is not None:
+            observed = f"{spec.describe(request)} was {observed}"
         options = list(_answers(belief, moves, event))
-        rules, notes = _against_answer(spec, event, options, calls.get(event.call))
+        rules, notes = _against_answer(spec, event, options, request)
     elif isinstance(event, Received):
         options, rules, notes = _against_message(belief, moves, event)
     elif isinstance(event, Settled):

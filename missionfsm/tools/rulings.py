@@ -53,11 +53,11 @@ class Rulings:
         self._belief = belief
         self._left = _left(belief.node)
 
-    def notice(self, event: Event, calls: Mapping[Any, Any]) -> None:
+    def notice(self, event: Event, asked: Any) -> None:  # noqa: ANN401 - a request of any system
         """An event has led to a node that was not seen before: note what it rules out, if anything.
 
         Args:
-            calls: the requests of the calls in flight, by the name of the call.
+            asked: the request that is answered, if the event is an answer.
         """
         node = self._belief.node
         if len(self.seen) >= NODES:
@@ -69,7 +69,7 @@ class Rulings:
             return
         self._left = left
         spec = self._belief.automaton.spec
-        request = calls.get(event.call) if isinstance(event, Returned) else None
+        request = asked if isinstance(event, Returned) else None
         ruling = Ruling(spec, event, request)
         for ambiguity in spec.ambiguities:
             for letter in ambiguity.possible(gone & ambiguity.group):

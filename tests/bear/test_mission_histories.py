@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import orjson
 import pytest
 
+from missionfsm.cli.recorded import check_file
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.transcript import Head
 from missionfsm.systems import system
@@ -277,3 +281,42 @@ def test_sixteen_lost_calls_and_an_impossible_answer() -> None:
     assert verdict.outcome.value == "violates", str(verdict)
     possible = judged(*lines, call(20, "ClearMissionStatus"), refused(20), lost=frozenset(range(1, 17)))
     assert possible.conforms, str(possible)
+
+
+# The same from files, where nobody says which calls are lost.
+
+
+def written(path: Path, lines: list[JSON]) -> str:
+    head = {"missionfsm": 1, "system": "bear.mission", "world": {}, "drives": DRIVES}
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in (head, *lines)))
+    return str(path)
+
+
+@pytest.mark.parametrize("rounds", [13, 47])
+def test_lost_calls_are_found_in_a_file(tmp_path: Path, rounds: int) -> None:
+    """A file that never answers twelve calls is judged as if somebody had said which."""
+    lines, lost = long_history(rounds, 12)
+    known = judged(*lines, lost=lost, readings=DEFAULT)
+    ((_, found),) = check_file(written(tmp_path / "log.jsonl", lines), DEFAULT)
+    assert (found.outcome, found.events, found.exercised) == (known.outcome, known.events, known.exercised)
+
+
+def test_an_impossible_answer_after_lost_calls_is_found_in_a_file(tmp_path: Path) -> None:
+    """The line is named, and what is shown of the history before it is all of it."""
+    lines = [call(number, "CreateMission", delivery(f"table-{number % 3 + 1}")) for number in range(1, 17)]
+    lines += [call(20, "ClearMissionStatus"), cleared(20, *(f"m{number}" for number in range(17)))]
+    ((_, found),) = check_file(written(tmp_path / "log.jsonl", lines))
+    assert found.violation is not None
+    assert (found.violation.at, len(found.violation.history)) == (19, 19)
+
+
+@pytest.mark.parametrize("answered", [True, False])
+def test_calls_that_wait_long_are_not_lost(tmp_path: Path, *, answered: bool) -> None:
+    """A call may be answered hundreds of lines later, or not before the file ends."""
+    lines, _ = long_history(40, 0)
+    lines = [call(9001, "SkipGoal"), *lines, *([{"return": 9001, "result": {}}] if answered else [])]
+    known = judged(*lines, lost=frozenset() if answered else frozenset({9001}))
+    ((_, found),) = check_file(written(tmp_path / "log.jsonl", lines))
+    assert (found.outcome, found.events, found.readings) == (known.outcome, known.events, known.readings)
+    # Nothing answers a skip with OK and without the name of a mission.
+    assert found.conforms is not answered

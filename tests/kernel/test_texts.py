@@ -1,0 +1,107 @@
+"""A line that is known by its text says what it says when it is read: whatever was remembered before."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.history import Event
+from missionfsm.kernel.texts import LONG, Texts
+from missionfsm.kernel.transcript import Transcript
+from missionfsm.systems import system
+
+CODEC = system("bear.mission").codec
+
+ENDS = (
+    ',"method":"SkipGoal","params":{}}',
+    ',"method":"SkipGoal"}',
+    ', "method": "SkipGoal", "params": {}}',
+    ',"method":"ClearMissionStatus","params":{}}',
+    ',"method":"UpdateMission","params":{"missionCommand":{"missionId":"m","command":"COMMAND_PAUSE"}}}',
+    ',"method":"cancel","params":{"stream":1}}',
+    ',"method":"SkipGoal","params":{},"call":7}',
+    ',"method":"Skip"}',
+    ',"result":{}}',
+    ',"result":{"missionIds":[]}}',
+    ',"result":{"missionIds":["m"]}}',
+    ',"error":{"status":"FAILED_PRECONDITION"}}',
+    ',"error":{"status":"OK"}}',
+    ',"result":{},"return":2}',
+    "}",
+)
+NUMBERS = ("1", "2", "3", "7", "12", "007", "-1", "1.5", "1e2", " 1", "true", '"1"', "9" * 20, "")
+WHOLE = (
+    '{"settled":true}',
+    '{"settled":false}',
+    '{"drive":{"event":"goalReached"}}',
+    '{"drive":{"event":"world","blocked":true}}',
+    '{"stream":1,"message":{"missionStates":{"missions":[],"currentMissionIndex":-1}}}',
+    '{"stream":1,"closed":true}',
+    "[]",
+    "{}",
+)
+
+BEGINNINGS = ('{"call":', '{"return":')
+line = st.one_of(
+    st.builds("".join, st.tuples(*map(st.sampled_from, (BEGINNINGS, NUMBERS, ENDS)))),
+    st.sampled_from(WHOLE),
+)
+call, answer = (
+    st.builds(begins.__add__, st.builds("{}{}".format, st.integers(1, 30), st.sampled_from(ends)))
+    for begins, ends in (('{"call":', ENDS[:5]), ('{"return":', ENDS[8:12]))
+)
+
+
+def read(transcript: Transcript, texts: Texts | None, text: str) -> tuple[Event, ...] | str:
+    """The events of a line, or what is wrong with it."""
+    try:
+        known = texts.again(text.encode()) if texts else None
+        if known is not None:
+            return known
+        parsed: JSON = json.loads(text)
+        return texts.read(text.encode(), parsed) if texts else transcript.read(parsed)
+    except (UnreadableError, json.JSONDecodeError) as error:
+        return str(error)
+
+
+@given(st.lists(st.one_of(line, call, answer), max_size=40), st.frozensets(st.integers(1, 30), max_size=3))
+@example(['{"call":1,"method":"SkipGoal","params":{}}', '{"call":1,"method":"SkipGoal","params":{}}'], frozenset())
+@example(
+    ['{"call":1,"method":"SkipGoal"}', '{"call":2,"method":"SkipGoal"}', '{"return":2,"result":{}}'], frozenset({2})
+)
+def test_a_known_text_says_what_its_line_says(lines: list[str], lost: frozenset[int]) -> None:
+    """With texts remembered and without: the same events, and the same complaints."""
+    plain, known = Transcript(CODEC, lost=lost), Transcript(CODEC, lost=lost)
+    texts = Texts(known)
+    for text in lines:
+        assert read(known, texts, text) == read(plain, None, text)
+        assert (known.pending, known.answered) == (plain.pending, plain.answered)
+
+
+def test_what_comes_again_is_known() -> None:
+    """A call, its answer, a drive and a silence need to be read once; names are not remembered, nor is a long line."""
+    transcript = Transcript(CODEC)
+    texts = Texts(transcript)
+    long = json.dumps({"call": 5, "method": "SkipGoal", "params": {"x": LONG * "x"}}, separators=(",", ":"))
+    named = (
+        '{"call":6,"method":"UpdateMission","params":{"missionCommand":{"missionId":"m","command":"COMMAND_PAUSE"}}}'
+    )
+    once = ['{"call":1' + ENDS[0], '{"return":1' + ENDS[11], WHOLE[0], WHOLE[2], long, named]
+    for text in once:
+        assert texts.again(text.encode()) is None
+        read(transcript, texts, text)
+    again = [text.replace(":1,", ":2,").replace(":5,", ":7,").replace(":6,", ":8,") for text in once]
+    assert [texts.again(text.encode()) is not None for text in again] == [True, True, True, True, False, False]
+
+
+@pytest.mark.parametrize("number", ["02", "2.0", "true", '"2"', " 2", "-2", "2e0", "9" * 30, ""])
+def test_only_plain_numbers_are_known(number: str) -> None:
+    """A number that is written in another way, or is none, is left to be read."""
+    texts = Texts(Transcript(CODEC))
+    read(texts._transcript, texts, '{"call":1' + ENDS[0])
+    assert texts.again(f'{{"call":{number}{ENDS[0]}'.encode()) is None
+    assert texts.again(f'{{"call":2{ENDS[0]}'.encode()) is not None

@@ -5,6 +5,7 @@ A history is read once and never held: what is kept is one judge for every robot
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -36,6 +37,15 @@ def open_history(path: str) -> IO[bytes]:
 def wrong_line(path: str, number: int, says: object) -> UnreadableError:
     """What is wrong, with the place where it is."""
     return UnreadableError(f"{'stdin' if path == STDIN else path}:{number}: {says}")
+
+
+@contextlib.contextmanager
+def placed(path: str, number: int) -> Iterator[None]:
+    """Says where it is what is wrong with a line."""
+    try:
+        yield
+    except UnreadableError as error:
+        raise wrong_line(path, number, error) from None
 
 
 def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bool]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from attrs import evolve
@@ -17,6 +17,7 @@ from missionfsm.adapters.historyfile import (
     lines,
     lost_calls,
     open_history,
+    placed,
     wrong_line,
 )
 from missionfsm.cli.watched import subscription, watch_messages
@@ -74,18 +75,15 @@ def _judged(
         if not number:
             message = f"{'stdin' if path == STDIN else path}: the history is empty"
             raise UnreadableError(message)
-        try:
+        with placed(path, number):
             line = texts.json(text)
-            watched = subscription(line)
-            if not watched:
-                judges = _Judges(line, readings, lost, keep)
-                for number, text in numbered:
-                    judges.take(number, texts, text)
-        except UnreadableError as error:
-            raise wrong_line(path, number, error) from None
+        watched = subscription(line)
         if watched:
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
             return [(None, watch_messages(watched, messages, tell))]
+        with placed(path, number):
+            judges = _Judges(line, readings, lost, keep)
+        judges.read(path, texts, numbered)
     finally:
         if path != STDIN:
             source.close()
@@ -114,7 +112,6 @@ class _Judges:
         self._lost = lost
         self._keep = keep
         self._nobody = self._new(None)
-        self._again = self._nobody.texts.again
         self._judges: dict[str | None, Judge] = {}
         self._stopped: dict[str | None, int] = {}
         self._waiting: dict[Judge, int] = {}
@@ -123,16 +120,23 @@ class _Judges:
         calls = (self._lost or {}).get(robot, frozenset())
         return Judge(self._system, self._head, self._automaton, fingerprint=fingerprint, lost=calls, keep=self._keep)
 
-    def take(self, number: int, texts: Lines, text: bytes) -> None:
-        """Take the next line into account. Raises UnreadableError for one that is not of the format."""
-        if self._lost is None and not number % LOOK:
-            self._look()
-        known = None if self._keep else self._again(text)
-        if known is not None:  # it names neither a time nor a robot, as nearly all lines
-            if not self._nobody.take(known):
-                self._stopped.setdefault(None, number)
-            return
-        line = texts.json(text)
+    def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
+        """Take all lines into account. Raises UnreadableError for one that is not of the format."""
+        again, take = self._nobody.texts.again, self._nobody.take
+        read_again, looks = not self._keep, self._lost is None
+        for number, text in numbered:
+            try:
+                if looks and not number % LOOK:
+                    self._look()
+                known = again(text) if read_again else None
+                if known is None:
+                    self._take(number, text, texts.json(text))
+                elif not take(known):  # it names neither a time nor a robot, as most lines
+                    self._stopped.setdefault(None, number)
+            except UnreadableError as error:
+                raise wrong_line(path, number, error) from None
+
+    def _take(self, number: int, text: bytes, line: JSON) -> None:
         robot = self._stamps.robot(line)
         judge = self._judges.get(robot)
         if judge is None:

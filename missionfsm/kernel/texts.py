@@ -14,6 +14,7 @@ from missionfsm.kernel.transcript import REMEMBERED, Transcript
 
 _CALL, _RETURN, _STREAM = b'{"call":', b'{"return":', b'{"stream":'
 """How nearly all lines begin that call, return or show a message; no two messages are alike."""
+_MOST_DIGITS = 19
 LONG = 1_000
 """Bytes of a line that is too long to be remembered."""
 
@@ -42,14 +43,16 @@ class Texts:
         if text.startswith(_CALL):
             end = text.find(b",")
             called = self._calls.get(text[end:])
-            number = None if called is None else _number(text[8:end])
-            return None if number is None else self._transcript.sends(number, *called)  # type: ignore[misc]
+            if called is None or not _is_number(text[8:end]):
+                return None
+            return self._transcript.sends(int(text[8:end]), *called)
         if text.startswith(_RETURN):
             end = text.find(b",")
-            number = _number(text[10:end])
-            if number is None or number not in self._pending:
+            if not _is_number(text[10:end]):
                 return None
-            answer = self._answers.get((self._pending[number][0], text[end:]))
+            number = int(text[10:end])
+            waiting = self._pending.get(number)
+            answer = None if waiting is None else self._answers.get((waiting[0], text[end:]))
             return None if answer is None else self._transcript.answers(number, answer)
         return self._others.get(text)
 
@@ -84,15 +87,13 @@ def _rest(text: bytes, begins: bytes, number: int) -> bytes:
     """What comes after the number of a line; empty if the line is written in another way, or has the key twice."""
     end = text.find(b",")
     rest = text[end:]
-    usual = text.startswith(begins) and _number(text[len(begins) : end]) == number and begins[1:-1] not in rest
+    usual = text.startswith(begins) and text[len(begins) : end] == b"%d" % number and begins[1:-1] not in rest
     return rest if usual else b""
 
 
-def _number(digits: bytes) -> int | None:
-    """The number that digits say, if they are ones that JSON has."""
-    if not digits.isdigit() or (digits.startswith(b"0") and len(digits) > 1) or len(digits) > 18:
-        return None
-    return int(digits)
+def _is_number(digits: bytes) -> bool:
+    """Whether digits are a number as nearly all are written: positive, and not too long for JSON."""
+    return digits.isdigit() and digits[0] != ord("0") and len(digits) < _MOST_DIGITS
 
 
 __all__ = ["Texts"]

@@ -269,19 +269,19 @@ class Transcript:
         return self._received(stream, line["message"])
 
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
-        parts = self.codec.strip(message)
-        if len(parts) == 1:  # nearly always, and faster so
-            ((names, marks, rest),) = parts
-            return (Received(channel, self._content(rest), names, marks),)
-        return tuple([Received(channel, self._content(rest), names, marks) for names, marks, rest in parts])
+        found = []
+        for names, marks, rest in self.codec.strip(message):
+            key = self._fingerprint(rest)
+            content = self._contents.get(key)
+            if content is None:
+                content = self._content(key, rest)
+            found.append(Received(channel, content, names, marks))
+        return tuple(found)
 
-    def _content(self, rest: JSON) -> Hashable:
-        key = self._fingerprint(rest)
-        content = self._contents.get(key)
-        if content is None:
-            if len(self._contents) >= REMEMBERED:
-                self._contents.clear()
-            content = self._contents[key] = self.codec.content(rest)
+    def _content(self, key: Hashable, rest: JSON) -> Hashable:
+        if len(self._contents) >= REMEMBERED:
+            self._contents.clear()
+        content = self._contents[key] = self.codec.content(rest)
         return content
 
     def _connection(self, line: dict[str, Any]) -> tuple[Event, ...]:

@@ -35,6 +35,11 @@ class Judge:
         automaton: a belief automaton to walk; its own is made where none is given. Sharing one makes many judges fast.
         fingerprint, lost: see `missionfsm.kernel.transcript.Transcript`.
         keep: how many lines are kept to be shown.
+
+    Attributes:
+        right: whether everything so far is explained, within the budget.
+        exhausted: whether it was not within the budget.
+        read, events, succeeded: how many lines and events were taken into account, and answers were OK.
     """
 
     def __init__(  # noqa: PLR0913 - all but the first two have a default
@@ -67,6 +72,7 @@ class Judge:
         self.read = 0
         self.events = 0
         self.succeeded = 0
+        self.right = True
         self.exhausted = False
         self._unexplained: Event | None = None
         self._violation: Violation | None = None
@@ -89,7 +95,7 @@ class Judge:
     def take(self, events: tuple[Event, ...]) -> bool:
         """Take the events of one line into account; see `feed`."""
         self.read += 1
-        if self._unexplained is not None or self.exhausted:
+        if not self.right:
             return False
         belief = self.belief
         for event in events:
@@ -97,22 +103,17 @@ class Judge:
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
-                self.exhausted = True
+                self.exhausted, self.right = True, False
                 return False
             if not explained:
-                self._unexplained = event
+                self._unexplained, self.right = event, False
                 self._asked = self.transcript.answered
                 return False
             if belief.node not in self._seen:
                 self.rulings.notice(event, self.transcript.answered)
-            if type(event) is Returned:
-                self.succeeded += event.answer.code == OK
+            if type(event) is Returned and event.answer.code == OK:
+                self.succeeded += 1
         return True
-
-    @property
-    def right(self) -> bool:
-        """Whether everything so far is explained, within the budget."""
-        return self._unexplained is None and not self.exhausted
 
     @property
     def violation(self) -> Violation | None:

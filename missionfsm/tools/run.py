@@ -19,6 +19,7 @@ from missionfsm.tools.conversation import WRONG_NAME, Action, Conversation, Give
 from missionfsm.tools.guide import Guide, Proposal
 from missionfsm.tools.picking import kind_of, slots
 from missionfsm.tools.rulings import Ruling
+from missionfsm.tools.shortest import length, shortest
 from missionfsm.tools.shrink import shrink
 from missionfsm.tools.story import inconsistent
 from missionfsm.tools.verdict import Violation
@@ -375,7 +376,13 @@ class Run:
     def shortened(self, found: Conversation) -> Conversation:
         """The shortest conversation like one that cannot be explained, asking the implementation again each time."""
         same = functools.partial(self.attempt, automaton=found.judge.automaton)
-        return shrink(found, same, self._simpler, self.guide.worlds[0])
+        short = shrink(found, same, self._simpler, self.guide.worlds[0])
+        alphabet = self.system.alphabet(short.world, self.bounds)
+        # From some long conversations no part can go though there are shorter ones.
+        shorter = shortest(short, functools.partial(same, short.world), alphabet, length(short) - 1)
+        if shorter is None or self._is_known(shorter):
+            return short
+        return shrink(shorter, same, self._simpler, self.guide.worlds[0])
 
     def shorten_evidence(self) -> None:
         """Make the conversations that ruled out the readings of a contradiction as short as can be."""

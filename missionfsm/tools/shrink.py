@@ -14,6 +14,8 @@ Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 """Has a conversation anew: in a world, with some actions, until it cannot be explained any more."""
 
 MOST_ATTEMPTS = 2_000
+FEW = 24
+"""Of so many actions every run is tried to be left out."""
 
 
 def unexplained(conversation: Conversation) -> bool:
@@ -77,16 +79,18 @@ class _Shrinker:
         return True
 
     def _leave_out(self) -> bool:
-        """Leave out runs of actions, long ones first, until no single one can go; whether any went."""
+        """Leave out runs of actions, long ones first, until none can go; whether any went."""
         before = len(self.actions)
         size = max(1, before // 2)
         while size:
+            few = len(self.actions) <= FEW
             at = 0
             while at < len(self.actions):
                 actions = self.actions
                 if not self._try(self.best.world, actions[:at] + actions[at + size :]):
-                    at += size
-            size //= 2
+                    at += 1 if few else size
+            # Of few actions runs of every length are tried: a round of something may go where no part of it can.
+            size = min(size - 1, len(self.actions) - 1) if few else size // 2
         return len(self.actions) < before
 
     def _say_simply(self) -> bool:

@@ -70,6 +70,10 @@ class Mutant:
         """The rule and how it is broken."""
         return f"{self.rule} {self.kind}"
 
+    def subject(self, system: System) -> Reference:
+        """The implementation, to be asked."""
+        return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend)
+
 
 @frozen
 class Bite:
@@ -186,7 +190,7 @@ class _Broken(Reference):
 
 
 def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
-    broken = _Broken(evolve(system, spec=mutant.spec), mutant.choice, mutant.twist, mutant.bend)
+    broken = mutant.subject(system)
     because = ""
     for fresh, conversations in enumerate((FIRST, *ROUNDS)):
         about = introduce(system, broken)

@@ -5,6 +5,7 @@ Run with ``pytest -o addopts= tests/bench/test_bench_conform.py -s``; skipped ot
 
 from __future__ import annotations
 
+import functools
 import json
 import random
 import shutil
@@ -23,9 +24,10 @@ from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.systems import names, system
-from missionfsm.tools.conform import conform, search
+from missionfsm.tools.conform import DEFAULT_TOURS, conform, search
 from missionfsm.tools.conversation import introduce
 from missionfsm.tools.run import Run
+from missionfsm.tools.shortest import everything, length
 from missionfsm.tools.subject import Reference
 
 MISSION = system("bear.mission")
@@ -113,6 +115,7 @@ def test_bench_conform_time_to_the_first_violation(benchmark: Any) -> None:
     listed = subprocess.run(
         [str(NODE), str(SUBJECTS / "bear_mission.mjs"), "--list-breaks"], capture_output=True, check=True
     )
+    lengths: dict[str, int] = {}
     first: dict[str, float] = {}
     whole: dict[str, float] = {}
     missed: list[str] = []
@@ -130,12 +133,28 @@ def test_bench_conform_time_to_the_first_violation(benchmark: Any) -> None:
             return
         first[name], whole[name] = last[0] - began, time.perf_counter() - began
 
+    def look(name: str) -> None:
+        child = Child([str(NODE), str(SUBJECTS / "bear_mission.mjs"), "--break", name])
+        run = Run.of(MISSION, child)
+        search(run, 30, 30, DEFAULT_TOURS, 1)
+        run.shorten()
+        if run.found is not None:
+            lengths[name] = length(run.found)
+            attempt = functools.partial(run.attempt, run.found.world)
+            alphabet = run.system.alphabet(run.found.world, run.bounds)
+            assert everything(attempt, alphabet, lengths[name] - 2) is None, name
+        child.close()
+
     benchmark.pedantic(lambda: [judge(name) for name in json.loads(listed.stdout)], rounds=1)
+    for name in first:
+        look(name)
     slowest = max(first, key=lambda name: first[name])
     print(
         f"\n{len(first)} faults found, {len(missed)} not ({', '.join(missed) or 'none'}):"
         f" median {statistics.median(first.values()):.2f} s to the first violation,"
-        f" {statistics.median(whole.values()):.2f} s to a short story; slowest {slowest}, {first[slowest]:.2f} s"
+        f" {statistics.median(whole.values()):.2f} s to a short story; slowest {slowest}, {first[slowest]:.2f} s;"
+        f" {len(lengths)} stories of {statistics.median(lengths.values())} calls and drives, {max(lengths.values())} at"
+        " most, none more than one longer than the shortest"
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import sys
 from pathlib import Path
 
@@ -15,9 +16,13 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.kernel.transcript import head
 from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform
+from missionfsm.tools.conform import conform, search
+from missionfsm.tools.conversation import Conversation
+from missionfsm.tools.run import Run
+from missionfsm.tools.shortest import everything, length
 from missionfsm.tools.story import as_mermaid, as_pytest, story, suspects
 from missionfsm.tools.subject import Reference
+from missionfsm.tools.teeth import mutants
 from missionfsm.tools.verdict import Verdict
 
 HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
@@ -58,6 +63,31 @@ def test_nothing_can_be_left_out_of_a_story(code: str, rule: str) -> None:
     for left_out in done:
         assert _had(first, [one for one in done if one is not left_out], answering(code, rule)).violation is None
     assert _had(first, done, answering(code, rule)).violation is not None
+
+
+def test_no_story_is_much_longer_than_the_shortest() -> None:
+    """Whatever rule is broken: no conversation that is shorter by two, of anything worth trying, shows anything."""
+    told = []
+    for mutant in itertools.islice(mutants(MISSION), 0, None, 32):
+        run = Run.of(MISSION, mutant.subject(MISSION))
+        search(run, 20, 20, 60, 1)
+        run.shorten()
+        if run.found is None:  # it does what some reading allows, or contradicts itself across conversations
+            continue
+        told.append(length(run.found))
+        assert _shortest(run, run.found, told[-1] - 2) is None, mutant.name
+        if told[-1] < 3:
+            again = _shortest(run, run.found, told[-1])
+            assert again is not None, mutant.name
+            assert told[-1] - length(again) <= 1
+    assert len(told) > 8
+    assert max(told) >= 3
+
+
+def _shortest(run: Run, found: Conversation, depth: int) -> Conversation | None:
+    """The shortest that is found by having all conversations in the same world, whatever they are of."""
+    alphabet = run.system.alphabet(found.world, run.bounds)
+    return everything(functools.partial(run.attempt, found.world), alphabet, depth)
 
 
 def _had(first: JSON, done: list[JSON], subject: object) -> Verdict:

@@ -16,8 +16,8 @@ _SETTLE = Line("settle")
 _SUBSCRIBE = Line("SubscribeMissionStatus", {})
 
 
-def _drive(event: str) -> tuple[Line, ...]:
-    return (Line("drive", {"event": event}), _SETTLE)
+def _drive(event: str, **fields: JSON) -> tuple[Line, ...]:
+    return (Line("drive", {"event": event, **fields}), _SETTLE)
 
 
 def _call(method: str, params: JSON = None) -> tuple[Line, ...]:
@@ -33,9 +33,12 @@ def _command(mission: int, command: str) -> tuple[Line, ...]:
 _SINGLE: JSON = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 
 
+_GOALS: list[JSON] = [{"destinationId": name} for name in ("table-1", "table-2", "table-3")]
+_AUTO: JSON = {"mission": {"baseMission": {"navigateAutoMission": {"goals": _GOALS}}}}
+
+
 def _several(which: str) -> JSON:
-    goals = [{"destinationId": name} for name in ("table-1", "table-2", "table-3")]
-    return {"mission": {"serviMission": {which: {"goals": goals}}}}
+    return {"mission": {"serviMission": {which: {"goals": _GOALS}}}}
 
 
 _CREATED = (_SUBSCRIBE, *_call("CreateMission", _several("deliveryMission")))
@@ -80,4 +83,14 @@ def _patrols() -> Iterator[tuple[Line, ...]]:
             yield (*begun, *round_once, *_command(0, command), *_drive("goalReached"), *_call("SkipGoal"))
 
 
-SCRIPTS = (*_commands(), *_patrols())
+def _choices() -> Iterator[tuple[Line, ...]]:
+    """Which goal is taken where some are not free: at the start, after a skip, and when that changes on the way."""
+    for taken in (["table-1"], ["table-2"], ["table-1", "table-2"]):
+        occupied = _drive("world", occupied=taken)
+        yield (_SUBSCRIBE, *occupied, *_call("CreateMission", _AUTO), *_call("SkipGoal"), *_call("SkipGoal"))
+        yield (_SUBSCRIBE, *_call("CreateMission", _AUTO), *occupied, *_call("SkipGoal"), *_drive("goalReached"))
+        behind = (*_call("CreateMission", _SINGLE), *_call("AppendMission", _AUTO))
+        yield (_SUBSCRIBE, *behind, *occupied, *_drive("missionSucceeded"), *_call("SkipGoal"))
+
+
+SCRIPTS = (*_choices(), *_commands(), *_patrols())

@@ -86,7 +86,7 @@ class Violation:
         lines += [f"  {note}" for note in self.notes]
         if self.rules:
             lines.append("  against:")
-            lines += [f"    - {one}" for one in self.rules]
+            lines += dict.fromkeys(f"    - {one}" for one in self.rules)
         return "\n".join(lines)
 
 

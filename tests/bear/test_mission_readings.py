@@ -11,6 +11,7 @@ from missionfsm.kernel.belief import Automaton
 from missionfsm.systems import system
 from missionfsm.tools.conform import conform
 from missionfsm.tools.conversation import Action, Conversation, introduce
+from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 
 MISSION = system("bear.mission")
@@ -25,6 +26,7 @@ AUTOMATON = Automaton(MISSION.spec, MISSION.spec.drives)
 """What is observed does not depend on who is judged, so all of them walk in one automaton."""
 
 CONVERSATIONS, STEPS = 8, 25
+CHOOSING = ("AM-18", "AM-45.when")
 
 
 def talk(reference: Reference, world: object, chance: random.Random) -> Conversation:
@@ -80,3 +82,19 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
     ]
     assert verdicts[0].to_json() == verdicts[1].to_json()
     assert verdicts[0].exercised != verdicts[2].exercised
+
+
+@pytest.mark.parametrize(
+    ("name", "letter"),
+    [
+        (one.id, letter)
+        for one in MISSION.spec.ambiguities
+        if one.id in ("AM-18", "AM-45.when")
+        for letter in one.readings
+    ],
+)
+def test_the_written_down_conversations_tell_how_goals_are_chosen(name: str, letter: str) -> None:
+    """Which goal a NavigateAuto mission takes, and when, shows only where goals are taken away at the right moment."""
+    run = Run.of(MISSION, Reference(MISSION, {name: letter}))
+    assert run.play()
+    assert run.readings[name] == (letter,)

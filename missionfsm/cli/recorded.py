@@ -57,7 +57,7 @@ class _UndecidedError(Exception):
     """Calls wait for answers that may never come: it pays to know beforehand which."""
 
 
-LOOK = 64
+LOOK = 16
 """How many lines a call may wait for its answer before the file is looked through for such as never get one."""
 
 

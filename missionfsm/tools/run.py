@@ -377,6 +377,8 @@ class Run:
         """The shortest conversation like one that cannot be explained, asking the implementation again each time."""
         same = functools.partial(self.attempt, automaton=found.judge.automaton)
         short = shrink(found, same, self._simpler, self.guide.worlds[0])
+        if self.enough():
+            return short
         alphabet = self.system.alphabet(short.world, self.bounds)
         # From some long conversations no part can go though there are shorter ones.
         shorter = shortest(short, functools.partial(same, short.world), alphabet, length(short) - 1)

@@ -115,28 +115,11 @@ class _Search:
 
     def _actions(self, here: Conversation) -> Iterator[tuple[Action, bool]]:
         """Everything worth doing here, and whether it brings the system on."""
-        plain = self.alphabet.plain
-        asked = dict.fromkeys(map(_Said, (*plain, *self.alphabet.prompts)))
-        done = (Prompt("drive", drive) for drive in (*self.alphabet.plain_drives, *self.alphabet.drives))
-        for said in (*asked, *dict.fromkeys(map(_Said, done))):
-            prompt = said.prompt
-            leads_on = prompt in plain or prompt.params in self.alphabet.plain_drives
+        plain = (*self.alphabet.plain, *(Prompt("drive", one) for one in self.alphabet.plain_drives))
+        others = (*self.alphabet.prompts, *(Prompt("drive", one) for one in self.alphabet.drives))
+        for prompt in {repr(one): one for one in (*plain, *others)}.values():
             for action in _named(here, prompt, self.alphabet.wrong_names):
-                yield action, leads_on
-
-
-class _Said:
-    """A prompt that is the same as others that say the same."""
-
-    def __init__(self, prompt: Prompt) -> None:
-        self.prompt = prompt
-        self._says = (prompt.method, repr(prompt.params))
-
-    def __hash__(self) -> int:
-        return hash(self._says)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Said) and self._says == other._says
+                yield action, prompt in plain
 
 
 def _named(here: Conversation, prompt: Prompt, wrong: tuple[str, ...]) -> Iterator[Action]:

@@ -137,12 +137,14 @@ class _Judges:
                 raise wrong_line(path, number, error) from None
 
     def _take(self, number: int, text: bytes, line: JSON) -> None:
-        robot = self._stamps.robot(line)
+        plain = type(line) is dict and "at" not in line and "robot" not in line
+        robot = None if plain else self._stamps.robot(line)
         judge = self._judges.get(robot)
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
-        plain = not self._keep and "at" not in line and "robot" not in line
-        if not judge.feed(line, text if plain else None):
+        # No two messages are alike, so that their text is not worth remembering.
+        known_by_text = plain and not self._keep and "message" not in line
+        if not judge.feed(line, text if known_by_text else None):
             self._stopped.setdefault(robot, number)
 
     def _look(self) -> None:

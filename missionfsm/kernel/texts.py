@@ -58,9 +58,7 @@ class Texts:
 
     def read(self, text: bytes, line: JSON) -> tuple[Event, ...]:
         """The events of a line that was not known. Raises UnreadableError."""
-        if text.startswith(_STREAM) or not isinstance(line, dict):
-            return self._transcript.read(line)
-        number = line.get("return")
+        number = line.get("return") if isinstance(line, dict) else None
         waiting = self._pending.get(number) if type(number) is int else None
         events = self._transcript.read(line)
         if len(text) <= LONG and len(events) == 1:

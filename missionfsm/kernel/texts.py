@@ -9,20 +9,23 @@ from __future__ import annotations
 from typing import Any
 
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.history import Answer, Called, Driven, Event, Returned, Settled
+from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Returned, Settled
 from missionfsm.kernel.transcript import REMEMBERED, Transcript
 
 _CALL, _RETURN, _STREAM = b'{"call":', b'{"return":', b'{"stream":'
 """How nearly all lines begin that call, return or show a message; no two messages are alike."""
 _MOST_DIGITS = 19
+_NOBODY: tuple[Name, ...] = ()
+FORMS = 100
+"""How many different texts around a name are remembered."""
 LONG = 1_000
 """Bytes of a line that is too long to be remembered."""
 
 
 class Texts:
-    """The lines that a transcript has read, to know them again. Names are never remembered: they do not come again.
+    """The lines that a transcript has read, to know them again, with any name where one name was.
 
-    It is for lines that say neither a time nor a robot.
+    It is for lines that say neither a time nor a robot. With several names in it none is known again.
     """
 
     def __init__(self, transcript: Transcript) -> None:
@@ -31,6 +34,8 @@ class Texts:
         self._calls: dict[bytes, tuple[str, Any]] = {}
         self._answers: dict[tuple[str | None, bytes], Answer] = {}
         self._others: dict[bytes, tuple[Event, ...]] = {}
+        self._called = _Named()
+        self._answered = _Named()
 
     def again(self, text: bytes) -> tuple[Event, ...] | None:
         """The events of a line that says what one said before; None where it has to be read.
@@ -42,18 +47,27 @@ class Texts:
             return None
         if text.startswith(_CALL):
             end = text.find(b",")
-            called = self._calls.get(text[end:])
+            rest, names = text[end:], _NOBODY
+            called = self._calls.get(rest)
+            if called is None:
+                called, names = self._called.find(None, rest)
             if called is None or not _is_number(text[8:end]):
                 return None
-            return self._transcript.sends(int(text[8:end]), *called)
+            method, request = called
+            return self._transcript.sends(int(text[8:end]), method, request, names)
         if text.startswith(_RETURN):
             end = text.find(b",")
             if not _is_number(text[10:end]):
                 return None
             number = int(text[10:end])
             waiting = self._pending.get(number)
-            answer = None if waiting is None else self._answers.get((waiting[0], text[end:]))
-            return None if answer is None else self._transcript.answers(number, answer)
+            if waiting is None:
+                return None
+            rest, names = text[end:], _NOBODY
+            answer = self._answers.get((waiting[0], rest))
+            if answer is None:
+                answer, names = self._answered.find(waiting[0], rest)
+            return None if answer is None else self._transcript.answers(number, answer, names)
         return self._others.get(text)
 
     def read(self, text: bytes, line: JSON) -> tuple[Event, ...]:
@@ -69,16 +83,54 @@ class Texts:
         if len(self._calls) + len(self._answers) + len(self._others) >= REMEMBERED:
             for known in (self._calls, self._answers, self._others):
                 known.clear()
-        if type(event) is Called and not event.names:
+        if type(event) is Called:
             rest = _rest(text, _CALL, line["call"])
-            if rest:
+            if rest and event.names:
+                self._called.add(None, rest, event.names, (line["method"], event.request))
+            elif rest:
                 self._calls[rest] = line["method"], event.request
-        elif type(event) is Returned and not event.names and method is not None:
+        elif type(event) is Returned and method is not None:
             rest = _rest(text, _RETURN, line["return"])
-            if rest:
+            if rest and event.names:
+                self._answered.add(method, rest, event.names, event.answer)
+            elif rest:
                 self._answers[method, rest] = event.answer
         elif type(event) is Settled or (type(event) is Driven and not event.names):
             self._others[text] = (event,)
+
+
+class _Named:
+    """What texts say that have one name in them: what comes before it, what comes after it, and what that says."""
+
+    def __init__(self) -> None:
+        self._said: dict[tuple[str | None, bytes, bytes], Any] = {}
+        self._lengths: tuple[int, ...] = ()
+
+    def find(self, method: str | None, rest: bytes) -> tuple[Any, tuple[Name, ...]]:
+        """What a text says, and its name; None for one that is not known."""
+        for length in self._lengths:
+            end = rest.find(b'"', length)
+            said = self._said.get((method, rest[:length], rest[end:]))
+            if said is not None:
+                name = rest[length:end].decode("ascii", "replace")
+                return (said, (name,)) if _is_plain(name) else (None, _NOBODY)
+        return None, _NOBODY
+
+    def add(self, method: str | None, rest: bytes, names: tuple[Name, ...], said: Any) -> None:  # noqa: ANN401
+        """Remember what a text says, if it has one name and that is written as it is, once."""
+        name = names[0]
+        if len(names) > 1 or not isinstance(name, str) or not _is_plain(name) or b"\\" in rest:
+            return
+        begun, found, end = rest.partition(b'"%b"' % name.encode())
+        if not found or found in end or len(self._said) >= FORMS:
+            return
+        self._said[method, begun + b'"', b'"' + end] = said
+        self._lengths = tuple(dict.fromkeys((*self._lengths, len(begun) + 1)))
+
+
+def _is_plain(name: str) -> bool:
+    """Whether a name is written in JSON just as it is."""
+    return bool(name) and name.isascii() and name.isprintable() and "\\" not in name and '"' not in name
 
 
 def _rest(text: bytes, begins: bytes, number: int) -> bytes:

@@ -197,11 +197,17 @@ class Transcript:
         request, names = self._request(method, params)
         return self._sends(number, method, request, names)
 
-    def sends(self, number: int, method: str, request: Any) -> tuple[Event, ...]:  # noqa: ANN401 - of any system
-        """The event of a call whose params are known already and have no names. Raises UnreadableError."""
+    def sends(
+        self,
+        number: int,
+        method: str,
+        request: Any,  # noqa: ANN401 - of any system
+        names: tuple[Name, ...],
+    ) -> tuple[Event, ...]:
+        """The event of a call whose params are known already. Raises UnreadableError."""
         if not self._sent.add(number):
             raise _wrong(f"call {number} was sent before; ids are unique within a file")
-        return self._sends(number, method, request, ())
+        return self._sends(number, method, request, names)
 
     def _sends(
         self,
@@ -215,10 +221,10 @@ class Transcript:
         self._open[number] = method, request
         return (Called(("call", number), request, names),)
 
-    def answers(self, number: int, answer: Answer) -> tuple[Event, ...]:
-        """The event of an answer without names to a call that is open."""
+    def answers(self, number: int, answer: Answer, names: tuple[Name, ...]) -> tuple[Event, ...]:
+        """The event of an answer to a call that is open."""
         _, self.answered = self._open.pop(number)
-        return (Returned(("call", number), answer),)
+        return (Returned(("call", number), answer, names),)
 
     def _request(self, method: str, params: JSON) -> tuple[Any, tuple[Any, ...]]:
         names, rest = self.codec.split(method, params)

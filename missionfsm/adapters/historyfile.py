@@ -111,17 +111,11 @@ def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
     return found.parsed(iter(found))
 
 
-_CALL, _RETURN = b'\n{"call":', b'\n{"return":'
-"""How the commonest lines that call or return begin; what they say can be told without reading all of them."""
-
-
 def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
-    """Ids of the calls of each robot that a file never answers; nothing is known of what can be read only once.
+    """Ids of the calls of each robot that a file never answers.
 
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
     """
-    if not Path(path).is_file():
-        return {}
     waiting: dict[str | None, set[int]] = {}
     with open_history(path) as source:
         try:
@@ -134,14 +128,6 @@ def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
 
 def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
     """Take the calls and the returns of some lines into account."""
-    block = b"\n".join((b"", *found))
-    if b'"robot"' not in block and b'"cancel"' not in block:
-        calls, returns = _numbers(block, _CALL), _numbers(block, _RETURN)
-        if (len(calls), len(returns)) == (block.count(b'"call"'), block.count(b'"return"')):
-            known = waiting.setdefault(None, set())
-            known.update(map(int, calls))
-            known.difference_update(map(int, returns))
-            return
     for line in found:
         if b'"call"' not in line and b'"return"' not in line:
             continue
@@ -153,12 +139,6 @@ def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
             known.add(one["call"])
         else:
             known.discard(one["return"])
-
-
-def _numbers(block: bytes, begins: bytes) -> list[bytes]:
-    """The numbers of the lines that begin so; those that are none are left out."""
-    numbers = [line.partition(b",")[0].strip() for line in block.split(begins)[1:]]
-    return numbers if b"".join(numbers).isdigit() else list(filter(bytes.isdigit, numbers))
 
 
 def fingerprint(value: JSON) -> bytes:

@@ -24,6 +24,7 @@ from missionfsm.cli.watched import subscription, watch_messages
 from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.readings import constrain
+from missionfsm.kernel.texts import Texts
 from missionfsm.kernel.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check import KEPT, Judge
@@ -46,7 +47,7 @@ def check_file(
         ValueError: `readings` names something that does not exist.
     """
     if not Path(path).is_file():  # it can be read only once
-        return _judged(path, readings, tell, {})
+        return _judged(path, readings, tell, {}, KEPT)
     try:
         return _judged(path, readings, tell, None)
     except _UndecidedError:
@@ -62,11 +63,14 @@ LOOK = 16
 
 
 def _judged(
-    path: str, readings: Mapping[str, str] | None, tell: Callable[[str], None], lost: Lost | None
+    path: str, readings: Mapping[str, str] | None, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
 ) -> list[tuple[str | None, Verdict]]:
-    """See `check_file`. `lost` says which calls are never answered; None: hope that all are, or raise."""
-    # What can be read again is not kept while it is read.
-    keep = 0 if Path(path).is_file() else KEPT
+    """See `check_file`.
+
+    Args:
+        lost: which calls are never answered; None: hope that all are, or raise.
+        keep: how many lines are kept to be shown; with none the file is one that can be read again.
+    """
     source = open_history(path)
     try:
         texts = Lines(source, path)
@@ -88,6 +92,7 @@ def _judged(
         if path != STDIN:
             source.close()
     found = judges.verdicts()
+    # What was not kept while it was read is read again.
     return found if keep else [(robot, _retold(verdict, path, robot)) for robot, verdict in found]
 
 
@@ -112,6 +117,7 @@ class _Judges:
         self._lost = lost
         self._keep = keep
         self._nobody = self._new(None)
+        self._texts = Texts(self._nobody.transcript)
         self._judges: dict[str | None, Judge] = {}
         self._stopped: dict[str | None, int] = {}
         self._waiting: dict[Judge, int] = {}
@@ -122,7 +128,7 @@ class _Judges:
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""
-        again, take = self._nobody.texts.again, self._nobody.take
+        again, take = self._texts.again, self._nobody.take
         read_again, looks = not self._keep, self._lost is None
         for number, text in numbered:
             try:
@@ -143,8 +149,8 @@ class _Judges:
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
         # No two messages are alike, so that their text is not worth remembering.
-        known_by_text = plain and not self._keep and "message" not in line
-        if not judge.feed(line, text if known_by_text else None):
+        comes_again = plain and not self._keep and "message" not in line
+        if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
             self._stopped.setdefault(robot, number)
 
     def _look(self) -> None:

@@ -53,8 +53,9 @@ class Texts:
                 called, names = self._called.find(None, rest)
             if called is None or not _is_number(text[8:end]):
                 return None
-            method, request = called
-            return self._transcript.sends(int(text[8:end]), method, request, names)
+            number, (method, request) = int(text[8:end]), called
+            self._transcript.begins(number)
+            return self._transcript.sends(number, method, request, names)
         if text.startswith(_RETURN):
             end = text.find(b",")
             if not _is_number(text[10:end]):

@@ -184,8 +184,7 @@ class Transcript:
 
     def _call(self, line: dict[str, Any]) -> tuple[Event, ...]:
         number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
-        if not self._sent.add(number):
-            raise _wrong(f"call {number} was sent before; ids are unique within a file")
+        self.begins(number)
         if not isinstance(method, str):
             raise _wrong(f"method: {brief(method)} is not the name of a call")
         if method == "cancel":
@@ -195,7 +194,12 @@ class Transcript:
             self._open[number] = method, None
             return (Cancelled(("stream", stream)),)
         request, names = self._request(method, params)
-        return self._sends(number, method, request, names)
+        return self.sends(number, method, request, names)
+
+    def begins(self, number: int) -> None:
+        """A call has this id. Raises UnreadableError if another one had it."""
+        if not self._sent.add(number):
+            raise _wrong(f"call {number} was sent before; ids are unique within a file")
 
     def sends(
         self,
@@ -204,18 +208,7 @@ class Transcript:
         request: Any,  # noqa: ANN401 - of any system
         names: tuple[Name, ...],
     ) -> tuple[Event, ...]:
-        """The event of a call whose params are known already. Raises UnreadableError."""
-        if not self._sent.add(number):
-            raise _wrong(f"call {number} was sent before; ids are unique within a file")
-        return self._sends(number, method, request, names)
-
-    def _sends(
-        self,
-        number: int,
-        method: str,
-        request: Any,  # noqa: ANN401 - of any system
-        names: tuple[Name, ...],
-    ) -> tuple[Event, ...]:
+        """The event of a call that has begun and whose params are known."""
         if number in self._lost:
             return (Called(("call", number), request, names, lost=True),)
         self._open[number] = method, request

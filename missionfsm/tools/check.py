@@ -16,7 +16,6 @@ from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
-from missionfsm.kernel.texts import Texts
 from missionfsm.kernel.transcript import Head, Transcript
 from missionfsm.tools.explain import violation
 from missionfsm.tools.rulings import Rulings, by_ambiguity
@@ -66,8 +65,6 @@ class Judge:
         self.rulings = Rulings(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost)
-        self.texts = Texts(self.transcript)
-        self._keeps = keep > 0
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0
@@ -78,22 +75,18 @@ class Judge:
         self._violation: Violation | None = None
         self._asked: Any = None
 
-    def feed(self, line: JSON, text: bytes | None = None) -> bool:
+    def feed(self, line: JSON) -> bool:
         """Take a line into account; False once the verdict cannot get better.
-
-        Args:
-            text: the line as it stands in a file, where lines that say it once more should be known by their text.
 
         Raises:
             UnreadableError: the line is not of the format.
         """
-        events = self.transcript.read(line) if text is None else self.texts.read(text, line)
-        if self._keeps:
-            self.lines.append(line)
+        events = self.transcript.read(line)
+        self.lines.append(line)
         return self.take(events)
 
     def take(self, events: tuple[Event, ...]) -> bool:
-        """Take the events of one line into account; see `feed`."""
+        """Take the events of a line into account that was read already and need not be shown; see `feed`."""
         self.read += 1
         if not self.right:
             return False

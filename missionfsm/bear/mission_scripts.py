@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from missionfsm.bear.mission_params import CANCEL, COMMANDS, FINISH, PAUSE, TABLES, auto, base, of_family
 from missionfsm.kernel.alphabet import ANY_NAME, Line
 from missionfsm.kernel.codec import JSON
-
-CANCEL, PAUSE, RESUME, FINISH = COMMANDS = ("COMMAND_CANCEL", "COMMAND_PAUSE", "COMMAND_RESUME", "COMMAND_FINISH")
 
 _SETTLE = Line("settle")
 _SUBSCRIBE = Line("SubscribeMissionStatus", {})
@@ -30,15 +29,12 @@ def _command(mission: int, command: str) -> tuple[Line, ...]:
     return (Line("UpdateMission", params, ((0, mission),)), _SETTLE)
 
 
-_SINGLE: JSON = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
-
-
-_GOALS: list[JSON] = [{"destinationId": name} for name in ("table-1", "table-2", "table-3")]
-_AUTO: JSON = {"mission": {"baseMission": {"navigateAutoMission": {"goals": _GOALS}}}}
+_SINGLE: JSON = {"mission": base({"destinationId": TABLES[0]})}
+_AUTO: JSON = {"mission": auto(*TABLES)}
 
 
 def _several(which: str) -> JSON:
-    return {"mission": {"serviMission": {which: {"goals": _GOALS}}}}
+    return {"mission": of_family("servi", which, *TABLES)}
 
 
 _CREATED = (_SUBSCRIBE, *_call("CreateMission", _several("deliveryMission")))

@@ -6,81 +6,64 @@ from collections.abc import Iterator
 
 from missionfsm.bear.mission_breaks import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission_json import CODEC
-from missionfsm.bear.mission_scripts import COMMANDS, SCRIPTS
+from missionfsm.bear.mission_params import COMMANDS, TABLES, auto, base, goals_at, of_family
+from missionfsm.bear.mission_scripts import SCRIPTS
 from missionfsm.bear.mission_sketches import SKETCHES
 from missionfsm.bear.mission_spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
-_TABLES = ("table-1", "table-2", "table-3")
-
-
-def _goals(*names: str) -> list[JSON]:
-    return [{"destinationId": name} for name in names]
-
-
-def _base(goal: JSON) -> JSON:
-    return {"baseMission": {"navigateMission": {"goal": goal}}}
-
-
-def _auto(*names: str) -> JSON:
-    return {"baseMission": {"navigateAutoMission": {"goals": _goals(*names)}}}
-
-
-def _of(family: str, which: str, *names: str) -> JSON:
-    return {f"{family}Mission": {which: {"goals": _goals(*names)}}}
-
 
 def _tables(count: int) -> tuple[str, ...]:
-    return tuple(_TABLES[index % len(_TABLES)] for index in range(count))
+    return tuple(TABLES[index % len(TABLES)] for index in range(count))
 
 
 def _missions(family: str, goals: int) -> Iterator[JSON]:
     """The missions that a robot of the family can run."""
     some = _tables(goals)
-    yield _base({"destinationId": _TABLES[0]})
-    yield _base({"pose": {"xMeters": 4.25, "yMeters": 7.75, "headingRadians": 1.5}})
-    yield _auto(*some)
+    yield base({"destinationId": TABLES[0]})
+    yield base({"pose": {"xMeters": 4.25, "yMeters": 7.75, "headingRadians": 1.5}})
+    yield auto(*some)
     if family == "servi":
-        yield _of("servi", "deliveryMission", *some)
-        yield _of("servi", "deliveryPatrolMission", *some)
-        yield _of("servi", "bussingMission", *reversed(some))
-        yield _of("servi", "bussingPatrolMission", _TABLES[1])
-        yield _of("servi", "navigateAutoMission", *some)
-        yield {"serviMission": {"navigateMission": {"goal": {"destinationId": _TABLES[1]}}}}
+        yield of_family("servi", "deliveryMission", *some)
+        yield of_family("servi", "deliveryPatrolMission", *some)
+        yield of_family("servi", "bussingMission", *reversed(some))
+        yield of_family("servi", "bussingPatrolMission", TABLES[1])
+        yield of_family("servi", "navigateAutoMission", *some)
+        yield {"serviMission": {"navigateMission": {"goal": {"destinationId": TABLES[1]}}}}
     if family == "carti":
-        yield _of("carti", "traverseMission", *some)
-        yield _of("carti", "traversePatrolMission", *some)
-        yield _of("carti", "navigateAutoMission", *some)
-        yield {"cartiMission": {"navigateMission": {"goal": {"destinationId": _TABLES[2]}}}}
+        yield of_family("carti", "traverseMission", *some)
+        yield of_family("carti", "traversePatrolMission", *some)
+        yield of_family("carti", "navigateAutoMission", *some)
+        yield {"cartiMission": {"navigateMission": {"goal": {"destinationId": TABLES[2]}}}}
 
 
 _DEFECTIVE: tuple[JSON, ...] = (
     None,
     {},
     {"baseMission": {}},
-    _base({}),
-    _base({"destinationId": ""}),
-    _base({"destinationId": "nowhere"}),
-    _base({"pose": {"xMeters": "NaN"}}),
-    _base({"destinationId": 7}),
+    base({}),
+    base({"destinationId": ""}),
+    base({"destinationId": "nowhere"}),
+    base({"pose": {"xMeters": "NaN"}}),
+    base({"destinationId": 7}),
     {"baseMission": {"navigateMission": {}}},
-    _auto(),
-    {**_base({"destinationId": _TABLES[0]}), "serviMission": {"deliveryMission": {"goals": _goals(_TABLES[0])}}},
+    auto(),
+    {**base({"destinationId": TABLES[0]}), "serviMission": {"deliveryMission": {"goals": goals_at(TABLES[0])}}},
     {"baseMission": {"navigateMission": "now"}},
-    _base({"destinationId": _TABLES[0], "pose": {"xMeters": 1.0}}),
-    _of("servi", "deliveryMission"),
-    _of("carti", "traverseMission", "nowhere"),
+    base({"destinationId": TABLES[0], "pose": {"xMeters": 1.0}}),
+    of_family("servi", "deliveryMission"),
+    of_family("carti", "traverseMission", "nowhere"),
 )
 """Missions that no robot should accept, whatever its family."""
 
 _FOREIGN: dict[str, tuple[JSON, ...]] = {
-    "base": (_of("servi", "deliveryMission", _TABLES[0]), _of("carti", "traverseMission", _TABLES[0])),
-    "servi": (_of("carti", "traverseMission", _TABLES[0]),),
-    "carti": (_of("servi", "bussingMission", _TABLES[0]),),
+    "base": (of_family("servi", "deliveryMission", TABLES[0]), of_family("carti", "traverseMission", TABLES[0])),
+    "servi": (of_family("carti", "traverseMission", TABLES[0]),),
+    "carti": (of_family("servi", "bussingMission", TABLES[0]),),
 }
-_TWICE = _auto(_TABLES[0], _TABLES[0])
+_TWICE = auto(TABLES[0], TABLES[0])
 
 _WORKFLOWS: dict[str, tuple[str, ...]] = {
     "base": (),
@@ -91,9 +74,9 @@ _WORKFLOWS: dict[str, tuple[str, ...]] = {
 
 def _workflows(family: str, goals: int) -> Iterator[JSON]:
     for name in _WORKFLOWS[family]:
-        yield {f"{family}Workflow": {name: {"goals": _goals(*_tables(goals))}}}
+        yield {f"{family}Workflow": {name: {"goals": goals_at(*_tables(goals))}}}
     if family == "servi":
-        yield {"serviWorkflow": {"birthday": {"goal": {"destinationId": _TABLES[0]}}}}
+        yield {"serviWorkflow": {"birthday": {"goal": {"destinationId": TABLES[0]}}}}
 
 
 _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
@@ -101,14 +84,14 @@ _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
     {},
     {"serviWorkflow": {}},
     {"serviWorkflow": {"delivery": {"goals": []}}},
-    {"serviWorkflow": {"delivery": {"goals": _goals("nowhere")}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at("nowhere")}}},
     {"serviWorkflow": {"birthday": {}}},
     {"cartiWorkflow": {"traverse": {"goals": [{}]}}},
-    {"serviWorkflow": {"delivery": {"goals": _goals(_TABLES[0])}}, "cartiWorkflow": {}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at(TABLES[0])}}, "cartiWorkflow": {}},
     {"serviWorkflow": []},
-    {"serviWorkflow": {"bussing": {"goals": _goals(_TABLES[0], _TABLES[0])}}},
-    {"cartiWorkflow": {"traverse": {"goals": _goals(_TABLES[0])}}},
-    {"serviWorkflow": {"hosting": {"goals": _goals(_TABLES[0])}}},
+    {"serviWorkflow": {"bussing": {"goals": goals_at(TABLES[0], TABLES[0])}}},
+    {"cartiWorkflow": {"traverse": {"goals": goals_at(TABLES[0])}}},
+    {"serviWorkflow": {"hosting": {"goals": goals_at(TABLES[0])}}},
 )
 
 
@@ -157,29 +140,31 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
 
 def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
     goals = _tables(bounds.goals)
-    kind = {"base": _auto, "servi": None, "carti": None}[family]
+    kind = {"base": auto, "servi": None, "carti": None}[family]
     several = (
-        kind(*goals) if kind else _of(family, "deliveryMission" if family == "servi" else "traverseMission", *goals)
+        kind(*goals)
+        if kind
+        else of_family(family, "deliveryMission" if family == "servi" else "traverseMission", *goals)
     )
     patrol = (
-        [_of(family, "deliveryPatrolMission" if family == "servi" else "traversePatrolMission", *goals)]
+        [of_family(family, "deliveryPatrolMission" if family == "servi" else "traversePatrolMission", *goals)]
         if family != "base"
         else []
     )
-    for mission in (_base({"destinationId": _TABLES[0]}), several, *patrol):
+    for mission in (base({"destinationId": TABLES[0]}), several, *patrol):
         yield Prompt("CreateMission", {"mission": mission})
         yield Prompt("AppendMission", {"mission": mission})
     if bounds.batch > 1:
         batch = [
             {"mission": several},
-            *({"mission": _base({"destinationId": _TABLES[0]})} for _ in range(bounds.batch - 1)),
+            *({"mission": base({"destinationId": TABLES[0]})} for _ in range(bounds.batch - 1)),
         ]
         yield Prompt("CreateMissionBatch", {"missions": batch})
         yield Prompt("AppendMissionBatch", {"missions": batch})
     if family != "base":
         name = "delivery" if family == "servi" else "traverse"
         yield Prompt(
-            "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": _goals(*goals)}}}}
+            "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": goals_at(*goals)}}}}
         )
     for command in COMMANDS:
         yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})

@@ -12,7 +12,6 @@ from attrs import define, evolve, field
 
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Prompt
 from missionfsm.kernel.belief import Node
-from missionfsm.kernel.codec import JSON
 from missionfsm.tools.conversation import WRONG_NAME, Action, Conversation, Given
 from missionfsm.tools.picking import is_template, slots, ways
 
@@ -132,11 +131,7 @@ def _named(here: Conversation, prompt: Prompt, wrong: tuple[str, ...]) -> Iterat
             yield Action(0, prompt.method, prompt.params, None, picks)
         return
     names: tuple[Given | str | None, ...] = (None,)
-    if _has_name(prompt.params):
+    if ANY_NAME in repr(prompt.params):
         names = (*here.given, *(wrong[:1] or (WRONG_NAME,)))
     for name in names:
         yield Action(0, prompt.method, prompt.params, name)
-
-
-def _has_name(params: JSON) -> bool:
-    return repr(ANY_NAME) in repr(params)

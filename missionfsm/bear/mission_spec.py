@@ -45,7 +45,7 @@ from missionfsm.bear.mission_shortcut import Shortcut, forget_ended
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, Operation, promise
 from missionfsm.kernel.spec import Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
 
@@ -65,37 +65,43 @@ _NEXT_GOAL = promise(
 RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
 
 
-def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
-    """What an edit does to a robot, to its names and to those who watch."""
+def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tuple[Emission, ...], tuple[int, ...]]:
+    """What an edit does to a robot, to its names and to those who watch, and the names that vanish."""
+    if not edit:
+        return robot, None, (), ()
     after = apply(edit, robot)
-    if after is robot:
-        return Step(robot, assumes=assumes, rules=rules)
-    names, _ = renumber(edit, robot)
+    names, gone = renumber(edit, robot)
     shown = listing(after)
     emits = () if shown.looks_like(listing(robot)) else (Emission(TOPIC, shown, names),)
+    return after, names, emits, gone
+
+
+def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
+    after, names, emits, _ = _edited(robot, edit)
     return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
 
 
+_answer = functools.cache(Answer)
+
+
 def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
-    step = _step(robot, outcome.edit, outcome.assumes, outcome.rules)
-    refs: tuple[int, ...] = ()
-    emits = step.emits
+    after, names, emits, refs = _edited(robot, outcome.edit)
     if outcome.whose == ADDED:
         before = len(robot.listed)
-        refs = tuple(sorted(name for name in step.names or () if name >= before))
+        refs = tuple(sorted(name for name in names or () if name >= before))
         if request.operation in _BATCHES:
             emits = (*_growing(robot, outcome.edit), *emits)
     elif outcome.whose == ACTIVE:
         refs = (len(robot.done),)
-    elif outcome.whose == GONE:
-        refs = renumber(outcome.edit, robot)[1]
-    answer = Answer(outcome.code, unordered=outcome.whose == GONE)
+    elif outcome.whose != GONE:
+        refs = ()
+    answer = _answer(outcome.code, unordered=outcome.whose == GONE)
     return Step(
-        step.after,
-        names=step.names,
+        after,
+        names=names,
         emits=emits,
-        rules=step.rules,
-        assumes=step.assumes,
+        rules=outcome.rules,
+        assumes=outcome.assumes,
         answer=answer,
         refs=refs,
     )
@@ -127,9 +133,13 @@ def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
         )
 
 
-def _outcomes(operation: Operation, robot: Robot, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _outcomes(
+    operation: Operation, robot: Robot, request: Request, refs: tuple[int | None, ...], assumed: int
+) -> tuple[Step, ...]:
     found: list[Step] = []
     for outcome in outcomes(operation, situation(robot), call_of(robot, request, refs)):
+        if not meet(assumed, outcome.assumes):
+            continue
         if outcome.whose == "stream":
             found += _opened(robot, outcome)
         else:
@@ -245,14 +255,17 @@ def _shape(robot: Robot) -> tuple[object, ...]:
     return (at, min(len(robot.pending), 2), bool(robot.done), robot.halted, robot.fresh, robot.fault, robot.world)
 
 
-def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
-    """The system, with other operations if some rule is to be tried without or with another condition."""
+def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int = ANYTHING) -> Spec:
+    """The system, with other operations if some rule is to be tried without or with another condition.
+
+    Calls have no outcomes that contradict what is assumed.
+    """
     return Spec(
         system=SYSTEM,
         title="one robot's missions",
         initial=Robot,
         operations=operations,
-        outcomes=lambda robot, request, refs: _outcomes(operations[request.operation], robot, request, refs),
+        outcomes=lambda robot, request, refs: _outcomes(operations[request.operation], robot, request, refs, assumed),
         failing=failing,
         drives={
             one.name: one
@@ -283,6 +296,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         phase=lambda robot: robot.active and robot.active.state,
         forget_ended=forget_ended,
         shortcut=Shortcut,
+        decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
     )
 

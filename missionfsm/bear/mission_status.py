@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -75,6 +76,7 @@ class Listing:
         return (self.missions, self.active, self.fresh) == (other.missions, other.active, other.fresh)
 
 
+@functools.lru_cache(maxsize=64)
 def listing(robot: Robot) -> Listing:
     """What a subscriber of the robot is shown."""
     return Listing(

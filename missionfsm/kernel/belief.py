@@ -85,7 +85,7 @@ class Automaton:
     def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
         self.spec = spec
         self.assumed = assumed
-        self.moves = Moves(spec, driven)
+        self.moves = Moves(spec, driven, assumed)
         self.oracle = Oracle(self.moves)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges: list[Edge] = []
@@ -127,12 +127,7 @@ class Automaton:
         numbered = tuple(rename(one, new) for one in explanations)
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)
-        touched = 0
-        for ambiguity in self.spec.ambiguities:
-            before = {one.assumed & ambiguity.group for one in node.explanations}
-            after = {one.assumed & ambiguity.group for one in explanations}
-            if before != after:
-                touched |= ambiguity.group
+        touched = self._touched({one.assumed for one in node.explanations}, {one.assumed for one in explanations})
         in_order = keep == tuple(range(len(keep)))
         edge = Edge(
             next_node,
@@ -146,6 +141,15 @@ class Automaton:
         node.next[symbol] = edge
         self._edges.append(edge)
         return edge
+
+    def _touched(self, before: set[int], after: set[int]) -> int:
+        """The bits of the ambiguities of which other readings are possible now."""
+        touched = 0
+        if before != after:
+            for ambiguity in self.spec.ambiguities:
+                if {one & ambiguity.group for one in before} != {one & ambiguity.group for one in after}:
+                    touched |= ambiguity.group
+        return touched
 
     @property
     def exercised(self) -> dict[str, int]:

@@ -8,6 +8,7 @@ become later; and it is what keeps the number of explanations small.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.history import Answer
@@ -73,8 +74,8 @@ class Channel:
     owed: tuple[Owed, ...] = ()
 
 
-Lost = tuple[tuple[Hashable, Names], ...]
-"""Calls that will never be answered and have not taken effect: (request, args), in the order in which they came."""
+Lost = tuple[tuple[Hashable, Names, int], ...]
+"""Calls that will never be answered and have not taken effect: (request, args, how many), in the order of the first."""
 
 
 @value
@@ -132,7 +133,7 @@ def mentioned(explanation: Explanation) -> Iterator[int]:
             yield from channel.last.names
         for owed in channel.owed:
             yield from owed.names
-    for _, args in explanation.lost:
+    for _, args, _ in explanation.lost:
         yield from args
     # Calls come and go most often: with the highest numbers they leave those of the others alone.
     for call in explanation.calls:
@@ -170,7 +171,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
             )
             for call in explanation.calls
         ),
-        tuple((request, each(args)) for request, args in explanation.lost),
+        tuple((request, each(args), times) for request, args, times in explanation.lost),
         tuple(
             Channel(
                 new.get(channel.name, channel.name),
@@ -186,9 +187,16 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
 
 def tidy(explanation: Explanation) -> Explanation:
     """Unseen names numbered by first mention: explanations that differ only in names nobody has seen become one."""
+    lowest = GONE
+    for name in mentioned(explanation):
+        if name < lowest:
+            lowest -= 1
+            if name != lowest:
+                break
+    else:
+        return explanation
     unseen = dict.fromkeys(name for name in mentioned(explanation) if name < GONE)
-    new = {name: GONE - 1 - position for position, name in enumerate(unseen)}
-    return explanation if all(new[name] == name for name in new) else rename(explanation, new)
+    return rename(explanation, {name: GONE - 1 - position for position, name in enumerate(unseen)})
 
 
 def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explanation | None:
@@ -223,6 +231,29 @@ def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explana
 def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
     """The names that are gone once the things with these are no more."""
     return tuple(sorted({*explanation.gone, *(name for name in names if name > GONE)}))
+
+
+def with_lost(lost: Lost, request: Hashable, args: Names) -> Lost:
+    """Lost calls and one more."""
+    for position, (known, known_args, times) in enumerate(lost):
+        if (known, known_args) == (request, args):
+            return (*lost[:position], (request, args, times + 1), *lost[position + 1 :])
+    return (*lost, (request, args, 1))
+
+
+def without_lost(lost: Lost, position: int) -> Lost:
+    """Lost calls but for one of those at a position."""
+    request, args, times = lost[position]
+    left = ((request, args, times - 1),) if times > 1 else ()
+    return (*lost[:position], *left, *lost[position + 1 :])
+
+
+def within(lost: Lost, others: Lost) -> bool:
+    """Whether all lost calls are among the others, each at least as often."""
+    if not lost or lost == others:
+        return True
+    most = {(request, args): times for request, args, times in others}
+    return all(times <= most.get((request, args), 0) for request, args, times in lost)
 
 
 def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
@@ -261,17 +292,19 @@ def take(
     if not assumed:
         return None
     pool = explanation.names
-    highest = max((*(step.names or ()), *step.refs, *(one.ref for one in step.opens), len(pool) - 1))
-    if highest >= len(pool):
-        numbers = fresh(explanation)
-        pool = (*pool, *(next(numbers) for _ in range(highest + 1 - len(pool))))
+    referred = (*(step.names or ()), *step.refs, *[one.ref for one in step.opens])
+    added = max(referred) + 1 - len(pool) if referred else 0
+    if added > 0:
+        pool = (*pool, *itertools.islice(fresh(explanation), added))
     if given:
         # References below zero count from the front of what was given: -1 is the first.
         pool = (*pool, *reversed(given))
-    names = explanation.names if step.names is None else tuple(pool[ref] for ref in step.names)
-    gone = explanation.gone
-    if step.names is not None and any(name > GONE and name not in names for name in explanation.names):
-        gone = outlived(explanation, (name for name in explanation.names if name not in names))
+    names, gone = explanation.names, explanation.gone
+    if step.names is not None:
+        names = tuple([pool[ref] for ref in step.names])
+        lapsed = [name for name in explanation.names if name > GONE and name not in names]
+        if lapsed:
+            gone = outlived(explanation, lapsed)
     channels = explanation.channels
     if step.closes:
         gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.closes and one.name > GONE)}))
@@ -302,9 +335,9 @@ def take(
             ),
         )
     after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
-    return after, tuple(pool[ref] for ref in step.refs)
+    return after, tuple([pool[ref] for ref in step.refs])
 
 
-def changes(explanation: Explanation, step: Step) -> bool:
-    """Whether anybody could ever tell that the step was taken."""
-    return step.after is not explanation.state or bool(step.emits or step.opens or step.closes)
+def changes(state: State, step: Step) -> bool:
+    """Whether anybody could ever tell that the step was taken from the state."""
+    return step.after is not state or bool(step.emits or step.opens or step.closes)

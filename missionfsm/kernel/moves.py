@@ -6,7 +6,6 @@ one explanation at a time; `missionfsm.kernel.oracle` puts it together with what
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
 
@@ -22,8 +21,11 @@ from missionfsm.kernel.explanation import (
     take,
     tidy,
     unify,
+    within,
+    without_lost,
 )
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import ANYTHING, meet
 from missionfsm.kernel.spec import Match, Mismatch, Spec, Step
 from missionfsm.kernel.values import value
 
@@ -31,8 +33,8 @@ _EQUAL = (Match(),)
 """The one way in which equal answers agree."""
 
 Place = tuple[Hashable, ...]
-Bag = frozenset[tuple[Hashable, int]]
-"""Lost calls whatever their order: each with how many like it came before."""
+Seen = dict[Place, list[tuple[int, Lost]]]
+"""At each point: what was assumed there, with which lost calls left."""
 
 LAG = 6
 """How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones."""
@@ -61,15 +63,18 @@ class Moves:
     Args:
         spec: the system.
         driven: the drives that a tester commands; what the others do may happen at any time by itself.
+        assumed: what every explanation assumes; steps that contradict it are left out from the start.
         budget: explanations that a single event may cost.
     """
 
-    def __init__(self, spec: Spec, driven: Iterable[str] = (), budget: int = BUDGET) -> None:
-        self.spec = spec
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
+        self.spec = spec.decided(assumed) if spec.decided and assumed != ANYTHING else spec
         self.driven = frozenset(driven)
+        self.assumed = assumed
         self.budget = budget
         self.groups = tuple(ambiguity.group for ambiguity in spec.ambiguities)
         self._outcomes: dict[Any, tuple[Step, ...]] = {}
+        self._effects: dict[Any, tuple[Step, ...]] = {}
         self._urgent: dict[Any, tuple[Step, ...]] = {}
         self._unseen: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
@@ -83,7 +88,7 @@ class Moves:
 
     def forget(self) -> None:
         """Drop what the spec said; it will say the same again."""
-        for memory in (self._outcomes, self._urgent, self._unseen, self._matches):
+        for memory in (self._outcomes, self._effects, self._urgent, self._unseen, self._matches):
             memory.clear()
 
     def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
@@ -91,14 +96,27 @@ class Moves:
         key = (state, request, refs)
         found = self._outcomes.get(key)
         if found is None:
-            found = self._outcomes[key] = self.spec.outcomes(state, request, refs)
+            found = self._outcomes[key] = self._possible(self.spec.outcomes(state, request, refs))
+        return found
+
+    def _possible(self, steps: Iterable[Step]) -> tuple[Step, ...]:
+        """Those steps that do not contradict what everybody assumes."""
+        return tuple(step for step in steps if meet(self.assumed, step.assumes))
+
+    def effects(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+        """The outcomes of a request in a state that change something."""
+        key = (state, request, refs)
+        found = self._effects.get(key)
+        if found is None:
+            steps = self.outcomes(state, request, refs)
+            found = self._effects[key] = tuple(step for step in steps if changes(state, step))
         return found
 
     def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
         """What must happen before things have settled."""
         found = self._urgent.get(state)
         if found is None:
-            found = self._urgent[state] = self.spec.urgent(state)
+            found = self._urgent[state] = self._possible(self.spec.urgent(state))
         return found
 
     def unseen(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
@@ -110,7 +128,7 @@ class Moves:
                 if drive.name not in self.driven:
                     for event in drive.by_itself:
                         steps += drive.steps(state, event, ())
-            found = self._unseen[state] = tuple(steps)
+            found = self._unseen[state] = self._possible(steps)
         return found
 
     def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
@@ -144,7 +162,7 @@ class Moves:
         """
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
-        passing = bool(self.urgent(step.after))
+        passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
         return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)
 
     def _remember(self, explanation: Explanation, besides: int | None) -> Explanation:
@@ -162,7 +180,7 @@ class Moves:
     def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
         refs = tuple(explanation.ref(arg) for arg in call.args)
         for step in self.outcomes(explanation.state, call.request, refs):
-            if step.answer is not None and step.applied and not changes(explanation, step):
+            if step.answer is not None and step.applied and not changes(explanation.state, step):
                 yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
 
     def late_answers(self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]) -> Iterator[Ready]:
@@ -195,14 +213,12 @@ class Moves:
         if all(len(channel.owed) < LAG for channel in explanation.channels):
             for step in self.unseen(explanation.state):
                 yield from self._sight(explanation, step, besides)
-        for position, (request, args) in enumerate(explanation.lost):
-            if (request, args) in explanation.lost[:position]:
-                continue
-            rest = (*explanation.lost[:position], *explanation.lost[position + 1 :])
+        for position, (request, args, _) in enumerate(explanation.lost):
             for where, refs in self.addressed(explanation, args):
-                for step in self.outcomes(where.state, request, refs):
-                    if changes(where, step) and not step.opens:
-                        yield from self._sight(where.but(lost=rest), step, besides)
+                for step in self.effects(where.state, request, refs):
+                    if not step.opens:
+                        rest = where.but(lost=without_lost(explanation.lost, position))
+                        yield from self._sight(rest, step, besides)
         for position, call in enumerate(explanation.calls):
             if call.done is None and call.name != besides:
                 yield from self._take_effect(explanation, position, besides)
@@ -214,8 +230,8 @@ class Moves:
 
     def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
         for where, refs in self.addressed(explanation, explanation.calls[position].args):
-            for step in self.outcomes(where.state, where.calls[position].request, refs):
-                if step.answer is None or not changes(where, step):
+            for step in self.effects(where.state, where.calls[position].request, refs):
+                if step.answer is None:
                     continue
                 taken = self.advance(where, step, besides=besides)
                 if taken:
@@ -226,13 +242,13 @@ class Moves:
                     calls[position] = InFlight(calls[position].name, calls[position].request, (), late, done)
                     yield Sighting(tidy(after.but(calls=tuple(calls))), step.rules)
 
-    def closure(self, start: Explanation, besides: int | None = None) -> Iterator[Sighting]:
-        """An explanation and everything that it can silently become, nearest first.
+    def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:
+        """Explanations and everything that they can silently become, nearest first.
 
         One that has used up more lost calls than another at the same point is left out, and so is all that follows.
         """
-        seen: dict[Any, list[tuple[int, Bag]]] = {}
-        todo = [Sighting(start)]
+        seen: Seen = {}
+        todo = [Sighting(start) for start in starts]
         while todo:
             later: list[Sighting] = []
             for sighting in todo:
@@ -245,15 +261,15 @@ class Moves:
                 )
             todo = later
 
-    def outdone(self, seen: dict[Any, list[tuple[int, Bag]]], explanation: Explanation) -> bool:
+    def outdone(self, seen: Seen, explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
         self._spend()
         key = point(explanation)
-        lost = bag(explanation.lost)
         others = seen.setdefault(key, [])
-        if any(explanation.assumed | assumed == assumed and lost <= left for assumed, left in others):
-            return True
-        others.append((explanation.assumed, lost))
+        for assumed, left in others:
+            if explanation.assumed | assumed == assumed and within(explanation.lost, left):
+                return True
+        others.append((explanation.assumed, explanation.lost))
         return False
 
     def _spend(self) -> None:
@@ -270,10 +286,3 @@ def place(explanation: Explanation) -> Place:
 def point(explanation: Explanation) -> Place:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
     return explanation.state, explanation.names, explanation.calls, explanation.channels, explanation.gone
-
-
-def bag(lost: Lost) -> Bag:
-    """Lost calls whatever their order."""
-    if len(set(lost)) == len(lost):
-        return frozenset(zip(lost, itertools.repeat(0), strict=False))
-    return frozenset((call, lost[:position].count(call)) for position, call in enumerate(lost))

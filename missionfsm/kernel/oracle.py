@@ -21,9 +21,10 @@ from missionfsm.kernel.explanation import (
     outlived,
     tidy,
     unify,
+    with_lost,
 )
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
-from missionfsm.kernel.moves import Bag, Moves, Sighting
+from missionfsm.kernel.moves import Moves, Seen, Sighting
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.sifting import sift
 from missionfsm.kernel.spec import Match, Mismatch, Step
@@ -53,41 +54,49 @@ class Oracle:
         """
         self.moves.reset()
         observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
-        found = [sighting for explanation in explanations for sighting in observe(self, explanation, *what)]
-        return sift(self.moves, found)
+        return sift(self.moves, observe(self, explanations, *what))
 
     def _called(
         self,
-        explanation: Explanation,
+        explanations: Iterable[Explanation],
         request: Hashable,
         args: Names,
         lost: bool,  # noqa: FBT001 - a field of the event
         call: int,
     ) -> Iterator[Sighting]:
-        if lost:
-            yield Sighting(explanation.but(lost=(*explanation.lost, (request, args))))
-        else:
-            yield Sighting(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
+        for explanation in explanations:
+            if lost:
+                yield Sighting(explanation.but(lost=with_lost(explanation.lost, request, args)))
+            else:
+                yield Sighting(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
 
-    def _returned(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
-        yield from self._failed(explanation, answer, names, call)
-        for sighting in self.moves.closure(explanation, besides=call):
-            here = sighting.explanation
-            position = next((at for at, one in enumerate(here.calls) if one.name == call), None)
+    def _returned(
+        self, explanations: Iterable[Explanation], answer: Answer, names: Names, call: int
+    ) -> Iterator[Sighting]:
+        undone = []
+        for explanation in explanations:
+            position = _position(explanation, call)
             if position is None:
-                return
-            for after, rules in self._answered(here, position, answer, names):
-                yield Sighting(tidy(after), sighting.rules + rules)
-            if here.calls[position].done:
-                return
+                continue
+            yield from self._failed(explanation, position, answer, names)
+            if explanation.calls[position].done is None:
+                undone.append(explanation)
+                continue
+            # What is silent may as well come after the answer.
+            for after, rules in self._answered(explanation, position, answer, names):
+                yield Sighting(tidy(after), rules)
+        for sighting in self.moves.closure(undone, besides=call):
+            position = _position(sighting.explanation, call)
+            if position is not None:
+                for after, rules in self._answered(sighting.explanation, position, answer, names):
+                    yield Sighting(tidy(after), sighting.rules + rules)
 
-    def _failed(self, explanation: Explanation, answer: Answer, names: Names, call: int) -> Iterator[Sighting]:
+    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Sighting]:
         """The explanation in which the call has failed without anybody's doing, which any state allows.
 
         What is silent may as well come after it, so that this explanation is enough.
         """
-        position = next((at for at, one in enumerate(explanation.calls) if one.name == call), None)
-        if position is None or names or answer.shape is not None:
+        if names or answer.shape is not None:
             return
         one = explanation.calls[position]
         failure = self.spec.failing(one.request, answer.code)
@@ -100,8 +109,9 @@ class Oracle:
         assumed = meet(explanation.assumed, failure.assumes)
         if assumed:
             calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
-            late = ((one.request, one.args),) if failure.open_ended and not one.done else ()
-            yield Sighting(tidy(explanation.but(assumed=assumed, calls=calls, lost=(*explanation.lost, *late))))
+            late = failure.open_ended and not one.done
+            lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
+            yield Sighting(tidy(explanation.but(assumed=assumed, calls=calls, lost=lost)))
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names
@@ -133,35 +143,34 @@ class Oracle:
         assumed = meet(where.assumed, match.assumes)
         if not assumed:
             return
-        lost = where.lost if step.applied else (*where.lost, (call.request, call.args))
+        lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
         taken = self.moves.advance(where.but(lost=lost, assumed=assumed), step)
         if taken:
             for bound in _bindings(taken[0], answer, taken[1], names):
                 yield bound, step.rules + match.rules
 
     def _received(
-        self, explanation: Explanation, content: Hashable, names: Names, relations: tuple[str, ...], channel: int
+        self,
+        explanations: Iterable[Explanation],
+        content: Hashable,
+        names: Names,
+        relations: tuple[str, ...],
+        channel: int,
     ) -> Iterator[Sighting]:
-        sequence: list[Assumption] = []
-        echoes = self._echoed(explanation, channel)
-        for relation in relations:
-            if relation == "equal" and echoes:
+        todo: list[tuple[Sighting, Hashable]] = []
+        for explanation in explanations:
+            echoes = self._echoed(explanation, channel)
+            sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
+            assumed = 0 if sequence is None else meet(explanation.assumed, sequence)
+            if not assumed:
                 continue
-            right = self.spec.sequence(relation)
-            if isinstance(right, Mismatch):
-                return
-            sequence += right
-        assumed = meet(explanation.assumed, sequence)
-        if not assumed:
-            return
-        start = Sighting(explanation.but(assumed=assumed))
-        if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
-            yield from self._showings(start, channel, None, content, names, echo=True)
-        if "equal" in relations and echoes:
-            return
+            start = Sighting(explanation.but(assumed=assumed))
+            if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
+                yield from self._showings(start, channel, None, content, names, echo=True)
+            if not ("equal" in relations and echoes):
+                todo.append((start, None))
         # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
-        seen: dict[Hashable, dict[Any, list[tuple[int, Bag]]]] = {}
-        todo: list[tuple[Sighting, Hashable]] = [(start, None)]
+        seen: dict[Hashable, Seen] = {}
         while todo:
             later: list[tuple[Sighting, Hashable]] = []
             for sighting, topic in todo:
@@ -174,6 +183,16 @@ class Oracle:
                         for one in self.moves.silent(skipped)
                     )
             todo = later
+
+    def _sequence(self, relations: Iterable[str]) -> list[Assumption] | None:
+        """What is assumed where numbers compare so with those before; None where they cannot."""
+        assumes: list[Assumption] = []
+        for relation in relations:
+            right = self.spec.sequence(relation)
+            if isinstance(right, Mismatch):
+                return None
+            assumes += right
+        return assumes
 
     def _showings(  # noqa: PLR0913 - what a message is made of
         self,
@@ -266,14 +285,16 @@ class Oracle:
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
                 yield explanation.but(assumed=assumed, channels=channels), channel.topic
 
-    def _ended(self, explanation: Explanation, code: str, name: int) -> Iterator[Sighting]:
+    def _ended(self, explanations: Iterable[Explanation], code: str, name: int) -> Iterator[Sighting]:
         # A stream that nothing is known of yet is that of a call whose answer has not come.
-        known = name in _channel_names(explanation)
-        for sighting in (Sighting(explanation),) if known else self.moves.closure(explanation):
+        known: list[Explanation] = []
+        unknown: list[Explanation] = []
+        for explanation in explanations:
+            (known if name in _channel_names(explanation) else unknown).append(explanation)
+        for sighting in (*map(Sighting, known), *self.moves.closure(unknown)):
             here = sighting.explanation
-            for own in dict.fromkeys(channel.name for channel in here.channels):
-                if own != name and (known or own >= GONE):
-                    continue
+            names = dict.fromkeys(channel.name for channel in here.channels)
+            for own in (name,) if name in names else [one for one in names if one < GONE]:
                 assumed = here.assumed
                 for topic in (channel.topic for channel in here.channels if channel.name == own):
                     assumes = self.spec.delivery(topic).ends.get(code)
@@ -284,25 +305,27 @@ class Oracle:
                     ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
                     yield Sighting(tidy(ended), sighting.rules)
 
-    def _cancelled(self, explanation: Explanation, name: int) -> Iterator[Sighting]:
-        rest = tuple(channel for channel in explanation.channels if channel.name != name)
-        if len(rest) < len(explanation.channels):
-            explanation = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
-        yield Sighting(tidy(explanation))
+    def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
+        for explanation in explanations:
+            rest = tuple(channel for channel in explanation.channels if channel.name != name)
+            left = explanation
+            if len(rest) < len(explanation.channels):
+                left = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
+            yield Sighting(tidy(left))
 
-    def _driven(self, explanation: Explanation, event: Hashable, names: Names) -> Iterator[Sighting]:
+    def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Sighting]:
         drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
-        for sighting in self.moves.closure(explanation):
+        for sighting in self.moves.closure(explanations):
             here = sighting.explanation
             for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
                 taken = self.moves.advance(here, step, names)
                 if taken:
                     yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
 
-    def _settled(self, explanation: Explanation) -> Iterator[Sighting]:
+    def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Sighting]:
         # What is urgent need not be what happened: a call or the surroundings may have come before it.
-        seen: dict[Any, list[tuple[int, Bag]]] = {}
-        todo = [Sighting(explanation)]
+        seen: Seen = {}
+        todo = [Sighting(explanation) for explanation in explanations]
         while todo:
             later: list[Sighting] = []
             for sighting in todo:
@@ -331,8 +354,6 @@ class Oracle:
             )
         return tidy(explanation.but(assumed=assumed, channels=tuple(channels))) if assumed else None
 
-    # Fewer explanations that say the same.
-
 
 def _offering(channel: Channel) -> Channel:
     """The channel without what it owed, but for what it may say at any time."""
@@ -343,6 +364,11 @@ def _offers(channel: Channel) -> tuple[Owed, ...]:
     """What a channel may still show once everything else is passed over."""
     last = channel.owed[-1] if channel.owed else None
     return (last,) if last and last.optional else ()
+
+
+def _position(explanation: Explanation, call: int) -> int | None:
+    """Where among the calls in flight the one with this name stands."""
+    return next((position for position, one in enumerate(explanation.calls) if one.name == call), None)
 
 
 def _channel_names(explanation: Explanation) -> set[int]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from missionfsm.kernel.explanation import GONE, Explanation, mentioned
-from missionfsm.kernel.moves import Bag, Moves, Place, Sighting, bag, place, point
+from missionfsm.kernel.explanation import GONE, Explanation, Lost, mentioned, within
+from missionfsm.kernel.moves import Moves, Place, Sighting, place, point
 from missionfsm.kernel.readings import merge
 
 
@@ -57,12 +57,12 @@ def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
     """Without those that have used up more lost calls than another at the same point, assuming no less."""
     if not any(sighting.explanation.lost for sighting in sightings):
         return sightings
-    kept: dict[Place, list[tuple[int, Bag, Sighting]]] = {}
-    for sighting in sorted(sightings, key=lambda one: -len(one.explanation.lost)):
-        lost = bag(sighting.explanation.lost)
+    kept: dict[Place, list[tuple[int, Lost, Sighting]]] = {}
+    for sighting in sorted(sightings, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
+        lost = sighting.explanation.lost
         others = kept.setdefault(point(sighting.explanation), [])
         assumed = sighting.explanation.assumed
-        if not any(assumed | other == other and lost <= left for other, left, _ in others):
+        if not any(assumed | other == other and within(lost, left) for other, left, _ in others):
             others.append((assumed, lost, sighting))
     return [sighting for others in kept.values() for _, _, sighting in others]
 

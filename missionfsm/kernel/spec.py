@@ -239,6 +239,8 @@ class Spec:
             why they do not; None where they have to be equal.
         situation: state to what of it decides its steps: in states with the same one, the same calls have the same
             outcomes, and the same events happen in the same ways.
+        decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
+            is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
         idle_shape: the same for what changes nothing; None where it is `shape`.
@@ -277,6 +279,7 @@ class Spec:
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
+    decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state

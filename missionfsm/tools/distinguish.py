@@ -125,7 +125,8 @@ class Lab:
         self.readings = readings
         spec, moves = guide.system.spec, automaton.moves
         # What the spec says is remembered for all references.
-        self.system = evolve(guide.system, spec=evolve(spec, outcomes=moves.outcomes, urgent=moves.urgent))
+        remembered = evolve(spec, outcomes=moves.outcomes, urgent=moves.urgent, decided=None)
+        self.system = evolve(guide.system, spec=remembered)
         self.choice = {
             one.id: one.default if one.default in readings.get(one.id, (one.default,)) else readings[one.id][0]
             for one in spec.ambiguities

@@ -95,7 +95,7 @@ def violation(belief: Belief, event: Event, request: Any) -> Violation:  # noqa:
 
 def _reachable(moves: Moves, explanation: Explanation, besides: int | None = None) -> Iterator[Explanation]:
     try:
-        for sighting in moves.closure(explanation, besides):
+        for sighting in moves.closure([explanation], besides):
             yield sighting.explanation
     except ExhaustedError:
         return

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import operator
+from collections import Counter
+from typing import Any
 
 import pytest
 from attrs import evolve
@@ -15,6 +17,7 @@ from missionfsm.kernel.explanation import (
     Channel,
     Explanation,
     InFlight,
+    Lost,
     Names,
     Owed,
     Ready,
@@ -25,6 +28,9 @@ from missionfsm.kernel.explanation import (
     take,
     tidy,
     unify,
+    with_lost,
+    within,
+    without_lost,
 )
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, choose
@@ -44,7 +50,7 @@ def explanations(draw: st.DrawFn) -> Explanation:
     ready = tuple(Ready(OK, one, (), ()) for one in draw(st.lists(some, max_size=2)))
     done = draw(st.none() | some.map(lambda one: Ready(OK, one, (), ())))
     calls = (InFlight(draw(own), "ask", draw(some), ready, done),) if draw(st.booleans()) else ()
-    lost = tuple(("ask", one) for one in draw(st.lists(some, max_size=1)))
+    lost = tuple(("ask", one, 1) for one in draw(st.lists(some, max_size=1)))
     owed = tuple(Owed("view", one) for one in draw(st.lists(some, max_size=2)))
     last = draw(st.none() | some.map(lambda one: Owed("view", one)))
     channels = (Channel(draw(own.filter(lambda name: name not in names)), "topic", last, owed),)
@@ -181,4 +187,28 @@ def test_a_step_that_nobody_can_tell_changes_nothing() -> None:
         Step(here.state, emits=(Emission("news", "v"),)),
         Step(here.state, closes=("n",)),
     ]
-    assert [changes(here, step) for step in steps] == [False, True, True, True]
+    assert [changes(here.state, step) for step in steps] == [False, True, True, True]
+
+
+CALLS = st.lists(st.tuples(st.sampled_from(["ask", "tell"]), st.sampled_from([(), (0,)])), max_size=6)
+
+
+def _lost(calls: list[tuple[str, tuple[int, ...]]]) -> Lost:
+    lost: Lost = ()
+    for request, args in calls:
+        lost = with_lost(lost, request, args)
+    return lost
+
+
+def _counted(lost: Lost) -> Counter[tuple[object, tuple[int, ...]]]:
+    return Counter({(request, args): times for request, args, times in lost})
+
+
+@given(calls=CALLS, others=CALLS)
+def test_lost_calls_are_a_multiset(calls: list[tuple[str, tuple[int, ...]]], others: list[Any]) -> None:
+    """Calls are counted whatever their order, one at a time leaves, and one bag is in another as with counters."""
+    lost = _lost(calls)
+    assert (_counted(lost), len(lost)) == (Counter(calls), len(set(calls)))
+    assert within(lost, _lost(others)) == (Counter(calls) <= Counter(others))
+    for position, (request, args, _) in enumerate(lost):
+        assert _counted(without_lost(lost, position)) == Counter(calls) - Counter([(request, args)])

@@ -1,4 +1,4 @@
-"""What the operations of the Mission page do where they are not refused, and what a robot does by itself.
+"""What the operations of the Mission page do where they are not refused.
 
 Everything is said for a `Situation` and as an `Edit`: what is decided does not depend on the missions that have ended,
 nor on how many wait. That makes it worth remembering, and every outcome is computed once.
@@ -7,7 +7,7 @@ nor on how many wait. That makes it worth remembering, and every outcome is comp
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -21,7 +21,6 @@ from missionfsm.bear.mission import (
     RETURN_POINT,
     SYSTEM,
     Edit,
-    Fault,
     Kind,
     Mission,
     Op,
@@ -30,6 +29,7 @@ from missionfsm.bear.mission import (
     World,
     free_goal,
 )
+from missionfsm.bear.mission_operations import OPERATIONS, ranking
 from missionfsm.bear.mission_readings import (
     AM_06,
     AM_09,
@@ -49,13 +49,12 @@ from missionfsm.bear.mission_readings import (
     AM_37_QUEUED,
     AM_41,
     AM_43,
-    AM_45_NONE,
     AM_45_WHEN,
     AM_61,
     AM_64,
 )
 from missionfsm.bear.mission_requests import Call, Request, Target, Wanted
-from missionfsm.bear.mission_rules import CHARGING, LAST_GOAL, OPERATIONS, ranking
+from missionfsm.bear.mission_rules import CHARGING, LAST_GOAL
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     CANCELLED,
@@ -250,21 +249,23 @@ def _with_queue(robot: Situation, how: Ambiguity, ended: Edit) -> Iterator[Way]:
     yield (*ended, (Op.DROP_QUEUE, None)), (how["d"],)
 
 
-def _end(mission: Mission, trigger: str) -> Edit:
+def end(mission: Mission, trigger: str) -> Edit:
+    """The active mission ends by a move of its lifecycle."""
     return ((Op.END, mission.moved(trigger)),)
 
 
-def _become(mission: Mission) -> Edit:
+def become(mission: Mission) -> Edit:
+    """The active mission becomes another."""
     return ((Op.BECOME, mission),)
 
 
 def _cancelled(robot: Situation, mission: Mission) -> Iterator[Way]:
-    return _with_queue(robot, AM_09, _end(mission, "cancel"))
+    return _with_queue(robot, AM_09, end(mission, "cancel"))
 
 
 def failed(robot: Situation, mission: Mission) -> Iterator[Way]:
     """The ways in which the active mission fails."""
-    return _with_queue(robot, AM_10, _end(mission, "fail"))
+    return _with_queue(robot, AM_10, end(mission, "fail"))
 
 
 def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
@@ -293,7 +294,7 @@ def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
     elif mission.kind in AUTOMATIC:
         yield from _skip_automatic(robot, mission)
     elif mission.goal + 1 < len(mission.goals) and not mission.finishing:
-        yield Outcome(OK, _become(evolve(mission, goal=mission.goal + 1)), ACTIVE)
+        yield Outcome(OK, become(evolve(mission, goal=mission.goal + 1)), ACTIVE)
     elif mission.kind in PATROLS and not mission.finishing:
         yield from _skip_last(robot, mission, AM_17_PATROL, ())
     else:
@@ -307,7 +308,7 @@ def _skip_automatic(robot: Situation, mission: Mission) -> Iterator[Outcome]:
         if goal == NOT_CHOSEN or mission.finishing:
             yield from _skip_last(robot, mission, AM_17_LAST, (AM_18[letter],))
         else:
-            yield Outcome(OK, _become(evolve(mission, goal=goal)), ACTIVE, (AM_18[letter],))
+            yield Outcome(OK, become(evolve(mission, goal=goal)), ACTIVE, (AM_18[letter],))
 
 
 def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assumed) -> Iterator[Outcome]:
@@ -319,7 +320,7 @@ def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assu
         yield Outcome(OK, edit, ACTIVE, (*assumes, how["d"], *queue))
     if "f" in how.readings:
         again = evolve(mission, goal=0)
-        yield Outcome(OK, () if again == mission else _become(again), ACTIVE, (*assumes, how["f"]))
+        yield Outcome(OK, () if again == mission else become(again), ACTIVE, (*assumes, how["f"]))
 
 
 def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
@@ -335,7 +336,7 @@ def _pause(_: Situation, mission: Mission) -> Iterator[Way]:
     if mission.state is State.STATE_PAUSED:
         yield (), (AM_29["b"],)
     else:
-        yield _become(evolve(mission, state=State.STATE_PAUSED)), ()
+        yield become(evolve(mission, state=State.STATE_PAUSED)), ()
 
 
 def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
@@ -344,27 +345,27 @@ def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
         return
     running = evolve(mission, state=State.STATE_RUNNING)
     if mission.kind in AUTOMATIC:
-        yield from _reselected(robot.world, running)
+        yield from reselected(robot.world, running)
     elif mission.goal:
-        yield _become(running), (AM_64["a"],)
-        yield _become(evolve(running, goal=0)), (AM_64["b"],)
+        yield become(running), (AM_64["a"],)
+        yield become(evolve(running, goal=0)), (AM_64["b"],)
     else:
-        yield _become(running), ()
+        yield become(running), ()
 
 
-def _reselected(world: World, mission: Mission) -> Iterator[Way]:
+def reselected(world: World, mission: Mission) -> Iterator[Way]:
     """AM-45: a NavigateAuto mission keeps its goal, or selects again on the way."""
     best = free_goal(mission.goals, world)
     if best in (mission.goal, NOT_CHOSEN) or mission.goal == NOT_CHOSEN:
-        yield _become(mission), ()
+        yield become(mission), ()
     else:
-        yield _become(mission), (AM_45_WHEN["h", "i"],)
-        yield _become(evolve(mission, goal=best)), (AM_45_WHEN["j"],)
+        yield become(mission), (AM_45_WHEN["h", "i"],)
+        yield become(evolve(mission, goal=best)), (AM_45_WHEN["j"],)
 
 
 def _finish(_: Situation, mission: Mission) -> Iterator[Way]:
-    yield _end(mission, "finish"), (AM_30["a"],)
-    yield ((), (AM_30["b"],)) if mission.finishing else (_become(evolve(mission, finishing=True)), (AM_30["b"],))
+    yield end(mission, "finish"), (AM_30["a"],)
+    yield ((), (AM_30["b"],)) if mission.finishing else (become(evolve(mission, finishing=True)), (AM_30["b"],))
 
 
 _COMMANDS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
@@ -391,114 +392,6 @@ _EFFECTS: Mapping[str, Callable[[Situation, Call], Iterator[Outcome]]] = {
     "UpdateMission": _update,
     "SubscribeMissionStatus": _subscribe,
 }
-
-
-# What a robot does by itself, and what a tester can make it do.
-
-
-@functools.lru_cache(maxsize=100_000)
-def due(world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool) -> tuple[Way, ...]:
-    """What must have happened once things have settled: a mission starts, a doomed one fails, a goal is selected.
-
-    Args:
-        head: the first waiting mission.
-        queued: whether others wait behind the active mission.
-    """
-    if active is not None:
-        return tuple(_due_of_active(world, active, queued=queued))
-    if head is None or halted or world.blocked:
-        return ()
-    return tuple(_started(world, head))
-
-
-def _started(world: World, head: Mission) -> Iterator[Way]:
-    """AM-45: a NavigateAuto mission selects its goal; where none is free it waits, fails or takes the first."""
-    running = head.moved("start")
-    if head.kind not in AUTOMATIC or head.doomed or head.goal != NOT_CHOSEN:
-        yield ((Op.START, running),), ()
-        return
-    chosen = free_goal(head.goals, world)
-    if chosen != NOT_CHOSEN:
-        yield ((Op.START, evolve(running, goal=chosen)),), ()
-        return
-    yield ((Op.START, running),), (AM_45_NONE["a", "c"],)
-    yield ((Op.START, evolve(running, doomed=True)),), (AM_45_NONE["b"],)
-    yield ((Op.START, evolve(running, goal=0)),), (AM_45_NONE["d"],)
-
-
-def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
-    if active.doomed:
-        yield from failed(Situation(world, active, queued, True, False, False, None), active)  # noqa: FBT003
-    elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
-        chosen = free_goal(active.goals, world)
-        if chosen != NOT_CHOSEN:
-            yield _become(evolve(active, goal=chosen)), ()
-
-
-@value(cache_hash=True)
-class Happening:
-    """Something that the environment does: the name of a drive and what it takes."""
-
-    name: str
-    what: Hashable = None
-
-
-def goal_reached(robot: Situation) -> Iterable[Way]:
-    """The running mission is done with its current goal."""
-    mission = robot.active
-    if mission is None or mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
-        return
-    if mission.goal == NOT_CHOSEN:
-        return
-    last = mission.goal + 1 >= len(mission.goals)
-    if mission.kind in AUTOMATIC or mission.finishing or (last and mission.kind not in PATROLS):
-        yield _end(mission, "succeed"), ()
-    else:
-        again = evolve(mission, goal=0 if last else mission.goal + 1)
-        yield (_become(again) if again != mission else ()), ()
-
-
-def mission_succeeded(robot: Situation) -> Iterable[Way]:
-    """The running mission ends well."""
-    if robot.active is not None and robot.active.state is State.STATE_RUNNING:
-        yield _end(robot.active, "succeed"), ()
-
-
-def mission_failed(robot: Situation) -> Iterable[Way]:
-    """The running or paused mission ends in failure."""
-    if robot.active is not None:
-        yield from failed(robot, robot.active)
-
-
-def world_changes(robot: Situation, changed: tuple[tuple[str, Hashable], ...]) -> Iterable[Way]:
-    """The world becomes another; a NavigateAuto mission on its way may select again (AM-45)."""
-    world = evolve(robot.world, **dict(changed))  # type: ignore[arg-type]  # fields of a world
-    edit: Edit = ((Op.WORLD, world),)
-    active = robot.active
-    if active is not None and active.kind in AUTOMATIC and active.state is State.STATE_RUNNING:
-        for more, assumes in _reselected(world, active):
-            yield (edit if more == _become(active) else edit + more), assumes
-    else:
-        yield edit, ()
-
-
-def fault_armed(_: Situation, fault: Fault) -> Iterable[Way]:
-    """The next call that succeeds and documents the status answers with it."""
-    yield ((Op.ARM, fault),), ()
-
-
-@functools.lru_cache(maxsize=100_000)
-def happens(robot: Situation, happening: Happening) -> tuple[Way, ...]:
-    """The ways in which something that the environment does comes about; none where it does not apply."""
-    return tuple(
-        {
-            "goalReached": lambda: goal_reached(robot),
-            "missionSucceeded": lambda: mission_succeeded(robot),
-            "missionFailed": lambda: mission_failed(robot),
-            "world": lambda: world_changes(robot, happening.what),  # type: ignore[arg-type]
-            "fault": lambda: fault_armed(robot, happening.what),  # type: ignore[arg-type]
-        }[happening.name]()
-    )
 
 
 def target(robot: Robot, ref: int | None) -> Target:

@@ -13,10 +13,11 @@ from attrs import evolve
 from missionfsm.bear import messages as wire
 from missionfsm.bear.messages import Command, Goal, MissionStates
 from missionfsm.bear.mission import AUTOMATIC, Family, Fault, Kind, World
-from missionfsm.bear.mission_effects import Happening
+from missionfsm.bear.mission_happenings import Happening
+from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_requests import Defect, Request, Wanted
-from missionfsm.bear.mission_rules import OPERATIONS
-from missionfsm.bear.mission_status import Garbled, Listing, Seen, show, with_bare_feedback, without_ids
+from missionfsm.bear.mission_shown import show, with_bare_feedback
+from missionfsm.bear.mission_status import Garbled, Listing, Seen, without_ids
 from missionfsm.bear.protojson import MalformedError, brief, camel, read, unknown_fields, write
 from missionfsm.kernel import codec
 from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 
 from missionfsm.bear.messages import Command, State
-from missionfsm.bear.mission import AUTOMATIC, FAMILY, MISSION, NOT_CHOSEN, SYSTEM, Kind, Situation, free_goal
+from missionfsm.bear.mission import AUTOMATIC, FAMILY, MISSION, NOT_CHOSEN, Kind, Situation, free_goal
 from missionfsm.bear.mission_readings import (
-    AM_01,
     AM_02_ENDED,
     AM_02_UNKNOWN,
     AM_03,
-    AM_04,
     AM_06,
     AM_07,
     AM_11,
@@ -26,7 +24,6 @@ from missionfsm.bear.mission_readings import (
     AM_37_PAUSED,
     AM_37_QUEUED,
     AM_38_DOCK,
-    AM_38_RUNNING,
     AM_40,
     AM_41,
     AM_43,
@@ -39,16 +36,12 @@ from missionfsm.bear.mission_readings import (
 from missionfsm.bear.mission_requests import Call, Defect, Target, Wanted
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import (
-    DEADLINE_EXCEEDED,
     FAILED_PRECONDITION,
     INTERNAL,
     INVALID_ARGUMENT,
     NOT_FOUND,
     UNIMPLEMENTED,
-    Operation,
-    Ranking,
     Rule,
-    promise,
     rule,
 )
 
@@ -281,6 +274,18 @@ def _charger_rule(code: str, letter: str) -> Rule:
     return the_robot_has_no_contact_dock
 
 
+NO_DOCK = tuple(
+    _charger_rule(code, letter)
+    for code, letter in (
+        (NOT_FOUND, "a"),
+        (FAILED_PRECONDITION, "b"),
+        (INTERNAL, "c"),
+        (UNIMPLEMENTED, "d"),
+        (INVALID_ARGUMENT, "g"),
+    )
+)
+
+
 @rule(NOT_FOUND, cite=MISSION["ChargeRobot", "Errors"], kind=GOALS)
 def the_map_has_no_charging_location(robot: Situation, _: Call) -> bool:
     """The robot's map has no contact charger."""
@@ -396,7 +401,7 @@ def _no_mission(robot: Situation, call: Call) -> bool:
     return call.target is Target.UNKNOWN and _nothing_listed(robot)
 
 
-_WRONG_ID = (
+WRONG_ID = (
     _id_rule(FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c"], _ended),
     _id_rule(NOT_FOUND, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["b"], _ended),
     _id_rule(INVALID_ARGUMENT, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["d"], _ended),
@@ -478,226 +483,3 @@ def charging_cannot_be_paused(robot: Situation, call: Call) -> bool:
     """The robot is charging, which cannot be paused (AM-40)."""
     charging = robot.active is not None and robot.active.kind is Kind.CHARGE
     return _asks(call, Command.COMMAND_PAUSE) and charging and not _is_paused(robot)
-
-
-# The operation table, one line an operation.
-
-_FORMAT = (
-    the_request_is_empty,
-    the_request_is_malformed,
-    a_goal_is_invalid,
-    the_goals_do_not_match_the_mission_type,
-    a_destination_is_not_on_the_map,
-    a_goal_occurs_twice,
-    a_field_is_unknown,
-)
-_MISSION = (
-    *_FORMAT,
-    the_mission_is_for_another_family,
-    the_robot_is_of_another_family,
-    no_goal_is_free,
-    no_goal_is_free_now,
-)
-_APPEND = (the_mission_queue_is_empty, every_mission_has_ended, no_mission_is_running, the_queue_is_halted)
-_COMMAND = (the_mission_is_already_paused, the_mission_is_not_paused, a_paused_mission_cannot_be_finished)
-_DOCK = tuple(
-    _charger_rule(code, letter)
-    for code, letter in (
-        (NOT_FOUND, "a"),
-        (FAILED_PRECONDITION, "b"),
-        (INTERNAL, "c"),
-        (UNIMPLEMENTED, "d"),
-        (INVALID_ARGUMENT, "g"),
-    )
-)
-_ONE_ID = promise(
-    "the-answer-names-the-new-mission",
-    "The answer has the id of the mission that was created, which no mission had before.",
-    cite=MISSION["CreateMission", "Response"],
-)
-_ALL_IDS = promise(
-    "the-answer-names-the-new-missions-in-order",
-    "All missions of the request are created, one after the other; the answer has their ids in the same order.",
-    cite=MISSION["CreateMissionBatch"],
-)
-_WORKFLOW_IDS = promise(
-    "the-answer-names-the-missions-of-the-workflow",
-    "The answer has the ids of the missions that the workflow created.",
-    cite=MISSION["CreateMissionWorkflow", "Response"],
-)
-_APPENDED = promise(
-    "missions-are-appended-at-the-end",
-    "Appended missions wait behind all others and run in the order in which they came.",
-    cite=MISSION["AppendMission"],
-)
-_CLEARED = promise(
-    "the-answer-names-the-cleared-missions",
-    "The answer has the ids of exactly the missions that are not listed any more.",
-    cite=MISSION["ClearMissionStatus", "Response"],
-)
-_SKIPPED = promise(
-    "the-next-goal-is-taken-up",
-    "The active mission goes on to its next goal, and the answer has its id.",
-    cite=MISSION["SkipGoal"],
-)
-_COMMANDED = tuple(
-    promise(name, says, cite=MISSION["UpdateMission", "Command enum"])
-    for name, says in (
-        ("cancel", "COMMAND_CANCEL ends the mission as cancelled."),
-        ("pause", "COMMAND_PAUSE pauses a running mission."),
-        ("resume", "COMMAND_RESUME lets a paused mission run on."),
-        ("finish", "COMMAND_FINISH ends the mission as completed."),
-    )
-)
-_SNAPSHOT = promise(
-    "the-latest-state-comes-first",
-    "The first message of a stream shows the latest known state.",
-    cite=MISSION["SubscribeMissionStatus"],
-)
-_EITHER = (INTERNAL, DEADLINE_EXCEEDED)
-
-
-def _operation(
-    name: str,
-    refusals: tuple[Rule, ...],
-    *promises: Rule,
-    failures: tuple[str, ...] = _EITHER,
-    streaming: bool = False,
-) -> Operation:
-    return Operation.of(
-        name, SYSTEM, MISSION[name], refusals=refusals, promises=promises, failures=failures, streaming=streaming
-    )
-
-
-OPERATIONS: Mapping[str, Operation] = {
-    one.name: one
-    for one in (
-        _operation(
-            "CreateMission",
-            (*_MISSION, another_mission_is_active_or_queued, the_robot_is_unable_to_start_any_mission),
-            _ONE_ID,
-        ),
-        _operation(
-            "CreateMissionBatch",
-            (
-                *_MISSION,
-                another_mission_is_running_or_queued,
-                a_paused_mission_counts_as_running,
-                the_robot_is_unable_to_start,
-            ),
-            _ALL_IDS,
-        ),
-        _operation(
-            "CreateMissionWorkflow",
-            (
-                *_FORMAT,
-                the_workflow_is_for_another_family,
-                another_mission_is_active,
-                another_mission_is_queued,
-                the_robot_is_unable_to_start_any_mission,
-            ),
-            _WORKFLOW_IDS,
-        ),
-        _operation("AppendMission", (*_MISSION, *_APPEND), _ONE_ID, _APPENDED),
-        _operation("AppendMissionBatch", (*_MISSION, *_APPEND), _ALL_IDS, _APPENDED),
-        _operation(
-            "ChargeRobot",
-            (
-                the_request_is_malformed,
-                a_field_is_unknown,
-                a_mission_is_running,
-                a_mission_is_paused,
-                a_mission_is_queued,
-                the_robot_is_unable_to_start_charging,
-                *_DOCK,
-                the_map_has_no_charging_location,
-            ),
-            _ONE_ID,
-        ),
-        _operation(
-            "ClearMissionStatus",
-            (
-                the_request_is_malformed,
-                a_field_is_unknown,
-                a_mission_is_running_or_paused,
-                nothing_is_listed,
-                there_is_nothing_to_clear,
-                a_mission_is_about_to_start,
-                a_mission_waits_in_a_halted_queue,
-            ),
-            _CLEARED,
-            failures=(INTERNAL,),
-        ),
-        _operation(
-            "SkipGoal",
-            (
-                the_request_is_malformed,
-                a_field_is_unknown,
-                the_robot_is_not_on_a_mission,
-                the_mission_is_paused,
-                *LAST_GOAL.values(),
-                *CHARGING.values(),
-            ),
-            _SKIPPED,
-            failures=(INTERNAL,),
-        ),
-        _operation(
-            "UpdateMission",
-            (
-                the_mission_id_is_missing,
-                the_request_is_malformed,
-                the_command_is_not_set,
-                a_field_is_unknown,
-                the_mission_is_still_queued,
-                *_WRONG_ID,
-                *_COMMAND,
-                charging_cannot_be_paused,
-            ),
-            *_COMMANDED,
-        ),
-        _operation(
-            "SubscribeMissionStatus",
-            (the_request_is_malformed, a_field_is_unknown),
-            _SNAPSHOT,
-            failures=(INTERNAL,),
-            streaming=True,
-        ),
-    )
-}
-
-
-def ranking(robot: Situation, call: Call) -> Ranking:
-    """Which codes may be answered where several rules hold, and what that assumes about AM-01, AM-04 or AM-38."""
-    ranks = {"UpdateMission": _rank_update, "ChargeRobot": _rank_charge}.get(call.request.operation, _rank_create)
-    return lambda holding: ranks(robot, holding)
-
-
-Ranked = Iterator[tuple[str, tuple[Assumption, ...]]]
-
-
-def _rank_create(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-01: the format first, the state first, or the state between shape and goals."""
-    early = any(one.kind in (SHAPE, EITHER) for one in holding if one.code == INVALID_ARGUMENT)
-    sure = any(one.kind == SHAPE for one in holding if one.code == INVALID_ARGUMENT)
-    yield INVALID_ARGUMENT, (AM_01["a", "c"] if early else AM_01["a"],)
-    yield FAILED_PRECONDITION, (AM_01["b"] if sure else AM_01["b", "c"],)
-
-
-def _rank_update(robot: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-04: the command, the id or the state is looked at first."""
-    for code, about_command in dict.fromkeys((str(one.code), one.kind == SHAPE) for one in holding):
-        if about_command:
-            forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
-            yield code, (AM_04["a"] if forbidden else AM_04["a", "c"],)
-        else:
-            yield code, (AM_04["b", "c"],)
-
-
-def _rank_charge(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-38: the running mission or the missing charger is answered for."""
-    busy = any(one.kind == STATE for one in holding)
-    for code, kind in dict.fromkeys((str(one.code), one.kind) for one in holding):
-        if not busy or kind == SHAPE:
-            yield code, ()
-        else:
-            yield code, (AM_38_RUNNING["e" if kind == STATE else "f"],)

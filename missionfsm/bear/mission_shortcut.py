@@ -10,9 +10,10 @@ from collections.abc import Iterable, Iterator
 
 from missionfsm.bear.messages import State
 from missionfsm.bear.mission import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
-from missionfsm.bear.mission_effects import Happening, due, happens, outcomes
+from missionfsm.bear.mission_effects import outcomes
+from missionfsm.bear.mission_happenings import Happening, due, happens
+from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_requests import Call, Request, Target
-from missionfsm.bear.mission_rules import OPERATIONS
 from missionfsm.kernel.readings import meet
 
 Code = tuple[int, tuple[int, ...], tuple[int, ...]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.bear.mission import Robot
-from missionfsm.bear.mission_effects import Happening
+from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_shortcut import forget_ended
 from missionfsm.kernel.alphabet import ANY_NAME, Prompt

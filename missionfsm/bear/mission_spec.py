@@ -29,18 +29,16 @@ from missionfsm.bear.mission_effects import (
     ACTIVE,
     ADDED,
     GONE,
-    Happening,
     Outcome,
     call_of,
-    due,
     failing,
-    happens,
     outcomes,
     target,
 )
+from missionfsm.bear.mission_happenings import Happening, due, happens
+from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
-from missionfsm.bear.mission_rules import OPERATIONS
 from missionfsm.bear.mission_shortcut import Shortcut, forget_ended
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches

@@ -1,22 +1,16 @@
-"""The status stream of the Mission page: what a message shows, what it may look like, and how one is made."""
+"""The status stream of the Mission page: what a message shows, and what it may look like."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 from attrs import evolve
 
 from missionfsm.bear.messages import (
-    BaseFeedback,
-    BaseStatus,
     BaseType,
     CartiType,
-    FamilyFeedback,
-    FamilyStatus,
     Goal,
-    MissionFeedback,
     MissionState,
     MissionStates,
     MissionType,
@@ -24,7 +18,6 @@ from missionfsm.bear.messages import (
     State,
 )
 from missionfsm.bear.mission import (
-    AUTOMATIC,
     ENDED,
     FAMILY,
     GOALLESS,
@@ -50,7 +43,7 @@ from missionfsm.bear.mission_readings import (
     AM_51,
     AM_63,
 )
-from missionfsm.kernel.readings import Ambiguity, Assumption, meet
+from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
 from missionfsm.kernel.values import value
@@ -139,7 +132,7 @@ RULES = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, F
 
 _SHOWN = tuple(rule.id for rule in RULES)
 
-_TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
+TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
     Kind.BASE_NAVIGATE: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),),
     Kind.BASE_NAVIGATE_AUTO: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),),
     Kind.SERVI_DELIVERY: (
@@ -161,13 +154,13 @@ _TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
 }
 """The types that a kind may report, the expected one first. AM-26: a delivery is a serving mission."""
 
-_FAMILY_TYPES: Mapping[tuple[Kind, Family], MissionType] = {
-    (Kind.BASE_NAVIGATE, Family.SERVI): _TYPES[Kind.SERVI_NAVIGATE][0],
-    (Kind.BASE_NAVIGATE_AUTO, Family.SERVI): _TYPES[Kind.SERVI_NAVIGATE_AUTO][0],
-    (Kind.BASE_NAVIGATE, Family.CARTI): _TYPES[Kind.CARTI_NAVIGATE][0],
-    (Kind.BASE_NAVIGATE_AUTO, Family.CARTI): _TYPES[Kind.CARTI_NAVIGATE_AUTO][0],
+FAMILY_TYPES: Mapping[tuple[Kind, Family], MissionType] = {
+    (Kind.BASE_NAVIGATE, Family.SERVI): TYPES[Kind.SERVI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.SERVI): TYPES[Kind.SERVI_NAVIGATE_AUTO][0],
+    (Kind.BASE_NAVIGATE, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE_AUTO][0],
 }
-_UNNAMED: Mapping[Kind, Ambiguity] = {
+UNNAMED: Mapping[Kind, Ambiguity] = {
     Kind.SERVI_BIRTHDAY: AM_26[0],
     Kind.SERVI_HOSTING: AM_26[1],
     Kind.SERVI_HOSTING_PATROL: AM_26[2],
@@ -320,7 +313,7 @@ def _goal_index(mission: Mission, message: MissionState, where: str) -> None:
         raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, outside of its goals")
 
 
-_MEMBERS: Mapping[Family | None, str] = {
+MEMBERS: Mapping[Family | None, str] = {
     None: "base_feedback",
     Family.BASE: "base_feedback",
     Family.SERVI: "servi_feedback",
@@ -330,14 +323,14 @@ _MEMBERS: Mapping[Family | None, str] = {
 
 def _feedback(view: Listing, mission: Mission, message: MissionState, where: str, *, bare: bool) -> Assumed:
     feedback = message.mission_feedback
-    given = [name for name in dict.fromkeys(_MEMBERS.values()) if feedback and getattr(feedback, name) is not None]
+    given = [name for name in dict.fromkeys(MEMBERS.values()) if feedback and getattr(feedback, name) is not None]
     if not given:
         return ()
     status = getattr(feedback, given[0]).status
     if mission.state is State.STATE_DEFAULT and status:
         raise _WrongError(FEEDBACK, f"{where} waits and has feedback")
     assumes: list[Assumption] = []
-    own, robots = _MEMBERS[FAMILY[mission.kind]], _MEMBERS[view.family]
+    own, robots = MEMBERS[FAMILY[mission.kind]], MEMBERS[view.family]
     if mission.kind not in GOALLESS and own != robots and given[0] in (own, robots):
         assumes.append(AM_50_MEMBER["c" if given[0] == own else "d"])
     elif given[0] not in (own, robots):
@@ -351,16 +344,16 @@ def _type(view: Listing, mission: Mission, message: MissionState, where: str) ->
     shown = message.mission_type or MissionType()
     if mission.kind in GOALLESS:
         return ()
-    if mission.kind in _UNNAMED:
+    if mission.kind in UNNAMED:
         if shown.base_type is not None or shown.carti_type is not None:
             raise _WrongError(TYPE, f"{where} has a type of another family")
         number = shown.servi_type or ServiType.SERVI_TYPE_UNKNOWN
         documented = isinstance(number, ServiType)
-        return (_UNNAMED[mission.kind]["a" if not number else "c" if documented else "b"],)
-    expected = _TYPES[mission.kind]
+        return (UNNAMED[mission.kind]["a" if not number else "c" if documented else "b"],)
+    expected = TYPES[mission.kind]
     if shown in expected:
-        return (AM_51["a"],) if (mission.kind, view.family) in _FAMILY_TYPES else ()
-    if shown == _FAMILY_TYPES.get((mission.kind, view.family)):
+        return (AM_51["a"],) if (mission.kind, view.family) in FAMILY_TYPES else ()
+    if shown == FAMILY_TYPES.get((mission.kind, view.family)):
         return (AM_51["b"],)
     if mission.kind in (Kind.SERVI_DELIVERY, Kind.SERVI_DELIVERY_PATROL) and shown == MissionType():
         return ()
@@ -372,93 +365,6 @@ def _type_name(shown: MissionType) -> str:
         if one is not None:
             return one.name if hasattr(one, "name") else f"type {one}"
     return "no type"
-
-
-# A message made from a listing, under one choice of readings.
-
-
-def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
-    """The message that an implementation with these readings sends; `choice` leaves one of each (see `choose`)."""
-    if not view.missions:
-        unnamed = meet(choice, (AM_36["b"] if view.fresh else AM_35["c"],))
-        return MissionStates((MissionState(state=State.STATE_DEFAULT),) if unnamed else (), -1)
-    indices = current_index(view)
-    index = next(value for value, assumes in indices.items() if meet(choice, assumes))
-    missions = tuple(
-        _shown(view, mission, mission_id, choice) for mission, mission_id in zip(view.missions, ids, strict=True)
-    )
-    return MissionStates(missions, index)
-
-
-def _pick(choice: int, cases: Mapping[Assumption, Any]) -> Any:  # noqa: ANN401 - whatever the cases are of
-    return next(value for assumption, value in cases.items() if meet(choice, (assumption,)))
-
-
-def _shown(view: Listing, mission: Mission, mission_id: str, choice: int) -> MissionState:
-    state = mission.state
-    if state is State.STATE_DEFAULT:
-        state = _pick(
-            choice,
-            {AM_08["a"]: State.STATE_DEFAULT, AM_08["b"]: State.STATE_UNKNOWN, AM_08["c"]: State.STATE_PAUSED},
-        )
-    goals = tuple(Goal(destination_id="return point") if goal == RETURN_POINT else goal for goal in mission.goals)
-    return MissionState(
-        mission_id,
-        state,
-        goals,
-        max(mission.goal, 0),
-        _shown_feedback(view, mission, choice),
-        _shown_type(view, mission, choice),
-        "api",
-    )
-
-
-def _shown_feedback(view: Listing, mission: Mission, choice: int) -> MissionFeedback | None:
-    if mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
-        return None
-    own = _MEMBERS[FAMILY[mission.kind]]
-    name = own
-    if own != _MEMBERS[view.family]:
-        name = _pick(choice, {AM_50_MEMBER["c"]: own, AM_50_MEMBER["d"]: _MEMBERS[view.family]})
-    waiting = mission.kind in AUTOMATIC and mission.goal == NOT_CHOSEN
-    if name == "base_feedback":
-        status = BaseStatus.STATUS_UNKNOWN if waiting else BaseStatus.STATUS_NAVIGATING
-        return MissionFeedback(base_feedback=BaseFeedback(status))
-    family_status = FamilyStatus.STATUS_UNKNOWN if waiting else FamilyStatus.STATUS_NAVIGATING
-    build: Callable[..., MissionFeedback] = MissionFeedback
-    return build(**{name: FamilyFeedback(family_status)})
-
-
-def _shown_type(view: Listing, mission: Mission, choice: int) -> MissionType | None:
-    if mission.kind in GOALLESS:
-        return None
-    if mission.kind in _UNNAMED:
-        which = _UNNAMED[mission.kind]
-        undocumented: Any = 7
-        number = _pick(
-            choice,
-            {
-                which["a"]: ServiType.SERVI_TYPE_UNKNOWN,
-                which["b"]: undocumented,
-                which["c"]: ServiType.SERVI_TYPE_SERVING,
-            },
-        )
-        return MissionType(servi_type=number)
-    of_family = _FAMILY_TYPES.get((mission.kind, view.family))
-    if of_family is not None and meet(choice, (AM_51["b"],)):
-        return of_family
-    return _TYPES[mission.kind][0]
-
-
-def with_bare_feedback(message: dict[str, Any], choice: int) -> dict[str, Any]:
-    """AM-50: the same JSON with the feedback of a family as a bare enum, if that is what is chosen."""
-    if meet(choice, (AM_50_SHAPE["b"],)):
-        for mission in message.get("missions", ()):
-            feedback = mission.get("missionFeedback") or {}
-            for name in ("serviFeedback", "cartiFeedback"):
-                if name in feedback:
-                    feedback[name] = feedback[name]["status"]
-    return message
 
 
 def without_ids(states: MissionStates) -> MissionStates:

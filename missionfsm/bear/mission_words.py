@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from missionfsm.bear.messages import Goal, MissionState, State
 from missionfsm.bear.mission import NOT_CHOSEN, Fault, Mission, Robot, World
-from missionfsm.bear.mission_effects import Happening
+from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Request, Wanted
 from missionfsm.bear.mission_status import Garbled, Listing, Seen
 

@@ -29,7 +29,8 @@ from missionfsm.bear.messages import (
     MissionWorkflow,
 )
 from missionfsm.bear.mission import Family, World
-from missionfsm.bear.mission_status import Listing, listing, show
+from missionfsm.bear.mission_shown import show
+from missionfsm.bear.mission_status import Listing, listing
 from missionfsm.bear.mission_system import SYSTEM
 from missionfsm.bear.mission_words import describe
 from missionfsm.bear.protojson import brief, camel, read, write

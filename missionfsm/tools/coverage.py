@@ -35,11 +35,11 @@ def rare(
     seldom = [rule for rule in system.spec.all_rules if exercised.get(rule.id, 0) * PER < RATE * steps]
     if not seldom:
         return {}
-    survey = Survey(system, readings)
-    return {rule.id: survey.why(rule) for rule in seldom}
+    census = Census(system, readings)
+    return {rule.id: census.why(rule) for rule in seldom}
 
 
-class Survey:
+class Census:
     """How often each rule comes up in the model, within small bounds, under the readings that are followed.
 
     Attributes:

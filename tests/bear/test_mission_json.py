@@ -8,7 +8,7 @@ import pytest
 
 from missionfsm.bear.messages import Command, Goal, Pose
 from missionfsm.bear.mission import Family, Fault, Kind, World
-from missionfsm.bear.mission_effects import Happening
+from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Defect, Request, Wanted
 from missionfsm.bear.mission_status import Garbled, Seen
 from missionfsm.kernel import codec

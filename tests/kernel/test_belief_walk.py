@@ -13,7 +13,7 @@ from toys import TICKETS, Event
 
 from missionfsm.bear.messages import Command, Goal
 from missionfsm.bear.mission import Kind, World
-from missionfsm.bear.mission_effects import Happening
+from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Request, Wanted
 from missionfsm.bear.mission_system import SYSTEM
 from missionfsm.kernel import belief, history

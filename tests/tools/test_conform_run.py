@@ -14,7 +14,7 @@ from missionfsm.kernel.transcript import Head, head
 from missionfsm.systems import names, system
 from missionfsm.tools.check import Judge, check
 from missionfsm.tools.conform import conform
-from missionfsm.tools.coverage import Survey, rare
+from missionfsm.tools.coverage import Census, rare
 from missionfsm.tools.run import Run
 from missionfsm.tools.subject import Reference
 from missionfsm.tools.verdict import PER, RATE
@@ -109,7 +109,7 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
 )
 def test_the_reason_is_the_models(rule: str, readings: dict[str, tuple[str, ...]], why: str) -> None:
     """A reading that is not followed, a world that is seldom met, something that is far from the start."""
-    assert why in Survey(MISSION, readings).why(MISSION.spec.rule(f"bear.mission/{rule}"))
+    assert why in Census(MISSION, readings).why(MISSION.spec.rule(f"bear.mission/{rule}"))
 
 
 @pytest.mark.parametrize("name", names())

@@ -79,7 +79,7 @@ class Lab:
         return self.spec.initial(self.system.codec.world(world))
 
     def extent(self, here: State) -> int:
-        return (self.spec.extent or self.spec.names)(here)
+        return self.spec.extent(here)
 
     def most(self, start: State) -> int:
         """How far a state may go to be looked at."""
@@ -110,7 +110,7 @@ class Lab:
         """A few of them in which different things can be done."""
         found: dict[Hashable, State] = {}
         for here in self.near(assumed, world):
-            found.setdefault(self.spec.situation(here), here)
+            found.setdefault(self.spec.abstraction.situation(here), here)
         return list(found.values())[:SITUATIONS]
 
     def outcomes(self, here: State, request: Any, refs: References) -> tuple[Step, ...]:
@@ -244,7 +244,7 @@ def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
     """In states with one situation, every call has the same answers under the same readings."""
     groups = defaultdict(list)
     for here in lab.near(ANYTHING, lab.worlds[0]):
-        groups[lab.spec.situation(here)].append(here)
+        groups[lab.spec.abstraction.situation(here)].append(here)
 
     def answers(here: State) -> list[Any]:
         return [
@@ -262,10 +262,10 @@ def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
 @pytest.mark.parametrize("decided", [True, False], ids=["default readings", "all readings"])
 def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
     """The shortcut of a system reaches exactly the states that its steps reach, in every world."""
-    if lab.spec.shortcut is None:
+    if lab.spec.abstraction.shortcut is None:
         pytest.skip(f"{lab.system.name} has no shortcut")
     assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
-    slow = evolve(lab.spec, shortcut=None)
+    slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, shortcut=None))
     bounds = Bounds(missions=2, goals=1, batch=2)
     for world in lab.worlds:
         alphabet = lab.system.alphabet(world, bounds)

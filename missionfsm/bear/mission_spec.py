@@ -45,7 +45,7 @@ from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, ma
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, Operation, promise
-from missionfsm.kernel.spec import Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
 
 _BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
 
@@ -288,12 +288,14 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         charts=(LIFECYCLE,),
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
-        situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
-        shape=_shape,
-        place=target,
-        phase=lambda robot: robot.active and robot.active.state,
-        forget_ended=forget_ended,
-        shortcut=Shortcut,
+        abstraction=Abstraction(
+            situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+            shape=_shape,
+            phase=lambda robot: robot.active and robot.active.state,
+            place=target,
+            forget_ended=forget_ended,
+            shortcut=Shortcut,
+        ),
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
     )

@@ -24,7 +24,7 @@ from missionfsm.bear.status_stream import RULES, SEQUENCE, Topic, answers, conce
 from missionfsm.bear.status_values import faults
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE, Operation
-from missionfsm.kernel.spec import Delivery, Drive, Invariant, Mismatch, Spec
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Spec
 
 
 def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
@@ -177,7 +177,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         answers=answers,
-        shape=_shape,
+        abstraction=Abstraction(shape=_shape),
         rebuilt=specification,
     )
 

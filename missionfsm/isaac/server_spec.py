@@ -49,7 +49,7 @@ from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
-from missionfsm.kernel.spec import Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
 from missionfsm.kernel.values import value
 
 
@@ -396,11 +396,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         answers=_agrees,
-        shape=shape,
-        idle_shape=idle_shape,
-        size=size,
-        extent=extent,
-        outline=outline,
+        abstraction=Abstraction(shape=shape, idle_shape=idle_shape, size=size, extent=extent, outline=outline),
         rebuilt=specification,
     )
 

@@ -210,6 +210,42 @@ class Shortcut(Protocol):
         """The codes after every step, in any order and perhaps some twice."""
 
 
+@frozen
+class Abstraction:
+    """How a search and an exploration look at states: which they tell apart, and how large they take them to be.
+
+    It decides where they look; what a system does, it does not change.
+
+    Attributes:
+        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
+            outcomes, and the same events happen in the same ways.
+        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
+        idle_shape: the same for what changes nothing; None where it is `shape`.
+        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
+        place: (state, position of a name) to where it stands, as far as a search tells places apart.
+        size: state to how large it is for a search, against `Bounds.missions`; None where that is the number of its
+            names.
+        extent: the same for exploration; None where that is the number of its names.
+        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
+            readings, since every step may follow any; None where states remember neither.
+        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
+            ways, but for what is forgotten.
+        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: the steps of the system, only
+            faster.
+    """
+
+    situation: Callable[[State], Hashable] = lambda state: state
+    shape: Callable[[State], Hashable] = lambda state: state
+    idle_shape: Callable[[State], Hashable] | None = None
+    phase: Callable[[State], Hashable] = lambda _: None
+    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
+    size: Callable[[State], int] | None = None
+    extent: Callable[[State], int] | None = None
+    outline: Callable[[State], State] | None = None
+    forget_ended: Callable[[State], State] | None = None
+    shortcut: Callable[..., Shortcut] | None = None
+
+
 @frozen(eq=False)
 class Spec:
     """A system as a nondeterministic labelled transition system.
@@ -237,24 +273,10 @@ class Spec:
         rules: all rules of the system that belong to no operation.
         answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
             why they do not; None where they have to be equal.
-        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
-            outcomes, and the same events happen in the same ways.
         decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
-        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
-        idle_shape: the same for what changes nothing; None where it is `shape`.
-        size: state to how large it is for a search, against `Bounds.missions`; None where that is the number of its
-            names.
-        extent: the same for exploration; None where that is the number of its names.
-        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
-            readings, since every step may follow any; None where states remember neither.
-        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
-            ways, but for what is forgotten.
-        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
-        place: (state, position of a name) to where it stands, as far as a search tells places apart.
-        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: what the functions above give,
-            only faster.
+        abstraction: how a search and an exploration look at its states.
     """
 
     system: str
@@ -281,16 +303,15 @@ class Spec:
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
-    situation: Callable[[State], Hashable] = lambda state: state
-    shape: Callable[[State], Hashable] = lambda state: state
-    phase: Callable[[State], Hashable] = lambda _: None
-    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
-    idle_shape: Callable[[State], Hashable] | None = None
-    size: Callable[[State], int] | None = None
-    extent: Callable[[State], int] | None = None
-    outline: Callable[[State], State] | None = None
-    forget_ended: Callable[[State], State] | None = None
-    shortcut: Callable[..., Shortcut] | None = None
+    abstraction: Abstraction = Abstraction()
+
+    def size(self, state: State) -> int:
+        """How large a state is for a search."""
+        return (self.abstraction.size or self.names)(state)
+
+    def extent(self, state: State) -> int:
+        """How large a state is for an exploration."""
+        return (self.abstraction.extent or self.names)(state)
 
     @property
     def all_rules(self) -> tuple[Rule, ...]:

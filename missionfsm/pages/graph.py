@@ -83,7 +83,7 @@ class Graph:
     def data(self) -> JSON:
         """All of it."""
         kinds = {self._start: (TEXT,) * self.spec.names(self._start)}
-        extent = self.spec.extent or self.spec.names
+        extent = self.spec.extent
         numbers, todo, states = {self._start: 0}, [self._start], []
         for here in todo:  # grows while it is walked
             moves: dict[tuple[int, int, int], None] = {}

@@ -77,10 +77,10 @@ class Census:
         alphabet = self.system.alphabet(params, BOUNDS)
         plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
         everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
-        size = spec.size or spec.names
+        size = spec.size
         situations, found, todo = set[Hashable](), {start}, [start]
         for here in todo:  # grows while it is walked
-            situation = spec.situation(here)
+            situation = spec.abstraction.situation(here)
             if situation not in situations:
                 if len(situations) >= SITUATIONS:
                     return

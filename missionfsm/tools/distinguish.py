@@ -218,7 +218,7 @@ class _Search:
     def _moves(self, node: _Node) -> Iterator[_Move]:
         """What is worth trying: everything where such a situation is met first, else what brings things on."""
         guide, world = self.lab.guide, node.world
-        situation = (world, *(self.system.spec.situation(one.state) for one in node.here))
+        situation = (world, *(self.system.spec.abstraction.situation(one.state) for one in node.here))
         everything = situation not in self._thorough
         self._thorough.add(situation)
         serial = len(node.actions) + 1
@@ -303,10 +303,10 @@ class _Search:
 
     def _is_new(self, node: _Node) -> bool:
         spec = self.system.spec
-        size = spec.size or spec.names
+        size = spec.size
         if max(size(one.state) for one in node.here) > self.lab.guide.bounds.missions:
             return False
-        shapes = tuple((spec.shape(one.state), len(one.channels)) for one in node.here)
+        shapes = tuple((spec.abstraction.shape(one.state), len(one.channels)) for one in node.here)
         key = (node.world, shapes, node.agreed)
         if key in self._seen:
             return False

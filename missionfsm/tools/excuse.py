@@ -128,7 +128,7 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
     """
     system = honest.model.system
     states, came_up = 0, False
-    for scope in TIMED if system.spec.outline else SCOPES:
+    for scope in TIMED if system.spec.abstraction.outline else SCOPES:
         explorer = _Explorer(system, model, honest, rule, operation, bend, scope)
         states += sum(map(explorer.run, worlds[: scope.worlds]))
         came_up |= explorer.came_up
@@ -202,12 +202,13 @@ class _Explorer:
         own = Labels.of(self.system, (one for one in alphabet.prompts if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
         start = self.spec.initial(self.system.codec.world(world))
-        extent = self.spec.extent or self.spec.names
+        extent, abstraction = self.spec.extent, self.spec.abstraction
+        # Where clocks tell states apart, what answers calls is in the shape.
+        same = abstraction.shape if abstraction.outline else abstraction.situation
         found, todo, situations = {start}, [start], set()
         for here in todo:
             taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.scope.bounds.missions]
-            # Where clocks tell states apart, what answers calls is in the shape.
-            situation = (self.spec.shape if self.spec.outline else self.spec.situation)(here)
+            situation = same(here)
             if situation not in situations and not self._passes(here):
                 situations.add(situation)
                 asked = [

@@ -170,12 +170,12 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     Args:
         forget_ended: what has ended is only counted, where the system can (see `Spec.forget_ended`).
     """
-    if spec.shortcut:
+    if spec.abstraction.shortcut:
         events = [event for event, _ in labels.events]
-        short = spec.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
+        short = spec.abstraction.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
         return Reached(_reach(short.encode(start), short.successors), short.decode)
     quotient = _quotient(spec, forget_ended=forget_ended)
-    extent = spec.extent or spec.names
+    extent = spec.extent
 
     def successors(here: State) -> Iterator[State]:
         for one in steps(spec, here, labels):
@@ -187,7 +187,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
 
 def _quotient(spec: Spec, *, forget_ended: bool) -> Callable[[State], State]:
     """What stands for a state in an exploration."""
-    return (spec.forget_ended if forget_ended else None) or spec.outline or _itself
+    return (spec.abstraction.forget_ended if forget_ended else None) or spec.abstraction.outline or _itself
 
 
 def _itself(state: State) -> State:
@@ -280,10 +280,10 @@ def explore(  # noqa: PLR0913 - every one has a default
     broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
     quotient = _quotient(spec, forget_ended=forget_ended)
     counterexample = _counterexample(spec, labels, found, quotient, *broken) if broken else None
-    possible = () if forget_ended and spec.forget_ended else spec.possibilities
+    possible = () if forget_ended and spec.abstraction.forget_ended else spec.possibilities
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
-    groups = Counter(map(spec.situation, found))
-    representatives = {spec.situation(here): here for here in found}
+    groups = Counter(map(spec.abstraction.situation, found))
+    representatives = {spec.abstraction.situation(here): here for here in found}
     everything = Labels.of(system, alphabet.prompts, alphabet.drives)
     tally = _Tally(spec)
     for situation, here in representatives.items():

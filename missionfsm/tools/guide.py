@@ -85,6 +85,7 @@ class Guide:
 
     def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds, drives: tuple[str, ...]) -> None:
         self.system = system
+        self.abstraction = system.spec.abstraction
         self.bounds = bounds
         self.worlds = worlds
         self.alphabets = [system.alphabet(world, bounds) for world in worlds]
@@ -132,7 +133,7 @@ class Guide:
         """
         belief = conversation.judge.belief
         here = _rested(conversation.judge.automaton.moves, belief.node.explanations[0])
-        shape, phase = self.system.spec.shape(here.state), self.system.spec.phase(here.state)
+        shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
         wrong = self.alphabets[world].wrong_names[:1]
         nameless: list[tuple[int | None, Given | str | None]] = [(None, None)]
@@ -169,7 +170,7 @@ class Guide:
     ) -> Iterator[Proposal]:
         """Proposals from templates, with some of the names that were given in their slots."""
         belief = conversation.judge.belief
-        phase = self.system.spec.phase(here.state)
+        phase = self.abstraction.phase(here.state)
         positions = {belief.name(number): position for position, number in enumerate(here.names)}
         given = {name: one for one, name in conversation.given.items()}
         for template in templates:
@@ -209,7 +210,7 @@ class Guide:
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        size = self.system.spec.size or self.system.spec.names
+        size = self.system.spec.size
         key = (here.state if exact else shape, request, self._places(here, refs))
         if key not in self._edges:
             moves = conversation.judge.automaton.moves
@@ -217,7 +218,7 @@ class Guide:
             operation = self.system.spec.request_operation(request)
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)
-            leads_to = self.system.spec.shape(after)
+            leads_to = self.abstraction.shape(after)
             where = self._where(here, shape, steps)
             self._edges[key] = ((where, operation, says), leads_to) if steps else None
             self._growth[key] = size(after) - size(here.state)
@@ -226,7 +227,7 @@ class Guide:
 
     def _places(self, here: Explanation, refs: tuple[int | None, ...]) -> tuple[Hashable, ...]:
         """Where the named things stand: a shape does not tell their positions apart."""
-        return tuple(self.system.spec.place(here.state, ref) for ref in refs)
+        return tuple(self.abstraction.place(here.state, ref) for ref in refs)
 
     def _drive_edge(
         self,
@@ -245,15 +246,15 @@ class Guide:
                 if meet(here.assumed, step.assumes)
             ]
             says: Hashable = event
-            if exact or self.system.spec.idle_shape is not None:
+            if exact or self.abstraction.idle_shape is not None:
                 says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
             where = self._where(here, shape, steps)
-            self._edges[key] = ((where, says), self.system.spec.shape(steps[0].after)) if steps else None
+            self._edges[key] = ((where, says), self.abstraction.shape(steps[0].after)) if steps else None
         return self._edges[key]
 
     def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:
         """Where an edge begins; where nothing changes that may be said more coarsely."""
-        idle = self.system.spec.idle_shape
+        idle = self.abstraction.idle_shape
         return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
 
 

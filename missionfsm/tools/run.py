@@ -354,7 +354,7 @@ class Run:
             return None
         least = self.guide.walked[proposals[0].edge]
         equal = [one for one in proposals if self.guide.walked[one.edge] == least]
-        if self.guide.system.spec.idle_shape is not None and draw.random() < FAVOURED:
+        if self.guide.system.spec.abstraction.idle_shape is not None and draw.random() < FAVOURED:
             # Where most of what can be said has no effect, what leads elsewhere comes first.
             rare = self.guide.visited[equal[0].leads_to]
             equal = [one for one in equal if self.guide.visited[one.leads_to] == rare]

@@ -214,7 +214,7 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
 
 def _at_first(system: System, run: Run, tour: Callable[[], bool]) -> bool:
     """Both the first tour and what is written down, the cheaper one first: with clocks, tours are dear."""
-    return run.play() and tour() if system.spec.outline else tour() and run.play()
+    return run.play() and tour() if system.spec.abstraction.outline else tour() and run.play()
 
 
 @functools.lru_cache(maxsize=2)

@@ -69,7 +69,7 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
     bounds = Bounds(2, 2, 2)
     full, counted = graph(bounds, assumed), graph(bounds, assumed, forgetting=True)
     assert {forget_ended(here) for here in full} == set(counted)
-    short = SPEC.shortcut
+    short = SPEC.abstraction.shortcut
     assert short is not None
     tried = labels(bounds)
     events = [event for event, _ in tried.events]
@@ -86,7 +86,7 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
 def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     """Without the shortcut, counting what has ended reaches the same states."""
     bounds = Bounds(2, 1, 2)
-    slow = evolve(SPEC, shortcut=None)
+    slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, shortcut=None))
     start = SPEC.initial(MISSION.codec.world({}))
     found = reachable(slow, start, labels(bounds), bounds.missions, assumed, forget_ended=True)
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
@@ -129,7 +129,7 @@ def test_every_rule_fires_and_rests() -> None:
         alphabet = MISSION.alphabet(world, bounds)
         start = SPEC.initial(MISSION.codec.world(world))
         found = reachable(SPEC, start, labels(bounds, world), bounds.missions)
-        situations = {SPEC.situation(here): here for here in found}
+        situations = {SPEC.abstraction.situation(here): here for here in found}
         everything = Labels.of(MISSION, alphabet.prompts, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything).items():
             fires |= {rule} if fired else set()

@@ -122,16 +122,22 @@ def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -
     yield Outcome(fault.status, edit, NOBODY, outcome.assumes)
 
 
+TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
+"""AM-61: codes of the transport and of authentication, which no table lists."""
+
+
 def failing(request: Request, code: str) -> Failure | None:
     """Codes that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
 
     SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well. AM-61: codes of
     the transport and of authentication, which no table lists.
     """
-    documented = OPERATIONS[request.operation].failures
-    if code in documented:
-        return Failure(open_ended=code == DEADLINE_EXCEEDED or request.operation == "SkipGoal")
-    if code in (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED):
+    operation = OPERATIONS[request.operation]
+    if code in operation.failures:
+        # No tester can drive a subscription to fail.
+        open_ended = code == DEADLINE_EXCEEDED or request.operation == "SkipGoal"
+        return Failure(open_ended=open_ended, driven=not operation.streaming)
+    if code in TRANSPORT:
         return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED), driven=False)
     return None
 
@@ -143,8 +149,12 @@ def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
 # Missions that come.
 
 
-def _accepted(robot: Situation, wanted: Wanted) -> Iterator[tuple[Mission, Assumed]]:
-    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done."""
+def _accepted(robot: Situation, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
+    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
+
+    Args:
+        waits: whether it does not start at once.
+    """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
     assumes: Assumed = ()
     doomed = False
@@ -159,7 +169,6 @@ def _accepted(robot: Situation, wanted: Wanted) -> Iterator[tuple[Mission, Assum
         yield mission, assumes
         return
     chosen = free_goal(wanted.goals, robot.world)
-    waits = robot.active is not None or robot.queued
     if chosen == NOT_CHOSEN or not waits:
         # Selecting when it is created and when it starts is the same for a mission that starts at once.
         yield evolve(mission, goal=NOT_CHOSEN), assumes
@@ -168,12 +177,16 @@ def _accepted(robot: Situation, wanted: Wanted) -> Iterator[tuple[Mission, Assum
         yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
 
 
-def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> Iterator[tuple[tuple[Mission, ...], Assumed]]:
+def _all_accepted(
+    robot: Situation, wanted: tuple[Wanted, ...], *, waits: bool | None = None
+) -> Iterator[tuple[tuple[Mission, ...], Assumed]]:
     if not wanted:
         yield (), ()
         return
-    for mission, assumes in _accepted(robot, wanted[0]):
-        for rest, more in _all_accepted(robot, wanted[1:]):
+    if waits is None:
+        waits = robot.active is not None or robot.queued or robot.world.blocked
+    for mission, assumes in _accepted(robot, wanted[0], waits=waits):
+        for rest, more in _all_accepted(robot, wanted[1:], waits=True):
             yield (mission, *rest), (*assumes, *more)
 
 
@@ -195,11 +208,13 @@ def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
 
 def _create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
     (wanted,) = call.request.wanted
+    each = tuple(evolve(wanted, goals=(goal,)) for goal in wanted.goals)
     ways: list[tuple[tuple[Wanted, ...], Assumed]] = [
         ((wanted,), (AM_25["a"], AM_27["a"])),
         ((evolve(wanted, goals=(*wanted.goals, RETURN_POINT)),), (AM_25["a"], AM_27["b"])),
         ((wanted, Wanted(Kind.RETURN)), (AM_25["b"],)),
-        (tuple(evolve(wanted, goals=(goal,)) for goal in wanted.goals), (AM_25["c"],)),
+        (each, (AM_25["c"],)),
+        ((*each, Wanted(Kind.RETURN)), (AM_25["d"],)),
     ]
     for parts, how in ways:
         for missions, assumes in _all_accepted(robot, parts):
@@ -345,22 +360,25 @@ def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
         return
     running = evolve(mission, state=State.STATE_RUNNING)
     if mission.kind in AUTOMATIC:
-        yield from reselected(robot.world, running)
+        yield from reselected(robot.world, running, resumed=True)
     elif mission.goal:
-        yield become(running), (AM_64["a"],)
+        yield become(running), (AM_64["a", "c"],)
         yield become(evolve(running, goal=0)), (AM_64["b"],)
     else:
         yield become(running), ()
 
 
-def reselected(world: World, mission: Mission) -> Iterator[Way]:
-    """AM-45: a NavigateAuto mission keeps its goal, or selects again on the way."""
+def reselected(world: World, mission: Mission, *, resumed: bool = False) -> Iterator[Way]:
+    """AM-45, AM-64: a NavigateAuto mission keeps its goal, or selects again on the way or when it is resumed."""
     best = free_goal(mission.goals, world)
     if best in (mission.goal, NOT_CHOSEN) or mission.goal == NOT_CHOSEN:
         yield become(mission), ()
-    else:
-        yield become(mission), (AM_45_WHEN["h", "i"],)
-        yield become(evolve(mission, goal=best)), (AM_45_WHEN["j"],)
+        return
+    again = become(evolve(mission, goal=best))
+    yield become(mission), (AM_45_WHEN["h", "i"], AM_64["a", "b"]) if resumed else (AM_45_WHEN["h", "i"],)
+    yield again, (AM_45_WHEN["j"],)
+    if resumed:
+        yield again, (AM_45_WHEN["h", "i"], AM_64["c"])
 
 
 def _finish(_: Situation, mission: Mission) -> Iterator[Way]:

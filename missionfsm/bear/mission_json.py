@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -253,11 +254,12 @@ def strip(message: JSON) -> tuple[Part, ...]:
     rest = message.copy()
     marks: tuple[Mark, ...] = ()
     metadata = message.get("metadata")
-    if isinstance(metadata, dict):
-        number = _sequence_number(metadata)
-        if number is not None:
-            marks = ((None, number),)
-            del rest["metadata"]
+    number = _sequence_number(metadata) if isinstance(metadata, dict) else None
+    if number is None:
+        rest["metadata"] = metadata
+    else:
+        marks = ((None, number),)
+        del rest["metadata"]
     key = "missionStates" if "missionStates" in message else "mission_states"
     states = message.get(key)
     missions = states.get("missions") if isinstance(states, dict) else None
@@ -289,8 +291,10 @@ def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | Non
 
 def _sequence_number(metadata: dict[str, JSON]) -> int | None:
     """The sequence number of well-formed metadata; None where they are malformed."""
-    number = metadata.get("sequenceNumber")
-    if type(number) is int and type(metadata.get("timestamp")) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
+    number, timestamp = metadata.get("sequenceNumber"), metadata.get("timestamp")
+    if type(timestamp) is str and not _TIMESTAMP.fullmatch(timestamp):
+        return None
+    if type(number) is int and type(timestamp) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
         return number  # by far the commonest form, read without further ado
     try:
         return read(wire.EventMetadata, metadata).sequence_number
@@ -298,9 +302,17 @@ def _sequence_number(metadata: dict[str, JSON]) -> int | None:
         return None
 
 
+_TIMESTAMP = re.compile(
+    r"[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}(\.[0-9]{1,9})?(Z|[+-][0-9]{2}:[0-9]{2})", re.IGNORECASE
+)
+"""A google.protobuf.Timestamp in JSON."""
+
+
 def content(rest: JSON) -> Seen | Garbled:
     """What a stripped status message shows."""
     bare: list[bool] = []
+    if isinstance(rest, dict) and "metadata" in rest:
+        return Garbled(_about_metadata(rest["metadata"]))
     try:
         status = read(wire.MissionStatus, _wrapped_feedback(rest, bare))
     except MalformedError as error:
@@ -308,6 +320,21 @@ def content(rest: JSON) -> Seen | Garbled:
     states = status.mission_states or MissionStates()
     named = tuple(bool(one.mission_id) for one in states.missions)
     return Seen(without_ids(states), named, tuple(bare))
+
+
+_FEEDBACK = ("missionFeedback", "mission_feedback")
+_MAYBE_BARE = ("serviFeedback", "cartiFeedback", "servi_feedback", "carti_feedback")
+
+
+def _about_metadata(metadata: JSON) -> str:
+    """What is wrong with metadata that are left in a message."""
+    if metadata is None:
+        return "metadata: it is missing"
+    try:
+        timestamp = read(wire.EventMetadata, metadata).timestamp
+    except MalformedError as error:
+        return str(error.inside("metadata"))
+    return f"metadata.timestamp: {brief(timestamp)} is not a time"
 
 
 def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
@@ -318,15 +345,16 @@ def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
         return rest
     wrapped = []
     for mission in missions:
-        feedback = mission.get("missionFeedback") if isinstance(mission, dict) else None
+        key = next((key for key in _FEEDBACK if isinstance(mission, dict) and key in mission), "")
+        feedback = mission[key] if key else None
         members = feedback if isinstance(feedback, dict) else {}
         naked = {
             name: {"status": value}
             for name, value in members.items()
-            if isinstance(value, str | int) and name in ("serviFeedback", "cartiFeedback")
+            if isinstance(value, str | int) and name in _MAYBE_BARE
         }
         bare.append(bool(naked))
-        wrapped.append({**mission, "missionFeedback": {**members, **naked}} if naked else mission)
+        wrapped.append({**mission, key: {**members, **naked}} if naked else mission)
     return {
         "missionStates": {**states, "missions": wrapped},
         **({"metadata": rest["metadata"]} if "metadata" in rest else {}),

@@ -52,6 +52,7 @@ from missionfsm.bear.mission_rules import (
     the_request_is_malformed,
     the_robot_is_not_on_a_mission,
     the_robot_is_of_another_family,
+    the_robot_is_on_no_mission,
     the_robot_is_unable_to_start,
     the_robot_is_unable_to_start_any_mission,
     the_robot_is_unable_to_start_charging,
@@ -226,6 +227,7 @@ OPERATIONS: Mapping[str, Operation] = {
                 the_request_is_malformed,
                 the_command_is_not_set,
                 a_field_is_unknown,
+                the_robot_is_on_no_mission,
                 the_mission_is_still_queued,
                 *WRONG_ID,
                 *_COMMAND,
@@ -254,7 +256,13 @@ Ranked = Iterator[tuple[str, tuple[Assumption, ...]]]
 
 
 def _rank_create(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-01: the format first, the state first, or the state between shape and goals."""
+    """AM-01: the format first, the state first, or the state between shape and goals.
+
+    Where no state forbids the call, there is nothing that could come first.
+    """
+    if not any(one.kind == STATE for one in holding):
+        yield from ((code, ()) for code in dict.fromkeys(str(one.code) for one in holding))
+        return
     early = any(one.kind in (SHAPE, EITHER) for one in holding if one.code == INVALID_ARGUMENT)
     sure = any(one.kind == SHAPE for one in holding if one.code == INVALID_ARGUMENT)
     yield INVALID_ARGUMENT, (AM_01["a", "c"] if early else AM_01["a"],)
@@ -264,8 +272,11 @@ def _rank_create(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
 def _rank_update(robot: Situation, holding: tuple[Rule, ...]) -> Ranked:
     """AM-04: the command, the id or the state is looked at first."""
     for code, about_command in dict.fromkeys((str(one.code), one.kind == SHAPE) for one in holding):
-        if about_command:
-            forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
+        forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
+        if the_robot_is_on_no_mission in holding:
+            # An id that cannot be read cannot be looked for either.
+            yield code, (AM_04["a", "b"] if about_command else AM_04["c"],)
+        elif about_command:
             yield code, (AM_04["a"] if forbidden else AM_04["a", "c"],)
         else:
             yield code, (AM_04["b", "c"],)

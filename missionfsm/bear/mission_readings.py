@@ -174,7 +174,12 @@ AM_19 = Ambiguity(
 AM_25 = Ambiguity(
     "AM-25",
     "How many missions does a workflow create?",
-    {"a": "one", "b": "the main one and a return", "c": "one for each goal"},
+    {
+        "a": "one",
+        "b": "the main one and a return",
+        "c": "one for each goal",
+        "d": "one for each goal and a return",
+    },
     default="a",
 )
 AM_26 = tuple(
@@ -385,7 +390,7 @@ AM_63 = Ambiguity(
 AM_64 = Ambiguity(
     "AM-64",
     "Where does a resumed mission go on?",
-    {"a": "at its goal", "b": "at its first goal"},
+    {"a": "at its goal", "b": "at its first goal", "c": "at its goal, though a NavigateAuto mission selects again"},
     default="a",
 )
 

@@ -10,6 +10,7 @@ from missionfsm.bear.mission_readings import (
     AM_02_ENDED,
     AM_02_UNKNOWN,
     AM_03,
+    AM_04,
     AM_06,
     AM_07,
     AM_11,
@@ -365,6 +366,12 @@ def the_command_is_not_set(_: Situation, call: Call) -> bool:
 def the_mission_id_is_missing(_: Situation, call: Call) -> bool:
     """The request does not say which mission it is about."""
     return Defect.EMPTY in call.request.defects
+
+
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_04["c"], kind=STATE)
+def the_robot_is_on_no_mission(robot: Situation, call: Call) -> bool:
+    """No mission is active, and the request does not say readably which one it is about (AM-04)."""
+    return call.target is None and robot.active is None
 
 
 @rule(NOT_FOUND, cite=MISSION["UpdateMission", "Errors"], kind=STATE)

@@ -29,6 +29,7 @@ from missionfsm.bear.mission_effects import (
     ACTIVE,
     ADDED,
     GONE,
+    TRANSPORT,
     Outcome,
     call_of,
     failing,
@@ -44,7 +45,7 @@ from missionfsm.bear.mission_status import RULES as STATUS_RULES
 from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
-from missionfsm.kernel.rules import INTERNAL, OK, UNAVAILABLE, Operation, promise
+from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
 from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
 
 _BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
@@ -69,9 +70,19 @@ def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tu
         return robot, None, (), ()
     after = apply(edit, robot)
     names, gone = renumber(edit, robot)
-    shown = listing(after)
-    emits = () if shown.looks_like(listing(robot)) else (Emission(TOPIC, shown, names),)
+    before, shown = listing(robot), listing(after)
+    emits: tuple[Emission, ...] = ()
+    if not shown.looks_like(before):
+        # Where a goal was selected that the index may have shown already, nobody can tell.
+        emits = (*_ending(robot, edit), Emission(TOPIC, shown, names, optional=shown.may_look_like(before)))
     return after, names, emits, gone
+
+
+def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
+    """AM-09, AM-10: a mission may be seen to have ended before those that wait are cancelled or vanish with it."""
+    kept = tuple((op, what) for op, what in edit if op not in (Op.CANCEL_QUEUE, Op.DROP_QUEUE))
+    if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
+        yield Emission(TOPIC, listing(apply(kept, robot)), renumber(kept, robot)[0], optional=True)
 
 
 def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
@@ -174,7 +185,8 @@ def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
 @functools.cache
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
-    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends={INTERNAL: (), UNAVAILABLE: (AM_61["b"],)})
+    ends = {INTERNAL: (), **dict.fromkeys(TRANSPORT, (AM_61["b"],))}
+    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends=ends)
 
 
 # What holds of every robot, and what some robot can come to.

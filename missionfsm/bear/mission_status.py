@@ -8,8 +8,10 @@ from collections.abc import Mapping
 from attrs import evolve
 
 from missionfsm.bear.messages import (
+    BaseStatus,
     BaseType,
     CartiType,
+    FamilyStatus,
     Goal,
     MissionState,
     MissionStates,
@@ -67,6 +69,14 @@ class Listing:
     def looks_like(self, other: Listing) -> bool:
         """Whether a subscriber could not tell it from the other."""
         return (self.missions, self.active, self.fresh) == (other.missions, other.active, other.fresh)
+
+    def may_look_like(self, other: Listing) -> bool:
+        """Whether a subscriber need not be able to tell: a goal that is not selected may be shown as the first."""
+        return (_selected(self.missions), self.active) == (_selected(other.missions), other.active)
+
+
+def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
+    return tuple(evolve(one, goal=0) if one.goal == NOT_CHOSEN else one for one in missions)
 
 
 @functools.lru_cache(maxsize=64)
@@ -197,6 +207,13 @@ def _placeholder(view: Listing, content: Seen) -> Assumed:
     only = content.states.missions[0]
     if len(content.states.missions) > 1 or content.named[0] or only.state != State.STATE_DEFAULT or only.goals:
         raise _WrongError(ALL_LISTED, f"{len(content.states.missions)} missions are listed; the robot has none")
+    index = content.states.current_mission_index
+    if index not in (-1, 0):
+        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected -1 or 0")
+    if only.current_goal_index not in (-1, 0):
+        raise _WrongError(GOAL_INDEX, f"mission 0 has current_goal_index {only.current_goal_index} and no goals")
+    if any(status for _, status in _given(only)):
+        raise _WrongError(FEEDBACK, "mission 0 waits and has feedback")
     return (AM_36["b"] if view.fresh else AM_35["c"],)
 
 
@@ -211,7 +228,7 @@ def _listed(view: Listing, content: Seen) -> Assumed:
         assumes.append(AM_36["a", "c"] if view.fresh else AM_35["a"])
     for index, (mission, message) in enumerate(zip(view.missions, shown, strict=True)):
         where = f"mission {index}"
-        assumes += _state(view, index, message, where)
+        assumes += _state(view, index, message, where, pointed=content.states.current_mission_index == index)
         _goals(mission, message, where)
         _goal_index(mission, message, where)
         assumes += _feedback(view, mission, message, where, bare=content.bare[index])
@@ -248,14 +265,14 @@ def _current(view: Listing, index: int) -> Assumed:
     return allowed[index]
 
 
-def _state(view: Listing, index: int, message: MissionState, where: str) -> Assumed:
+def _state(view: Listing, index: int, message: MissionState, where: str, *, pointed: bool) -> Assumed:
     state = view.missions[index].state
     if state is not State.STATE_DEFAULT:
         if message.state != state:
             raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected {state.name}")
         return ()
     letter = {State.STATE_DEFAULT: "a", State.STATE_UNKNOWN: "b", State.STATE_PAUSED: "c"}.get(message.state)
-    if letter is None:
+    if letter is None or (letter == "c" and pointed):
         raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected STATE_DEFAULT since it waits")
     return (AM_08[letter],)
 
@@ -322,22 +339,30 @@ MEMBERS: Mapping[Family | None, str] = {
 
 
 def _feedback(view: Listing, mission: Mission, message: MissionState, where: str, *, bare: bool) -> Assumed:
-    feedback = message.mission_feedback
-    given = [name for name in dict.fromkeys(MEMBERS.values()) if feedback and getattr(feedback, name) is not None]
+    given = _given(message)
     if not given:
         return ()
-    status = getattr(feedback, given[0]).status
+    name, status = given[0]
+    if not isinstance(status, BaseStatus | FamilyStatus):
+        raise _WrongError(FEEDBACK, f"{where} has {name} {status}, which is not documented")
     if mission.state is State.STATE_DEFAULT and status:
         raise _WrongError(FEEDBACK, f"{where} waits and has feedback")
     assumes: list[Assumption] = []
     own, robots = MEMBERS[FAMILY[mission.kind]], MEMBERS[view.family]
-    if mission.kind not in GOALLESS and own != robots and given[0] in (own, robots):
-        assumes.append(AM_50_MEMBER["c" if given[0] == own else "d"])
-    elif given[0] not in (own, robots):
-        raise _WrongError(FEEDBACK, f"{where} has {given[0]}, expected {own}")
-    if given[0] != "base_feedback":
+    if mission.kind not in GOALLESS and own != robots and name in (own, robots):
+        assumes.append(AM_50_MEMBER["c" if name == own else "d"])
+    elif name not in (own, robots):
+        raise _WrongError(FEEDBACK, f"{where} has {name}, expected {own}")
+    if name != "base_feedback":
         assumes.append(AM_50_SHAPE["b" if bare else "a"])
     return tuple(assumes)
+
+
+def _given(message: MissionState) -> list[tuple[str, int]]:
+    """The members of a mission's feedback that are there, each with its status."""
+    feedback = message.mission_feedback
+    members = ((name, getattr(feedback, name)) for name in dict.fromkeys(MEMBERS.values())) if feedback else ()
+    return [(name, member.status) for name, member in members if member is not None]
 
 
 def _type(view: Listing, mission: Mission, message: MissionState, where: str) -> Assumed:

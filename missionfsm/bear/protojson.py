@@ -69,18 +69,21 @@ def _integer(bits: int, value: object) -> int:
     return value
 
 
+_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?|NaN|-?Infinity", re.ASCII)
+LARGEST = 3.4028235677973366e38
+"""Where what rounds to a 32-bit float ends."""
+
+
 def _float(value: object, _: object = None) -> float:
-    if isinstance(value, str):
-        try:
-            return float(value)
-        except ValueError:
-            raise MalformedError(f"{brief(value)} is not a number") from None
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value)
+        if math.isinf(value):
+            return value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise MalformedError(f"{brief(value)} is not a number")
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf
+    if LARGEST < abs(value) != math.inf:
+        raise MalformedError(f"{brief(value)} does not fit into 32 bits")
+    return float(value)
 
 
 def _text(value: object, _: object = None) -> str:

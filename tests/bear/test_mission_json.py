@@ -72,7 +72,9 @@ DEFECTIVE: dict[str, tuple[JSON, tuple[Defect, ...]]] = {
     "an empty destination": (navigate({"destinationId": ""}), (Defect.GOAL,)),
     "NaN in a pose": (navigate({"pose": {"xMeters": "NaN"}}), (Defect.GOAL,)),
     "infinity in a pose": (navigate({"pose": {"yMeters": "-Infinity"}}), (Defect.GOAL,)),
-    "too large a number in a pose": (navigate({"pose": {"yMeters": 10**400}}), (Defect.GOAL,)),
+    "too large a number in a pose": (navigate({"pose": {"yMeters": 10**400}}), (Defect.FORMAT,)),
+    "a number that no 32-bit float is near": (navigate({"pose": {"yMeters": 1e39}}), (Defect.FORMAT,)),
+    "a number that only Python reads": (navigate({"pose": {"yMeters": "1_0"}}), (Defect.FORMAT,)),
     "an unknown field": ({**deliver({"destinationId": "table-1"}), "urgency": 1}, (Defect.FIELD,)),
     "an unknown field inside": (deliver({"destinationId": "table-1", "colour": "red"}), (Defect.FIELD,)),
     "two goals of one": (navigate({"destinationId": "table-1", "pose": {}}), (Defect.FORMAT,)),
@@ -213,7 +215,9 @@ def test_a_message_is_taken_apart() -> None:
     assert contents[0].named == (True, True)
 
 
-@pytest.mark.parametrize("metadata", [{}, {"timestamp": "t"}, {"sequence_number": 0}, {"sequenceNumber": None}])
+@pytest.mark.parametrize(
+    "metadata", [{}, {"timestamp": "2025-01-01T00:00:00.5+01:00"}, {"sequence_number": 0}, {"sequenceNumber": None}]
+)
 def test_a_number_that_is_missing_is_zero(metadata: JSON) -> None:
     """A sequence number that is left out is 0, as protobuf JSON has it."""
     ((_, marks, rest),) = CODEC.strip(shown(**metadata))
@@ -225,9 +229,11 @@ def test_a_number_that_is_missing_is_zero(metadata: JSON) -> None:
     ("message", "says"),
     [
         ("news", "the message: 'news' is not an object"),
-        ({"missionStates": []}, "missionStates: [] is not an object"),
-        ({"missionStates": {"missions": {}}}, "missionStates.missions: {} is not a list"),
-        ({"missionStates": {"missions": [3]}}, "missionStates.missions[0]: 3 is not an object"),
+        ({"metadata": {}, "missionStates": []}, "missionStates: [] is not an object"),
+        ({"metadata": {}, "missionStates": {"missions": {}}}, "missionStates.missions: {} is not a list"),
+        ({"missionStates": {}}, "metadata: it is missing"),
+        (shown(timestamp="yesterday"), "metadata.timestamp: 'yesterday' is not a time"),
+        ({"metadata": {}, "missionStates": {"missions": [3]}}, "missionStates.missions[0]: 3 is not an object"),
         (shown({"missionId": 7}), "missionStates.missions[0].missionId: 7 is not a text"),
         (shown({"state": "STATE_FLYING"}), "missionStates.missions[0].state: State has no 'STATE_FLYING'"),
         (shown({"currentGoalIndex": 1.5}), "missionStates.missions[0].currentGoalIndex: 1.5 is not an integer"),

@@ -98,6 +98,7 @@ class Mission:
         goal: index of the current goal; `NOT_CHOSEN` for a NavigateAuto mission that has not selected one.
         finishing: it was told to finish and will, at its current goal (AM-30 read as b).
         doomed: it was accepted although it cannot be done, and fails once it is started (AM-41 c, AM-43 b, AM-45 b).
+        hopeless: it was accepted although it cannot be done, and fails on the way (AM-41 d, AM-43 d).
     """
 
     kind: Kind
@@ -106,6 +107,7 @@ class Mission:
     goal: int = 0
     finishing: bool = False
     doomed: bool = False
+    hopeless: bool = False
 
     def moved(self, trigger: str) -> Mission:
         """The mission after a move of its lifecycle. Raises ValueError where that is not a move."""
@@ -113,12 +115,21 @@ class Mission:
         if after is None:
             message = f"a mission in {self.state.name} cannot {trigger}"
             raise ValueError(message)
-        return evolve(self, state=after, finishing=False, doomed=self.doomed and after not in ENDED)
+        goes_on = after not in ENDED
+        return evolve(
+            self,
+            state=after,
+            finishing=False,
+            doomed=self.doomed and goes_on,
+            hopeless=self.hopeless and goes_on,
+        )
 
     @property
     def visible(self) -> Mission:
         """What a subscriber can tell of it."""
-        return evolve(self, finishing=False, doomed=False) if self.finishing or self.doomed else self
+        if self.finishing or self.doomed or self.hopeless:
+            return evolve(self, finishing=False, doomed=False, hopeless=False)
+        return self
 
 
 @value(cache_hash=True)
@@ -279,6 +290,16 @@ def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]
         elif op is Op.CLEAR:
             gone, done, active, pending = gone + done + active + pending, [], [], []
     return (*done, *active, *pending), tuple(gone)
+
+
+def is_missing(world: World, goals: tuple[Goal, ...]) -> bool:
+    """Whether one of the goals is a destination that the map has not."""
+    return any(goal.destination_id and goal.destination_id not in world.destinations for goal in goals)
+
+
+def is_foreign(world: World, kind: Kind) -> bool:
+    """Whether a mission is for another family than the robot's."""
+    return FAMILY[kind] not in (None, world.family)
 
 
 def free_goal(goals: tuple[Goal, ...], world: World, after: int = -1) -> int:

@@ -7,14 +7,14 @@ nor on how many wait. That makes it worth remembering, and every outcome is comp
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
 
-from missionfsm.bear.messages import Command, State
+from missionfsm.bear.messages import Command, Goal, State
 from missionfsm.bear.mission import (
     AUTOMATIC,
-    FAMILY,
     GOALLESS,
     NOT_CHOSEN,
     PATROLS,
@@ -28,6 +28,8 @@ from missionfsm.bear.mission import (
     Situation,
     World,
     free_goal,
+    is_foreign,
+    is_missing,
 )
 from missionfsm.bear.mission_operations import OPERATIONS, ranking
 from missionfsm.bear.mission_readings import (
@@ -156,25 +158,29 @@ def _accepted(robot: Situation, wanted: Wanted, *, waits: bool) -> Iterator[tupl
         waits: whether it does not start at once.
     """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
-    assumes: Assumed = ()
-    doomed = False
-    if any(goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals):
-        doomed = True
-        assumes += (AM_43["b"],)
-    if FAMILY[wanted.kind] not in (None, robot.world.family):
-        doomed = True
-        assumes += (AM_41["c"],)
-    mission = Mission(wanted.kind, wanted.goals, doomed=doomed)
-    if wanted.kind not in AUTOMATIC:
-        yield mission, assumes
-        return
-    chosen = free_goal(wanted.goals, robot.world)
-    if chosen == NOT_CHOSEN or not waits:
-        # Selecting when it is created and when it starts is the same for a mission that starts at once.
-        yield evolve(mission, goal=NOT_CHOSEN), assumes
-    else:
-        yield evolve(mission, goal=NOT_CHOSEN), (*assumes, AM_45_WHEN["i", "j"])
-        yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
+    for mission, assumes in _as_possible(robot, wanted.kind, wanted.goals):
+        if wanted.kind not in AUTOMATIC:
+            yield mission, assumes
+            continue
+        chosen = free_goal(wanted.goals, robot.world)
+        if chosen == NOT_CHOSEN or not waits:
+            # Selecting when it is created and when it starts is the same for a mission that starts at once.
+            yield evolve(mission, goal=NOT_CHOSEN), assumes
+        else:
+            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, AM_45_WHEN["i", "j"])
+            yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
+
+
+def _as_possible(robot: Situation, kind: Kind, goals: tuple[Goal, ...]) -> Iterator[tuple[Mission, Assumed]]:
+    """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
+    reasons = []
+    if is_missing(robot.world, goals):
+        reasons.append((AM_43["b"], AM_43["d"]))
+    if is_foreign(robot.world, kind):
+        reasons.append((AM_41["c"], AM_41["d"]))
+    for how in itertools.product(*reasons):
+        at_once = any(one in how for one, _ in reasons)
+        yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
 
 
 def _all_accepted(

@@ -20,9 +20,11 @@ from missionfsm.bear.mission import (
     Situation,
     World,
     free_goal,
+    is_foreign,
+    is_missing,
 )
 from missionfsm.bear.mission_effects import Way, become, end, failed, reselected
-from missionfsm.bear.mission_readings import AM_45_NONE
+from missionfsm.bear.mission_readings import AM_45_NONE, AM_53_THEN
 from missionfsm.kernel.values import value
 
 
@@ -58,11 +60,32 @@ def _started(world: World, head: Mission) -> Iterator[Way]:
 
 def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
     if active.doomed:
-        yield from failed(Situation(world, active, queued, True, False, False, None), active)  # noqa: FBT003
+        yield from _failing(world, active, queued=queued)
     elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
         chosen = free_goal(active.goals, world)
         if chosen != NOT_CHOSEN:
             yield become(evolve(active, goal=chosen)), ()
+
+
+def by_itself(
+    world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool
+) -> Iterator[Way]:
+    """What a robot may do at any time: a hopeless mission fails, and so does one that it is unable to start (AM-53).
+
+    Args:
+        head: the first waiting mission.
+        queued: whether others wait behind that one, or behind the active mission.
+    """
+    if active is not None and active.hopeless:
+        yield from _failing(world, active, queued=queued)
+    elif active is None and head is not None and world.blocked and not halted:
+        running = head.moved("start")
+        for edit, assumes in _failing(world, running, queued=queued):
+            yield ((Op.START, running), *edit), (AM_53_THEN["f"], *assumes)
+
+
+def _failing(world: World, mission: Mission, *, queued: bool) -> Iterator[Way]:
+    return failed(Situation(world, mission, queued, True, False, False, None), mission)  # noqa: FBT003
 
 
 @value(cache_hash=True)
@@ -78,7 +101,7 @@ def goal_reached(robot: Situation) -> Iterable[Way]:
     mission = robot.active
     if mission is None or mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
         return
-    if mission.goal == NOT_CHOSEN:
+    if mission.goal == NOT_CHOSEN or _cannot_arrive(robot.world, mission):
         return
     last = mission.goal + 1 >= len(mission.goals)
     if mission.kind in AUTOMATIC or mission.finishing or (last and mission.kind not in PATROLS):
@@ -90,8 +113,17 @@ def goal_reached(robot: Situation) -> Iterable[Way]:
 
 def mission_succeeded(robot: Situation) -> Iterable[Way]:
     """The running mission ends well."""
-    if robot.active is not None and robot.active.state is State.STATE_RUNNING:
-        yield end(robot.active, "succeed"), ()
+    mission = robot.active
+    if mission is None or mission.state is not State.STATE_RUNNING or _cannot_arrive(robot.world, mission):
+        return
+    yield end(mission, "succeed"), ()
+
+
+def _cannot_arrive(world: World, mission: Mission) -> bool:
+    """Whether a mission that fails on the way is at a goal that it cannot reach."""
+    return mission.hopeless and (
+        is_foreign(world, mission.kind) or is_missing(world, mission.goals[mission.goal : mission.goal + 1])
+    )
 
 
 def mission_failed(robot: Situation) -> Iterable[Way]:

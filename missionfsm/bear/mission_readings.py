@@ -286,14 +286,23 @@ AM_40 = Ambiguity(
 AM_41 = Ambiguity(
     "AM-41",
     "A mission is for another family: what do CreateMission and AppendMission answer?",
-    {"a": "INVALID_ARGUMENT", "b": "FAILED_PRECONDITION", "c": "OK, and the mission fails"},
+    {
+        "a": "INVALID_ARGUMENT",
+        "b": "FAILED_PRECONDITION",
+        "c": "OK, and the mission fails when it is started",
+        "d": "OK, and the mission fails on the way",
+    },
     default="a",
-    flagged=frozenset("c"),
+    flagged=frozenset("cd"),
 )
 AM_43 = Ambiguity(
     "AM-43",
     "A destination is not on the map: when is it refused?",
-    {"a": "at once, INVALID_ARGUMENT", "b": "the mission is accepted and fails"},
+    {
+        "a": "at once, INVALID_ARGUMENT",
+        "b": "the mission is accepted and fails when it is started",
+        "d": "the mission is accepted and fails on the way",
+    },
     default="a",
 )
 AM_44 = Ambiguity(
@@ -360,6 +369,12 @@ AM_53_CHARGE = Ambiguity(
     "A robot is unable to start a mission: does that forbid ChargeRobot?",
     {"a": "yes", "b": "no, charging waits"},
     default="a",
+)
+AM_53_THEN = Ambiguity(
+    "AM-53.then",
+    "A mission was accepted that the robot is unable to start: what becomes of it?",
+    {"p": "it waits", "f": "it may fail"},
+    default="p",
 )
 AM_54 = Ambiguity(
     "AM-54",
@@ -445,6 +460,7 @@ AMBIGUITIES: tuple[Ambiguity, ...] = (
     AM_51,
     AM_53,
     AM_53_CHARGE,
+    AM_53_THEN,
     AM_54,
     AM_58,
     AM_61,

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from missionfsm.bear.messages import Command, State
-from missionfsm.bear.mission import AUTOMATIC, FAMILY, MISSION, NOT_CHOSEN, Kind, Situation, free_goal
+from missionfsm.bear.mission import (
+    AUTOMATIC,
+    MISSION,
+    NOT_CHOSEN,
+    Kind,
+    Situation,
+    free_goal,
+    is_foreign,
+    is_missing,
+)
 from missionfsm.bear.mission_readings import (
     AM_02_ENDED,
     AM_02_UNKNOWN,
@@ -102,21 +111,17 @@ def a_goal_occurs_twice(_: Situation, call: Call) -> bool:
 # The request and the world.
 
 
-def _destination_is_missing(robot: Situation, wanted: Wanted) -> bool:
-    return any(goal.destination_id and goal.destination_id not in robot.world.destinations for goal in wanted.goals)
-
-
 @rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_43["a"], kind=GOALS)
 def a_destination_is_not_on_the_map(robot: Situation, call: Call) -> bool:
     """A destination_id is not the display name of a destination on the robot's map.
 
     AM-43: such a goal is invalid at once, or it is accepted and the mission fails.
     """
-    return any(_destination_is_missing(robot, wanted) for wanted in _wanted(call))
+    return any(is_missing(robot.world, wanted.goals) for wanted in _wanted(call))
 
 
 def _is_for_another_family(robot: Situation, kind: Kind | None) -> bool:
-    return kind is not None and FAMILY[kind] not in (None, robot.world.family)
+    return kind is not None and is_foreign(robot.world, kind)
 
 
 @rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_41["a"], kind=EITHER)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from missionfsm.bear.messages import State
 from missionfsm.bear.mission import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
 from missionfsm.bear.mission_effects import outcomes
-from missionfsm.bear.mission_happenings import Happening, due, happens
+from missionfsm.bear.mission_happenings import Happening, by_itself, due, happens
 from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_requests import Call, Request, Target
 from missionfsm.kernel.readings import meet
@@ -152,7 +152,11 @@ class Shortcut:
     def _due(self, code: Code) -> tuple[_Move, ...]:
         robot = self.decode(code)
         head = robot.pending[0] if robot.pending else None
-        ways = due(robot.world, robot.active, head, halted=robot.halted, queued=head is not None)
+        queued = head is not None
+        ways = (
+            *due(robot.world, robot.active, head, halted=robot.halted, queued=queued),
+            *by_itself(robot.world, robot.active, head, halted=robot.halted, queued=queued),
+        )
         edits = (edit for edit, assumes in ways if meet(self._assumed, assumes))
         return tuple(self._compiled(edit, self._frame[code[0]]) for edit in edits)
 

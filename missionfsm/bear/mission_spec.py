@@ -36,7 +36,7 @@ from missionfsm.bear.mission_effects import (
     outcomes,
     target,
 )
-from missionfsm.bear.mission_happenings import Happening, due, happens
+from missionfsm.bear.mission_happenings import Happening, by_itself, due, happens
 from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
@@ -164,6 +164,13 @@ def _urgent(robot: Robot) -> tuple[Step, ...]:
     return tuple(_step(robot, edit, assumes, rules) for edit, assumes in ways)
 
 
+def _spontaneous(robot: Robot) -> tuple[Step, ...]:
+    head = robot.pending[0] if robot.pending else None
+    queued = len(robot.pending) > (robot.active is None)
+    ways = by_itself(robot.world, robot.active, head, halted=robot.halted, queued=queued)
+    return tuple(_step(robot, edit, assumes, (_MOVES["fail"].id,)) for edit, assumes in ways)
+
+
 _JUSTIFIED = {
     "goalReached": (_NEXT_GOAL.id,),
     "missionSucceeded": (_MOVES["succeed"].id,),
@@ -289,6 +296,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
             )
         },
         urgent=_urgent,
+        spontaneous=_spontaneous,
         matches=matches,
         delivery=_delivery,
         sequence=_sequence,

@@ -398,7 +398,7 @@ AM_61 = Ambiguity(
 )
 AM_63 = Ambiguity(
     "AM-63",
-    "Is a first mission seen before it runs?",
+    "Is a mission that was created seen before it runs?",
     {"a": "no, it is running at once", "b": "yes, waiting at first"},
     default="a",
 )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator, Mapping
 
+from attrs import evolve
+
 from missionfsm.bear.messages import Goal, State
 from missionfsm.bear.mission import (
     AUTOMATIC,
@@ -71,6 +73,8 @@ def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tu
     after = apply(edit, robot)
     names, gone = renumber(edit, robot)
     before, shown = listing(robot), listing(after)
+    if after.pending and not (robot.active or robot.pending or robot.world.blocked):
+        shown = evolve(shown, created=True)
     emits: tuple[Emission, ...] = ()
     if not shown.looks_like(before):
         # Where a goal was selected that the index may have shown already, nobody can tell.

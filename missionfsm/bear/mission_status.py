@@ -58,6 +58,7 @@ class Listing:
     """What a status message shows: the listed missions in order, which of them is active, and on what robot.
 
     `fresh`: no mission was ever assigned. `held`: the first mission waits since it cannot start, which nobody sees.
+    `created`: the first mission that waits has just been created and has nothing to wait for.
     """
 
     missions: tuple[Mission, ...]
@@ -65,6 +66,7 @@ class Listing:
     family: Family
     fresh: bool = False
     held: bool = False
+    created: bool = False
 
     def looks_like(self, other: Listing) -> bool:
         """Whether a subscriber could not tell it from the other."""
@@ -72,7 +74,8 @@ class Listing:
 
     def may_look_like(self, other: Listing) -> bool:
         """Whether a subscriber need not be able to tell: a goal that is not selected may be shown as the first."""
-        return (_selected(self.missions), self.active) == (_selected(other.missions), other.active)
+        mine, others = _selected(self.missions), _selected(other.missions)
+        return (mine, self.active, self.fresh) == (others, other.active, other.fresh)
 
 
 def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
@@ -238,9 +241,10 @@ def _listed(view: Listing, content: Seen) -> Assumed:
 
 
 def _first_start(view: Listing) -> Assumed:
-    """AM-63: a first mission that is seen waiting did not run at once."""
+    """AM-63: a mission that was created and is seen waiting did not run at once."""
     waiting = view.active is None and view.missions and not view.held
-    return (AM_63["b"],) if waiting and all(one.state is State.STATE_DEFAULT for one in view.missions) else ()
+    first = all(one.state is State.STATE_DEFAULT for one in view.missions)
+    return (AM_63["b"],) if waiting and (first or view.created) else ()
 
 
 def current_index(view: Listing) -> Mapping[int, Assumed]:

@@ -71,7 +71,7 @@ AM_07 = Ambiguity(
 AM_08 = Ambiguity(
     "AM-08",
     "Which state does a waiting mission report?",
-    {"a": "STATE_DEFAULT", "b": "STATE_UNKNOWN or none", "c": "STATE_PAUSED"},
+    {"a": "STATE_DEFAULT", "b": "STATE_UNKNOWN or none", "c": "STATE_PAUSED, if the index does not point at it"},
     default="a",
 )
 AM_09 = Ambiguity(

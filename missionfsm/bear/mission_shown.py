@@ -34,7 +34,7 @@ from missionfsm.bear.mission_readings import (
     AM_50_SHAPE,
     AM_51,
 )
-from missionfsm.bear.mission_status import FAMILY_TYPES, MEMBERS, TYPES, UNNAMED, Listing, current_index
+from missionfsm.bear.mission_status import FAMILY_TYPES, MEMBERS, TYPES, UNNAMED, Listing, current_index, waiting_as
 from missionfsm.kernel.readings import Assumption, meet
 
 
@@ -46,7 +46,8 @@ def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
     indices = current_index(view)
     index = next(value for value, assumes in indices.items() if meet(choice, assumes))
     missions = tuple(
-        _shown(view, mission, mission_id, choice) for mission, mission_id in zip(view.missions, ids, strict=True)
+        _shown(view, mission, mission_id, choice, pointed=position == index)
+        for position, (mission, mission_id) in enumerate(zip(view.missions, ids, strict=True))
     )
     return MissionStates(missions, index)
 
@@ -55,13 +56,10 @@ def _pick(choice: int, cases: Mapping[Assumption, Any]) -> Any:  # noqa: ANN401 
     return next(value for assumption, value in cases.items() if meet(choice, (assumption,)))
 
 
-def _shown(view: Listing, mission: Mission, mission_id: str, choice: int) -> MissionState:
+def _shown(view: Listing, mission: Mission, mission_id: str, choice: int, *, pointed: bool) -> MissionState:
     state = mission.state
     if state is State.STATE_DEFAULT:
-        state = _pick(
-            choice,
-            {AM_08["a"]: State.STATE_DEFAULT, AM_08["b"]: State.STATE_UNKNOWN, AM_08["c"]: State.STATE_PAUSED},
-        )
+        state = _pick(choice, {AM_08[letters]: one for one, letters in waiting_as(pointed=pointed).items()})
     goals = tuple(Goal(destination_id="return point") if goal == RETURN_POINT else goal for goal in mission.goals)
     return MissionState(
         mission_id,

@@ -275,10 +275,20 @@ def _state(view: Listing, index: int, message: MissionState, where: str, *, poin
         if message.state != state:
             raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected {state.name}")
         return ()
-    letter = {State.STATE_DEFAULT: "a", State.STATE_UNKNOWN: "b", State.STATE_PAUSED: "c"}.get(message.state)
-    if letter is None or (letter == "c" and pointed):
+    letters = waiting_as(pointed=pointed).get(message.state)
+    if letters is None:
         raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected STATE_DEFAULT since it waits")
-    return (AM_08[letter],)
+    return (AM_08[letters],)
+
+
+def waiting_as(*, pointed: bool) -> Mapping[State | int, tuple[str, ...]]:
+    """The states that a waiting mission may report, and what each assumes (AM-08).
+
+    One that the index points at would be taken for a mission that was paused.
+    """
+    if pointed:
+        return {State.STATE_DEFAULT: ("a", "c"), State.STATE_UNKNOWN: ("b",)}
+    return {State.STATE_DEFAULT: ("a",), State.STATE_UNKNOWN: ("b",), State.STATE_PAUSED: ("c",)}
 
 
 def _name(state: State | int) -> str:

@@ -104,7 +104,7 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
             "only under AM-33=b, which is not followed",
         ),
         ("ChargeRobot/NOT_FOUND/the-robot-has-no-contact-dock", {}, "and that in 1 of 8 worlds"),
-        ("AppendMission/FAILED_PRECONDITION/the-queue-is-halted", {}, "no step in "),
+        ("UpdateMission/NOT_FOUND/the-mission-has-ended-and-another-is-active", {}, "no step in "),
     ],
 )
 def test_the_reason_is_the_models(rule: str, readings: dict[str, tuple[str, ...]], why: str) -> None:

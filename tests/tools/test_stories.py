@@ -215,7 +215,7 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     verdict = conform(MISSION, Fickle("AM-41", "ab"), examples=2, tours=12, steps=20, seed=1, advice=False)
     assert verdict.violation is not None
     notes = verdict.violation.notes
-    assert [note.partition(" is ruled out: ")[0] for note in notes] == ["a", "b", "c"]
+    assert [note.partition(" is ruled out: ")[0] for note in notes] == ["a", "b", "c", "d"]
     assert any("was answered INVALID_ARGUMENT" in note for note in notes)
     assert any("was answered FAILED_PRECONDITION" in note for note in notes)
 

@@ -107,6 +107,11 @@ MALFORMED = {
         2,
         "drive.family: the family changes only with reset",
     ),
+    "a robot that connects without a connection": (
+        [first(system="isaac.server"), '{"drive": {"event": "connect"}}'],
+        2,
+        "drive.connection: None is not the number of a connection",
+    ),
     "settled but not true": ([FIRST, '{"settled": 1}'], 2, "settled: 1 is not true"),
     "time going down": ([FIRST, clear(at=5.5), '{"return": 1, "at": 4}'], 3, "at: 4 comes after 5.5"),
     "time that is a text": ([FIRST, clear(at="5")], 2, "at: '5' is not a number of seconds"),

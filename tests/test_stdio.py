@@ -10,6 +10,7 @@ from pathlib import Path
 
 import orjson
 import pytest
+from attrs import evolve
 from commandline import CommandLine
 
 from missionfsm.adapters import stdio
@@ -17,6 +18,7 @@ from missionfsm.adapters.stdio import Child, serve
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.systems import system
+from missionfsm.tools.conform import conform
 from missionfsm.tools.subject import Reference
 
 # A child answers as the reference does, through `reference`, until it is asked for METHOD; then it does WRONG.
@@ -181,6 +183,26 @@ def test_a_failing_adapter_is_told_in_a_line(adapter: Adapter, case: str) -> Non
             "drive",
             "answered drive with {}, not with happened true or false",
         ),
+        (
+            "send({'id': id, 'result': {'happened': True, 'event': 'missionFailed'}}); continue",
+            "drive",
+            "which is another drive",
+        ),
+        (
+            "send({'id': id, 'result': {}}); continue",
+            "SubscribeMissionStatus",
+            "cannot be read: SubscribeMissionStatus answered {}, which carries no stream number",
+        ),
+        (
+            "send({'method': 'closed', 'params': {'stream': 1, 'error': {'status': 'BANANA'}}})",
+            "settle",
+            "cannot be read: error.status: 'BANANA' is not the name of a gRPC error",
+        ),
+        (
+            "send({'method': 'closed', 'params': {'stream': 1, 'error': []}})",
+            "settle",
+            "cannot be read: error.status: None is not the name of a gRPC error",
+        ),
         ("time.sleep(60)", "settle", "did not answer settle within 1 s"),
     ],
 )
@@ -193,6 +215,18 @@ def test_conform_ends_with_3_where_the_adapter_fails(
     assert (ended.status, ended.out, ended.err.count("\n")) == (3, "", 1)
     assert ended.err.startswith("missionfsm: the adapter ")
     assert says in ended.err
+
+
+def test_a_robot_that_connects_has_a_connection() -> None:
+    """An adapter that says that a robot has connected but not which connection that is has failed."""
+
+    class Forgetful(Reference):
+        def exchange(self, method: str, params: JSON) -> Exchange:
+            done = super().exchange(method, params)
+            return evolve(done, result={"happened": True}) if method == "drive" else done
+
+    with pytest.raises(SubjectError, match=r"^the adapter .*connection: None is not the number of a connection$"):
+        conform(system("isaac.server"), Forgetful(system("isaac.server")), examples=1, tours=1, seed=1)
 
 
 def test_a_program_that_cannot_be_started_ends_with_3(command_line: CommandLine, tmp_path: Path) -> None:

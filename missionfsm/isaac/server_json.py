@@ -232,6 +232,12 @@ def drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     raise _refuse(f"drive.event: {brief(event)} is not a drive of isaac.server")
 
 
+def happened(given: JSON) -> tuple[Any, tuple[Name, ...]]:
+    """The event of a drive that happened and its names: a robot that has connected has a connection."""
+    event, names = drive(given)
+    return event, names or ((_connection(given),) if isinstance(event, Connects) else ())
+
+
 def hear(line: str) -> tuple[Heard, tuple[Name, ...]]:
     """What a robot's line is to a server."""
     if not line.strip():
@@ -316,4 +322,5 @@ CODEC = Codec(
     write_world=write_world,
     write_drive=write_drive,
     write_happened=write_happened,
+    happened=happened,
 )

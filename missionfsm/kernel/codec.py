@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from attrs import frozen
+from attrs import Factory, field, frozen
 
 from missionfsm.kernel.history import Answer, Mark, Name
 
@@ -56,6 +56,8 @@ class Codec:
         write_world: a world to the parameters of `reset`.
         write_drive: (event, names) to JSON.
         write_happened: (event, names) to what the result of a drive says besides that it happened.
+        happened: the JSON of a drive that happened, with what its result says, to the event and its names, among them
+            those that only the environment could give.
     """
 
     methods: tuple[str, ...]
@@ -73,3 +75,6 @@ class Codec:
     write_world: Callable[[Any], JSON]
     write_drive: Callable[[Any, tuple[Name, ...]], JSON]
     write_happened: Callable[[Any, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}
+    happened: Callable[[JSON], tuple[Any, tuple[Name, ...]]] = field(
+        default=Factory(lambda self: self.drive, takes_self=True)
+    )

@@ -13,6 +13,10 @@ class SubjectError(Exception):
     """The adapter failed: it said something that the protocol does not allow, or nothing. Never a violation."""
 
 
+class GibberishError(SubjectError):
+    """What the adapter said is of the protocol, but cannot be read."""
+
+
 @frozen
 class Notification:
     """Something that the implementation sent unasked: a ``message``, ``closed`` or a ``line``.

@@ -290,7 +290,7 @@ class Transcript:
         return self._received(connection, line["line"])
 
     def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:
-        event, names = self.codec.drive(line["drive"])
+        event, names = self.codec.happened(line["drive"])
         return (Driven(event, names),)
 
     def _settled(self, line: dict[str, Any]) -> tuple[Event, ...]:

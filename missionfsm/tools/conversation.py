@@ -6,15 +6,16 @@ the same list makes sense with a fresh instance, and with some of its actions le
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from typing import TypeVar
 
 from attrs import frozen
 
 from missionfsm.kernel.alphabet import ANY_NAME
 from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
+from missionfsm.kernel.subject import Exchange, GibberishError, Notification, Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transcript import Head, brief
 from missionfsm.tools.check import Judge
@@ -22,6 +23,7 @@ from missionfsm.tools.picking import fill, is_template
 
 PROTOCOL = 1
 WRONG_NAME = "no-such-name"
+_Read = TypeVar("_Read")
 
 
 @frozen
@@ -138,15 +140,15 @@ class Conversation:
         self._note({"call": number, "method": method, "params": params})
         self._notifications(exchange.before)
         if exchange.error is None:
-            self._note({"return": number, "result": exchange.result})
+            self._hear({"return": number, "result": exchange.result})
             if method != "cancel":
                 self._learn(method, exchange.result)
         else:
-            self._note({"return": number, "error": exchange.error})
+            self._hear({"return": number, "error": exchange.error})
         self._notifications(exchange.after)
 
     def _learn(self, method: str, result: JSON) -> None:
-        answer, names = self.system.codec.answer(method, result)
+        answer, names = _heard(self.system.codec.answer, method, result)
         self._know(names)
         if answer.code == OK and method not in self.system.codec.streams:
             self.succeeded += 1
@@ -171,8 +173,11 @@ class Conversation:
         if happened:
             # What the environment gave a name to (a connection), the history says with the drive.
             told = {**event, **{key: value for key, value in result.items() if key != "happened"}}
-            self._note({"drive": told})
-            self._know(self.system.codec.drive(told)[1])
+            if any(told[key] != value for key, value in event.items()):
+                message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
+                raise SubjectError(message)
+            self._hear({"drive": told})
+            self._know(_heard(self.system.codec.happened, told)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(exchange.after if first else exchange.before + exchange.after)
 
@@ -193,26 +198,39 @@ class Conversation:
     def _notifications(self, notifications: tuple[Notification, ...]) -> None:
         for one in notifications:
             if one.method == "message":
-                self._note({"stream": one.params["stream"], "message": one.params["message"]})
+                self._hear({"stream": one.params["stream"], "message": one.params["message"]})
             elif one.method == "closed":
                 error = one.params.get("error")
                 closed = {"stream": one.params["stream"], "closed": True}
-                self._note({**closed, "error": error} if error else closed)
+                self._hear(closed if error is None else {**closed, "error": error})
             elif one.method == "history":
-                self._note(one.params)
+                self._hear(one.params)
                 self._asked = one.params.get("method", self._asked)
                 if "result" in one.params:
                     self._learn(self._asked, one.params["result"])
             else:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
-                self._note(line)
+                self._hear(line)
                 self._know((("connection", line["connection"]),))
-                for names, _, _ in self.system.codec.strip(line["line"]):
+                for names, _, _ in _heard(self.system.codec.strip, line["line"]):
                     self._know(names)
 
     def _note(self, line: JSON) -> None:
         if self.right:
             self.judge.feed(line)
+
+    def _hear(self, line: JSON) -> None:
+        """Note what came from the adapter."""
+        _heard(self._note, line)
+
+
+def _heard(read: Callable[..., _Read], *sent: JSON) -> _Read:
+    """What an adapter sent, as it is read; where that cannot be done, nobody but the adapter is to blame."""
+    try:
+        return read(*sent)
+    except UnreadableError as error:
+        message = f"the adapter sent what cannot be read: {error}"
+        raise GibberishError(message) from None
 
 
 def simplest_first(params: Iterable[JSON]) -> list[JSON]:

@@ -17,7 +17,7 @@ from typing import Any
 from attrs import evolve, frozen
 
 from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
@@ -29,7 +29,7 @@ from missionfsm.kernel.rules import (
     Rule,
 )
 from missionfsm.kernel.spec import Spec, Step
-from missionfsm.kernel.subject import Exchange
+from missionfsm.kernel.subject import Exchange, GibberishError
 from missionfsm.kernel.system import System
 from missionfsm.tools.conversation import introduce
 from missionfsm.tools.excuse import Honest, excuse
@@ -200,7 +200,7 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
             draw = random.Random(seed + fresh)  # noqa: S311 - no secret
             tour = functools.partial(run.tour, draw, conversations, STEPS, mutant.favour)
             right = tour() if fresh else _at_first(system, run, tour)
-        except UnreadableError:  # it does not even speak the protocol any more
+        except GibberishError:  # it does not even speak the protocol any more
             return Bite(mutant.name, mutant.rule, killed=True)
         if not right:
             length = len(run.found.judge.history) - 1 if run.found else 0

@@ -203,6 +203,11 @@ def test_a_failing_adapter_is_told_in_a_line(adapter: Adapter, case: str) -> Non
             "settle",
             "cannot be read: error.status: None is not the name of a gRPC error",
         ),
+        (
+            "send({'method': 'closed', 'params': {'stream': 1, 'message': {}}})",
+            "settle",
+            "cannot be read: stream 1: expected a message or closed (with an error or without), not both",
+        ),
         ("time.sleep(60)", "settle", "did not answer settle within 1 s"),
     ],
 )

@@ -30,12 +30,13 @@ VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
 _ANY_KEYS = ("at", "robot")
 _HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", *_ANY_KEYS))
+STREAM_KEYS = ("stream", "message", "closed", "error")
 _KEYS: Mapping[str, frozenset[str]] = {
     keys[0]: frozenset((*keys, *_ANY_KEYS))
     for keys in (
         ("call", "method", "params"),
         ("return", "result", "error"),
-        ("stream", "message", "closed", "error"),
+        STREAM_KEYS,
         ("connection", "line"),
         ("drive",),
         ("settled",),
@@ -259,13 +260,16 @@ class Transcript:
 
     def _stream(self, line: dict[str, Any]) -> tuple[Event, ...]:
         stream = ("stream", self._number(line, "stream"))
-        if "message" in line and "closed" not in line:  # nearly always
-            return self._received(stream, line["message"])
-        if line.get("closed") is True:
-            return (Ended(stream, self._status(line["error"]) if line.get("error") else OK),)
-        if "message" not in line:
-            raise _wrong(f"stream {stream[1]}: expected a message or closed")
-        return self._received(stream, line["message"])
+        if "closed" not in line and "error" not in line:
+            if "message" not in line:
+                raise _wrong(f"stream {stream[1]}: expected a message or closed")
+            return self._received(stream, line["message"])  # nearly always
+        if "message" in line:
+            raise _wrong(f"stream {stream[1]}: expected a message or closed (with an error or without), not both")
+        if line.get("closed") is not True:
+            raise _wrong(f"closed: {brief(line.get('closed'))} is not true")
+        error = line.get("error")
+        return (Ended(stream, OK if error is None else self._status(error)),)
 
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
         found = []

@@ -17,7 +17,7 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.subject import Exchange, GibberishError, Notification, Subject, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.transcript import Head, brief
+from missionfsm.kernel.transcript import STREAM_KEYS, Head, brief
 from missionfsm.tools.check import Judge
 from missionfsm.tools.picking import fill, is_template
 
@@ -197,12 +197,9 @@ class Conversation:
 
     def _notifications(self, notifications: tuple[Notification, ...]) -> None:
         for one in notifications:
-            if one.method == "message":
-                self._hear({"stream": one.params["stream"], "message": one.params["message"]})
-            elif one.method == "closed":
-                error = one.params.get("error")
-                closed = {"stream": one.params["stream"], "closed": True}
-                self._hear(closed if error is None else {**closed, "error": error})
+            if one.method in ("message", "closed"):
+                said = {**one.params, "closed": True} if one.method == "closed" else one.params
+                self._hear({key: said[key] for key in STREAM_KEYS if key in said})
             elif one.method == "history":
                 self._hear(one.params)
                 self._asked = one.params.get("method", self._asked)

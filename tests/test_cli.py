@@ -18,6 +18,16 @@ DELIVERY = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destina
 GOOD = (FIRST, {"call": 1, "method": "CreateMission", "params": DELIVERY}, {"return": 1, "result": {"missionId": "m"}})
 WRONG = (*GOOD[:2], {"return": 1, "error": {"status": "FAILED_PRECONDITION"}})
 
+# An adapter of a robot to which nothing ever happens.
+MUTE = """
+import json, sys
+about = {"implementation": {"name": "mute"}, "drives": DRIVES}
+for line in sys.stdin:
+    request = json.loads(line)
+    result = {"initialize": about, "drive": {"happened": False}}.get(request["method"], {})
+    print(json.dumps({"jsonrpc": "2.0", "id": request["id"], "result": result}), flush=True)
+"""
+
 # An adapter that answers every call with one error.
 REFUSING = """
 import json, sys
@@ -137,6 +147,20 @@ def test_an_adapter_that_refuses_everything_is_inconclusive(command_line: Comman
     found = orjson.loads(ended.out)
     assert (ended.status, found["verdict"], found["violation"]) == (1, "inconclusive", None)
     assert "refuses every call" in found["because"]
+
+
+@pytest.mark.parametrize("drives", [[], ["line", "behaviorSucceeded", "behaviorFailed", "advance"]])
+def test_a_robot_that_does_nothing_is_inconclusive(
+    command_line: CommandLine, tmp_path: Path, drives: list[str]
+) -> None:
+    """A robot that nothing can be done to, or to which nothing happens, proves nothing: inconclusive, status 1."""
+    path = tmp_path / "adapter.py"
+    path.write_text(MUTE.replace("DRIVES", repr(drives)))
+    command = (sys.executable, path)
+    ended = command_line("conform", "isaac.robot", "--examples", 3, "--seed", 1, "--json", "-", "--", *command)
+    found = orjson.loads(ended.out)
+    told = (ended.status, found["verdict"], found["violation"], found["because"])
+    assert told == (1, "inconclusive", None, "nothing was exercised")
 
 
 @pytest.mark.slow

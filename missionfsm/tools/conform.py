@@ -146,8 +146,9 @@ def verdict_of(
     advice = advice and run.found is None and run.contradiction is None
     outcome, because, violation, followed = Outcome.CONFORMS, "", None, run.readings
     exercised = run.exercised()
-    if not _does_anything(run):
-        outcome, because = Outcome.INCONCLUSIVE, "it refuses every call"
+    idle = _idle(run, exercised)
+    if idle:
+        outcome, because = Outcome.INCONCLUSIVE, idle
     elif run.found is not None and run.found.judge.exhausted:
         outcome, because = Outcome.INCONCLUSIVE, "an event had too many explanations to decide"
     elif run.found is not None:
@@ -183,10 +184,16 @@ def verdict_of(
     return verdict if run.enough() else held_against(verdict, known.stale)
 
 
-def _does_anything(run: Run) -> bool:
+def _idle(run: Run, exercised: Mapping[str, int]) -> str:
+    """Why nothing can be said of an implementation that does nothing; empty for one that does something."""
+    if not run.system.codec.methods:
+        silent = run.found is None and run.contradiction is None and not exercised
+        return "nothing was exercised" if silent else ""
+    return "" if run.succeeded or _can_be_called(run) else "it refuses every call"
+
+
+def _can_be_called(run: Run) -> bool:
     """Whether any call but a subscription succeeds in a fresh instance."""
-    if run.succeeded or (run.events and not run.system.codec.methods):
-        return True
     world = run.guide.worlds[0]
     for prompt in run.system.alphabet(world, run.bounds).plain:
         if prompt.method in run.system.codec.streams:

@@ -128,6 +128,32 @@ MALFORMED = {
         2,
         "drive.connection: None is not the number of a connection",
     ),
+    "a time that is too long": (
+        [first(system="isaac.server"), '{"drive": {"event": "advance", "seconds": 1e308}}'],
+        2,
+        "drive.seconds: 1e+308 is more than 1e+300 seconds",
+    ),
+    "a timeout that is too long": (
+        [
+            first(system="isaac.server"),
+            '{"call": 1, "method": "submit", "params": {"mission": {"robot": "r", "timeout": 1e308}}}',
+        ],
+        2,
+        "submit.timeout: 1e+308 is more than 1e+300 seconds",
+    ),
+    "a tolerance that is too long": (
+        [first(system="isaac.server", world={"tolerance": 1e308})],
+        1,
+        "world.tolerance: 1e+308 is more than 1e+300 seconds",
+    ),
+    "a part that is a list": (
+        [
+            first(system="bear.status"),
+            '{"drive": {"event": "report", "robotId": "r", "part": [], "value": null}}',
+        ],
+        2,
+        "drive.part: [] is not a part",
+    ),
     "settled but not true": ([FIRST, '{"settled": 1}'], 2, "settled: 1 is not true"),
     "time going down": ([FIRST, clear(at=5.5), '{"return": 1, "at": 4}'], 3, "at: 4 comes after 5.5"),
     "time that is a text": ([FIRST, clear(at="5")], 2, "at: '5' is not a number of seconds"),

@@ -441,7 +441,8 @@ def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
         return Happening("restart", robot), ()
     if event == "move":
         return Happening("move", robot, value=_text(given, "locationId", "drive")), ()
-    part = _PARTS.get(given.get("part", ""))
+    named = given.get("part")
+    part = _PARTS.get(named) if isinstance(named, str) else None
     if part is None:
         raise _refuse(f"drive.part: {brief(given.get('part'))} is not a part of a robot's state")
     try:

@@ -28,6 +28,8 @@ from missionfsm.kernel.transcript import brief
 
 NAME_CHANNEL = "name"
 MISSION_CHANNEL = "mission"
+LONGEST = 1e300
+"""Seconds; of what is longer the microseconds are more than a float can be."""
 
 
 def _refuse(says: str) -> UnreadableError:
@@ -41,10 +43,17 @@ def world(given: JSON) -> tuple[()]:
     return ()
 
 
-def seconds(given: JSON) -> int:
-    """A drive's seconds in microseconds. Raises UnreadableError for what is no time that can pass."""
+def seconds(given: JSON, where: str = "drive.seconds") -> int:
+    """Some seconds in microseconds. Raises UnreadableError for what is no time that can pass."""
     if isinstance(given, bool) or not isinstance(given, int | float) or not 0 <= given < math.inf:
-        raise _refuse(f"drive.seconds: {brief(given)} is no number of seconds from 0 on")
+        raise _refuse(f"{where}: {brief(given)} is no number of seconds from 0 on")
+    return in_microseconds(given, where)
+
+
+def in_microseconds(given: float, where: str) -> int:
+    """A finite number of seconds in microseconds. Raises UnreadableError for one that is too large to be told."""
+    if abs(given) > LONGEST:
+        raise _refuse(f"{where}: {brief(given)} is more than {LONGEST:g} seconds, the most that is counted")
     return round(given * MICROSECONDS)
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 from typing import Any
 
 from missionfsm.isaac import server_rules as rules
 from missionfsm.isaac import strictjson
 from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
-from missionfsm.isaac.robot_json import seconds, text_line
+from missionfsm.isaac.robot_json import in_microseconds, seconds, text_line
 from missionfsm.isaac.server_links import BAD, FOREIGN, NAME, NOISE, STATUS, Heard
 from missionfsm.isaac.server_readings import AI_25_HEADER, AI_28_CONFIG
 from missionfsm.isaac.server_rules import Submission
@@ -25,6 +26,7 @@ from missionfsm.kernel.transcript import brief
 
 _KEYS = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
 _BUFFERS = "type"
+_MOST_DIGITS = 19
 
 
 def _refuse(says: str) -> UnreadableError:
@@ -39,9 +41,7 @@ def world(given: JSON) -> World:
     channel, tolerance = given.get("nameChannel", "name"), given.get("tolerance", 0)
     if not isinstance(channel, str) or not channel:
         raise _refuse(f"world.nameChannel: {brief(channel)} is not the name of a channel")
-    if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not 0 <= tolerance < math.inf:
-        raise _refuse(f"world.tolerance: {brief(tolerance)} is no number of seconds from 0 on")
-    return World(channel, round(tolerance * MICROSECONDS))
+    return World(channel, seconds(tolerance, "world.tolerance"))
 
 
 def write_world(given: World) -> JSON:
@@ -126,7 +126,7 @@ class _Reader:
             return None
         if value < 0:
             self.defects.add(rules.NEGATIVE)
-        return None if value == math.inf else round(value * MICROSECONDS)
+        return None if abs(value) == math.inf else in_microseconds(value, f"submit.{key}")
 
     def _upstream(self) -> int:
         value = self.mission.get("upstream", [])
@@ -176,14 +176,25 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             return Answer(OK, Garbled(f"mission: {brief(handle)} is no handle")), ()
         return Answer(OK), (("mission", handle),)
     missions = result.get("missions") if isinstance(result, dict) else None
-    if not isinstance(missions, dict) or not all(str(key).isascii() and str(key).isdecimal() for key in missions):
+    if not isinstance(missions, dict) or not all(map(_is_number, missions)):
         return Answer(OK, Garbled(f"missions: {brief(missions)} is no object from handles to statuses")), ()
-    shown = sorted((int(key), value) for key, value in missions.items())
-    unknown = next((value for _, value in shown if not isinstance(value, str) or value.upper() not in _BY_NAME), None)
+    shown = sorted(((int(key), value) for key, value in missions.items()), key=operator.itemgetter(0))
     names = tuple(("mission", handle) for handle, _ in shown)
-    if unknown is not None:
+    words = tuple(_word(value) for _, value in shown)
+    if None in words:
+        unknown = shown[words.index(None)][1]
         return Answer(OK, Garbled(f"{brief(unknown)} is not the name of a status")), names
-    return Answer(OK, tuple(_BY_NAME[value.upper()] for _, value in shown)), names
+    return Answer(OK, words), names
+
+
+def _is_number(key: str) -> bool:
+    """Whether the key of an object is a handle."""
+    return key.isascii() and key.isdecimal() and len(key) <= _MOST_DIGITS
+
+
+def _word(status: JSON) -> str | None:
+    """What is meant by the name of a status, in upper or lower case; None for what is no such name."""
+    return _BY_NAME.get(status.upper()) if isinstance(status, str) and status.isascii() else None
 
 
 def write_answer(method: str, told: Answer, names: tuple[Name, ...]) -> JSON:

@@ -128,6 +128,21 @@ def test_statuses_tell_names_apart() -> None:
     assert not mixed.judged().conforms
 
 
+@pytest.mark.parametrize("status", [None, 1, [], "\u017fTARTED", "QUEUE"])
+def test_what_is_no_status_is_a_violation(status: Any) -> None:
+    """Whatever stands in the place of a status; a long s is no S, though it is one in upper case."""
+    assert not History().submit(1).shows(status).judged().conforms
+
+
+@pytest.mark.parametrize("handles", [("1", "01"), ("9" * 5000,)])
+def test_what_is_no_handle_is_a_violation(handles: tuple[str, ...]) -> None:
+    """One handle twice, and one with more digits than a number has, are answers that nothing explains."""
+    result = {"missions": dict.fromkeys(handles, "QUEUED") | {handles[-1]: None}}
+    history = History().submit(1)
+    history.lines += [{"call": 9, "method": "statuses", "params": {}}, {"return": 9, "result": result}]
+    assert not history.judged().conforms
+
+
 @pytest.mark.parametrize(
     ("seconds", "statuses"), [(4.9, "STARTED"), (5, "STARTED FAILED_TIMEDOUT"), (5.1, "FAILED_TIMEDOUT")]
 )

@@ -39,6 +39,11 @@ MALFORMED = {
         2,
         "not JSON",
     ),
+    "a little too deep": (
+        [FIRST, '{"call": 1, "method": "SkipGoal", "params": ' + '[{"x":' * 100 + "1" + "}]" * 100 + "}"],
+        2,
+        "nested more than 200 deep",
+    ),
     "a list": ([FIRST, "[1]"], 2, "[1] is not an object"),
     "null": ([FIRST, "null"], 2, "None is not an object"),
     "no first line": ([CLEAR], 1, "the first line has to be"),
@@ -177,6 +182,15 @@ def test_a_malformed_line_is_refused_in_one_line(command_line: CommandLine, tmp_
     assert says in ended.err
     assert ended.err.count("\n") == 1
     assert len(ended.err) < 400
+
+
+def test_what_is_deep_and_wide_is_read(command_line: CommandLine, tmp_path: Path) -> None:
+    """A line may be nested 200 deep, have far more brackets than that, and is judged like any other."""
+    path = tmp_path / "log.jsonl"
+    deep = "[" * 198 + "{}," * 1000 + "1" + "]" * 198
+    path.write_text(f'{FIRST}\n{clear()}\n{{"return": 1, "result": {deep}}}\n')
+    ended = command_line("check", path, "--json", "-")
+    assert (ended.status, ended.err, orjson.loads(ended.out)["verdict"]) == (1, "", "violates")
 
 
 @pytest.mark.parametrize(

@@ -86,6 +86,10 @@ FAILURES = {
     ),
     "writes an empty line": ("send('')", "wrote a line that is not JSON: ''"),
     "writes NaN": ('send(\'{"id": %d, "result": NaN}\' % id)', 'wrote a line that is not JSON: \'{"id": '),
+    "nests too deep": (
+        "send('{\"id\": %d, \"result\": %s}' % (id, 200 * '[' + 200 * ']'))",
+        'wrote a line that is nested more than 200 deep: \'{"id": ',
+    ),
     "writes a list": ("send([])", "wrote a line that is not a JSON object: []"),
     "answers another request": (
         "send({'id': id + 1, 'result': {}})",
@@ -362,6 +366,7 @@ def test_a_server_answers_whatever_it_is_sent() -> None:
         b"",
         b'{"id": "five", "method": "reset"}',
         b'{"id": 6, "method": "SkipGoal", "params": {}}',
+        b'{"id": 7, "method": "SkipGoal", "params": %b}' % (200 * b"[" + 200 * b"]"),
     ]
     out = io.BytesIO()
     serve(Reference(system("bear.mission")), io.BytesIO(b"\n".join(lines)), out)
@@ -376,5 +381,6 @@ def test_a_server_answers_whatever_it_is_sent() -> None:
         (4, -32602, None),
         ("five", None, {}),
         (6, 9, None),
+        (None, -32700, None),
     ]
-    assert answers[-1]["error"]["data"] == {"status": "FAILED_PRECONDITION"}
+    assert answers[-2]["error"]["data"] == {"status": "FAILED_PRECONDITION"}

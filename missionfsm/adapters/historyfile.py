@@ -14,6 +14,7 @@ from typing import IO
 import orjson
 from attrs import field, frozen
 
+from missionfsm.adapters.jsonlines import loads
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 STDIN = "-"
@@ -90,10 +91,10 @@ class Lines:
     def json(self, text: bytes) -> JSON:
         """What the line that came last says. Raises UnreadableError, which says what is wrong."""
         try:
-            return orjson.loads(text)
-        except orjson.JSONDecodeError as error:
+            return loads(text)
+        except UnreadableError as error:
             short = " (the file ends in the middle of it)" if self._cut else ""
-            message = f"not JSON: {error}{short}"
+            message = f"{error}{short}"
             raise UnreadableError(message) from None
 
     def parsed(self, numbered: Iterator[tuple[int, bytes]]) -> Iterator[tuple[int, JSON]]:

@@ -18,7 +18,8 @@ from typing import IO, Any
 
 import orjson
 
-from missionfsm.kernel.codec import JSON
+from missionfsm.adapters.jsonlines import TooDeepError, loads
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 from missionfsm.kernel.transcript import brief
@@ -45,9 +46,9 @@ def serve(subject: Subject, requests: IO[bytes], responses: IO[bytes]) -> None:
 
 def _respond(subject: Subject, line: bytes) -> list[JSON]:
     try:
-        request = orjson.loads(line)
-    except orjson.JSONDecodeError as error:
-        return [_failure(None, PARSE_ERROR, f"not JSON: {error}")]
+        request = loads(line)
+    except UnreadableError as error:
+        return [_failure(None, PARSE_ERROR, str(error))]
     if not isinstance(request, dict) or not isinstance(request.get("method"), str):
         return [_failure(None, INVALID_REQUEST, "a request has a method")]
     number = request.get("id")
@@ -77,6 +78,11 @@ def _failure(number: JSON, code: int, says: str) -> JSON:
 
 
 # A child process as a subject.
+
+
+def _begins(line: bytes | bytearray) -> str:
+    """How a line begins, as an error message shows it."""
+    return brief(line[:80].decode(errors="replace"))
 
 
 class Child:
@@ -192,9 +198,10 @@ class Child:
 
     def _parse(self, line: bytes) -> dict[str, Any]:
         try:
-            message = orjson.loads(line)
-        except orjson.JSONDecodeError:
-            raise self._failed(f"wrote a line that is not JSON: {brief(line[:80].decode(errors='replace'))}") from None
+            message = loads(line)
+        except UnreadableError as error:
+            what = error if isinstance(error, TooDeepError) else "not JSON"
+            raise self._failed(f"wrote a line that is {what}: {_begins(line)}") from None
         if not isinstance(message, dict):
             raise self._failed(f"wrote a line that is not a JSON object: {brief(message)}")
         return message

@@ -1,0 +1,41 @@
+"""One line of JSON from somebody who is not trusted: read fast, and never deeper than what comes after can follow."""
+
+from __future__ import annotations
+
+from itertools import chain
+
+import orjson
+
+from missionfsm.kernel.codec import JSON, UnreadableError
+
+DEEPEST = 200
+"""How deep lists and objects may be nested in a line."""
+
+
+class TooDeepError(UnreadableError):
+    """It is JSON, but nested so deep that nobody means it."""
+
+
+def loads(text: bytes) -> JSON:
+    """What a line says. Raises UnreadableError, which says what is wrong."""
+    try:
+        value = orjson.loads(text)
+    except orjson.JSONDecodeError as error:
+        message = f"not JSON: {error}"
+        raise UnreadableError(message) from None
+    # Nearly every line is too short to be too deep, and of the others nearly every one has too few brackets.
+    if len(text) > 2 * DEEPEST and text.count(b"[") + text.count(b"{") > DEEPEST and _is_too_deep(value):
+        message = f"nested more than {DEEPEST} deep"
+        raise TooDeepError(message)
+    return value
+
+
+def _is_too_deep(value: JSON) -> bool:
+    level = [value]
+    for _ in range(DEEPEST):
+        lists = chain.from_iterable(one for one in level if isinstance(one, list))
+        objects = chain.from_iterable(one.values() for one in level if isinstance(one, dict))
+        level = [one for one in chain(lists, objects) if isinstance(one, list | dict)]
+        if not level:
+            return False
+    return True

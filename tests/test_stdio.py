@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import shlex
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -71,6 +74,10 @@ FAILURES = {
     "is killed": ("os.kill(os.getpid(), signal.SIGKILL)", "was ended by signal 9 before answering SkipGoal"),
     "closes its output": ("os.close(1); time.sleep(60)", "closed its output before answering SkipGoal"),
     "hangs": ("time.sleep(60)", "did not answer SkipGoal within 0.5 s"),
+    "exits in the middle of a line": (
+        "os.write(1, b'{\"id\"'); os._exit(0)",
+        "exited with status 0 before answering SkipGoal, in the middle of the line '{\"id\"'",
+    ),
     "hangs in the middle of a line": (
         "sys.stdout.write('{\"id\"'); sys.stdout.flush(); time.sleep(60)",
         "did not answer SkipGoal within 0.5 s",
@@ -299,6 +306,72 @@ def test_a_child_that_outlives_its_input_is_ended(adapter: Adapter) -> None:
     child.close()
     assert child._process.poll() == -9
     assert time.monotonic() - began < 5
+
+
+def lives(process: int) -> bool:
+    """Whether a process is still there, other than as a zombie that nobody has asked for yet."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="it is asked of /proc what lives")
+def test_what_a_child_has_started_ends_with_it(adapter: Adapter, tmp_path: Path) -> None:
+    """A child that is a shell, which ends at once where it is told to: what it has started ends too."""
+    path = tmp_path / "number"
+    wrong = f"open({str(path)!r}, 'w').write(str(os.getpid())); time.sleep(60)"
+    child = Child(["sh", "-c", f"{shlex.join(adapter(wrong, 'reset'))}; true"], timeout=10)
+    child.exchange("initialize", {"system": "bear.mission"})
+    child.timeout = 0.5
+    with pytest.raises(SubjectError, match="did not answer reset"):
+        child.exchange("reset", {})
+    assert lives(int(path.read_text()))
+    child.close()
+    ended = time.monotonic() + 5
+    while lives(int(path.read_text())) and time.monotonic() < ended:
+        time.sleep(0.01)
+    assert not lives(int(path.read_text()))
+
+
+def test_a_child_that_leaves_somebody_behind_has_exited() -> None:
+    """What it has started holds its output open; that it has exited is said at once all the same."""
+    child = Child(["sh", "-c", "sleep 43 & exit 7"], timeout=30)
+    began = time.monotonic()
+    try:
+        with pytest.raises(SubjectError, match="exited with status 7 before answering initialize"):
+            child.exchange("initialize", {})
+    finally:
+        child.close()
+    assert time.monotonic() - began < 10
+
+
+@pytest.mark.parametrize("signal_number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_a_signal_ends_the_adapter_too(adapter: Adapter, tmp_path: Path, signal_number: int) -> None:
+    """``conform`` that is told to end ends its adapter first, though that ignores the end of its input."""
+    path = tmp_path / "number"
+    wrong = f"open({str(path)!r}, 'w').write(str(os.getpid())); time.sleep(60)"
+    command = [sys.executable, "-m", "missionfsm", "conform", "bear.mission", "--timeout", "50", "--"]
+    conforming = subprocess.Popen([*command, *adapter(wrong, "reset")], stderr=subprocess.DEVNULL)
+    ended = time.monotonic() + 20
+    while not (path.exists() and path.read_text()) and time.monotonic() < ended:
+        time.sleep(0.05)
+    conforming.send_signal(signal_number)
+    assert conforming.wait(10) == 130
+    assert not lives(int(path.read_text()))
+
+
+def test_a_child_that_logs_without_end_fills_nothing(adapter: Adapter) -> None:
+    """A flood on stderr is read and thrown away but for its end, which is told with what is wrong."""
+    wrong = "os.write(2, b'x' * 50_000_000 + b'\\nthe end\\n'); sys.exit(1)"
+    child = Child(adapter(wrong), timeout=30)
+    try:
+        with pytest.raises(SubjectError, match=r"exited with status 1 before answering initialize \(stderr: the end\)"):
+            child.exchange("initialize", {})
+        assert len(child._logged) <= stdio.LOG_KEPT
+    finally:
+        child.close()
 
 
 def test_what_a_child_logs_is_no_answer(adapter: Adapter) -> None:

@@ -10,7 +10,6 @@ import contextlib
 import os
 import selectors
 import subprocess
-import tempfile
 import time
 from collections import deque
 from collections.abc import Sequence
@@ -19,6 +18,7 @@ from typing import IO, Any
 import orjson
 
 from missionfsm.adapters.jsonlines import TooDeepError, loads
+from missionfsm.adapters.processes import end_group
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
@@ -29,6 +29,15 @@ LONGEST_LINE = 64 * 1024 * 1024
 
 MOST_NOTIFICATIONS = 100_000
 """Notifications between two answers before a child counts as flooding."""
+
+LOG_KEPT = 2000
+"""How many of the bytes that a child wrote to stderr last are kept."""
+
+MOST_READS = 100
+"""How many times what is left in a pipe is asked for before somebody counts as writing without end."""
+
+MOMENT = 0.05
+"""Seconds after which a child that says nothing is looked at whether it is still there."""
 
 PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600, -32601, -32602
 
@@ -99,39 +108,44 @@ class Child:
     def __init__(self, command: Sequence[str], timeout: float = 10.0) -> None:
         self.command = tuple(command)
         self.timeout = timeout
-        self._stderr = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - lives as long as the child
+        pipe = subprocess.PIPE
         try:
             self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
-                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._stderr, bufsize=0
+                self.command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True
             )
         except OSError as error:
-            self._stderr.close()
             message = f"cannot start {self.command[0]}: {error.strerror}"
             raise SubjectError(message) from None
         assert self._process.stdin is not None  # noqa: S101 - it was asked for
         assert self._process.stdout is not None  # noqa: S101
+        assert self._process.stderr is not None  # noqa: S101
         self._in, self._out = self._process.stdin.fileno(), self._process.stdout.fileno()
-        os.set_blocking(self._in, False)
-        os.set_blocking(self._out, False)
+        self._log, self._err = self._process.stderr, self._process.stderr.fileno()
         self._selector = selectors.DefaultSelector()
-        self._selector.register(self._out, selectors.EVENT_READ)
+        for end in (self._in, self._out, self._err):
+            os.set_blocking(end, False)
+        for end in (self._out, self._err):
+            self._selector.register(end, selectors.EVENT_READ)
+        self._logged = bytearray()
         self._partial = bytearray()
         self._lines: deque[bytes] = deque()
         self._serial = 0
 
     def close(self) -> None:
-        """End its input, give it a moment, then end it."""
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-        try:
-            self._process.wait(0.5)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        """End its input, give it a moment, then end it and whatever it has started."""
+        if self._log.closed:
+            return
         self._selector.close()
-        self._stderr.close()
+        try:
+            for pipe in (self._process.stdin, self._process.stdout):
+                if pipe is not None:
+                    with contextlib.suppress(OSError):
+                        pipe.close()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(0.5)
+        finally:
+            end_group(self._process)
+            self._log.close()
 
     def exchange(self, method: str, params: JSON) -> Exchange:
         """Send a request and wait for its answer."""
@@ -214,6 +228,7 @@ class Child:
             except BlockingIOError:
                 # A child that does not read may be busy writing: take what it has, or both would wait for ever.
                 self._read_available()
+                self._read_log()
                 if time.monotonic() > deadline:
                     raise self._failed(f"did not read {method} within {self.timeout:g} s") from None
                 time.sleep(0.001)
@@ -223,10 +238,17 @@ class Child:
     def _line(self, deadline: float, method: str) -> bytes:
         while not self._lines:
             left = deadline - time.monotonic()
-            if left <= 0 or not self._selector.select(left):
+            if left <= 0:
                 raise self._failed(f"did not answer {method} within {self.timeout:g} s")
-            if not self._read_available() and not self._lines:
-                raise self._exited(method)
+            ready = {key.fd for key, _ in self._selector.select(min(left, MOMENT))}
+            if self._err in ready:
+                self._read_log()
+            # What it has started may hold its output open for longer than it lives itself.
+            gone = self._out not in ready and self._process.poll() is not None
+            if self._out in ready or gone:
+                ended = not self._read_available() or gone
+                if ended and not self._lines:
+                    raise self._exited(method)
         return self._lines.popleft()
 
     def _read_available(self) -> bool:
@@ -252,23 +274,36 @@ class Child:
             if len(data) < 1 << 20:
                 return True
 
+    def _read_log(self) -> bool:
+        """Take some of what it has written to stderr and keep the end; False if there is no more for now."""
+        try:
+            data = os.read(self._err, 1 << 16)
+        except BlockingIOError:
+            return False
+        if not data:
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(self._err)
+        self._logged += data
+        del self._logged[:-LOG_KEPT]
+        return bool(data)
+
     def _exited(self, method: str) -> SubjectError:
         try:
             status = self._process.wait(0.5)
         except subprocess.TimeoutExpired:
             return self._failed(f"closed its output before answering {method}")
         ended = f"was ended by signal {-status}" if status < 0 else f"exited with status {status}"
-        return self._failed(f"{ended} before answering {method}")
+        half = f", in the middle of the line {_begins(self._partial)}" if self._partial else ""
+        return self._failed(f"{ended} before answering {method}{half}")
 
     def _failed(self, says: str) -> SubjectError:
         return SubjectError(f"the adapter {says}{self._complaint()}")
 
     def _complaint(self) -> str:
         """The last line that it wrote to stderr, since that usually says what is wrong."""
-        self._stderr.seek(0, os.SEEK_END)
-        size = self._stderr.tell()
-        self._stderr.seek(max(0, size - 2000))
-        lines = self._stderr.read().decode(errors="replace").strip().splitlines()
-        self._stderr.seek(0, os.SEEK_END)
+        for _ in range(MOST_READS):  # one that floods has always more
+            if not self._read_log():
+                break
+        lines = self._logged.decode(errors="replace").strip().splitlines()
         telling = next((line for line in reversed(lines) if line.strip()), "")
         return f" (stderr: {telling.strip()[:200]})" if telling else ""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import select
+import signal
 import socket
 import subprocess
 import tempfile
@@ -16,6 +17,7 @@ import time
 from collections.abc import Sequence
 from typing import Final
 
+from missionfsm.adapters.processes import end_group, signal_group
 from missionfsm.isaac.wire import MAX_LINE
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
@@ -45,7 +47,11 @@ class Program:
         self._said.truncate()
         try:
             self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
-                self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._said
+                self.command,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=self._said,
+                start_new_session=True,
             )
         except OSError as error:
             raise SubjectError(f"cannot start {self.command[0]}: {error.strerror}") from None
@@ -62,16 +68,16 @@ class Program:
         return f" (stderr: {lines[-1].strip()[:200]})" if lines else ""
 
     def stop(self) -> None:
-        """Ask it to end, and end it if it does not."""
+        """Ask it and whatever it has started to end, and end what does not."""
         if self._process is None:
             return
-        self._process.terminate()
+        signal_group(self._process, signal.SIGTERM)
         try:
-            self._process.wait(2.0)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        self._process = None
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(2.0)
+        finally:
+            end_group(self._process)
+            self._process = None
 
     def close(self) -> None:
         """Stop it for good."""

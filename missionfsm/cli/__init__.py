@@ -10,6 +10,7 @@ import sys
 import typer
 
 from missionfsm.cli import diagram, isaac, judging, listing
+from missionfsm.cli.signals import ended_like_ctrl_c
 
 app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None, help=__doc__
@@ -32,7 +33,8 @@ for _command in (
 def main() -> None:
     """Run the command line."""
     try:
-        app()
+        with ended_like_ctrl_c():
+            app()
     except KeyboardInterrupt:
         sys.exit(130)
     except BrokenPipeError:

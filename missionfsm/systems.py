@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
+from missionfsm.kernel.transcript import brief
 
 _MODULES: Mapping[str, str] = {
     "bear.mission": "missionfsm.bear.mission_system",
@@ -25,7 +26,7 @@ def names() -> tuple[str, ...]:
 def system(name: str) -> System:
     """The system with a name. Raises UnreadableError, which lists those that exist."""
     if name not in _MODULES:
-        message = f"there is no system {name!r}; there are {', '.join(_MODULES)}"
+        message = f"there is no system {brief(name)}; there are {', '.join(_MODULES)}"
         raise UnreadableError(message)
     found: System = importlib.import_module(_MODULES[name]).SYSTEM
     return found

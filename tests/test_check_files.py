@@ -217,7 +217,10 @@ def test_what_is_no_history_is_refused(
     assert says in ended.err
 
 
-@pytest.mark.parametrize(("name", "says"), [("missing.jsonl", "No such file or directory"), ("", "Is a directory")])
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("missing.jsonl", "No such file or directory"), ("", "Is a directory"), (300 * "x", "File name too long")],
+)
 def test_what_is_no_file_is_refused(command_line: CommandLine, tmp_path: Path, name: str, says: str) -> None:
     """A path without a file ends with status 2 and the system's word for it."""
     path = tmp_path / name
@@ -225,14 +228,17 @@ def test_what_is_no_file_is_refused(command_line: CommandLine, tmp_path: Path, n
     assert (ended.status, ended.out, ended.err) == (2, "", f"missionfsm: {path}: {says}\n")
 
 
-def test_the_first_malformed_file_stops(command_line: CommandLine, tmp_path: Path) -> None:
-    """Of several files, those before the malformed one are judged, and the status is 2 all the same."""
-    good, bad = tmp_path / "good.jsonl", tmp_path / "bad.jsonl"
-    good.write_text(f"{FIRST}\n{CLEAR}\n{CLEARED}\n")
+def test_a_malformed_file_keeps_no_other_from_being_judged(command_line: CommandLine, tmp_path: Path) -> None:
+    """Of several files all that can be read are judged and written, then come the others, and the status is 2."""
+    good, bad, last, out = (tmp_path / name for name in ("good.jsonl", "bad.jsonl", "last.jsonl", "out.json"))
+    for path in (good, last):
+        path.write_text(f"{FIRST}\n{CLEAR}\n{CLEARED}\n")
     bad.write_text("{")
-    ended = command_line("check", good, bad)
-    assert (ended.status, ended.err.count("\n")) == (2, 1)
-    assert ended.out.startswith(f"{good}: conforms: bear.mission, 2 events\n")
+    ended = command_line("check", good, bad, tmp_path / "missing", last, "--json", out)
+    assert (ended.status, ended.err.count("\n")) == (2, 2)
+    heads = [line for line in ended.out.splitlines() if "conforms" in line]
+    assert heads == [f"{path}: conforms: bear.mission, 2 events" for path in (good, last)]
+    assert [one["file"] for one in orjson.loads(out.read_bytes())] == [str(good), str(last)]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n"], ids=["lines", "lines of Windows", "empty lines between"])

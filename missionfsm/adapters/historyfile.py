@@ -27,17 +27,38 @@ CHUNK = 1 << 16
 def open_history(path: str) -> IO[bytes]:
     """A history to read; ``-`` is stdin. Raises UnreadableError if there is none."""
     if path == STDIN:
-        return sys.stdin.buffer
+        return stdin()
+    if not path:
+        raise UnreadableError("'': an empty name is no name of a file")
     try:
         return Path(path).open("rb")
     except OSError as error:
-        message = f"{path}: {error.strerror}"
-        raise UnreadableError(message) from None
+        raise UnreadableError(f"{path}: {error.strerror}") from None
+
+
+def stdin() -> IO[bytes]:
+    """What comes in. Raises UnreadableError if nothing can."""
+    if sys.stdin is None:
+        raise UnreadableError("stdin is closed")
+    return sys.stdin.buffer
+
+
+def is_plain_file(path: str) -> bool:
+    """Whether it can be read more than once."""
+    try:
+        return Path(path).is_file()
+    except OSError:
+        return False
+
+
+def called(path: str) -> str:
+    """What a history is called."""
+    return "stdin" if path == STDIN else path
 
 
 def wrong_line(path: str, number: int, says: object) -> UnreadableError:
     """What is wrong, with the place where it is."""
-    return UnreadableError(f"{'stdin' if path == STDIN else path}:{number}: {says}")
+    return UnreadableError(f"{called(path)}:{number}: {says}")
 
 
 @contextlib.contextmanager
@@ -49,13 +70,20 @@ def placed(path: str, number: int) -> Iterator[None]:
         raise wrong_line(path, number, error) from None
 
 
+def _read(read: Callable[[int], bytes], path: str) -> bytes:
+    try:
+        return read(CHUNK)
+    except OSError as error:
+        raise UnreadableError(f"{called(path)}: {error.strerror or error}") from None
+
+
 def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bool]]:
     """The lines of a source, many at a time: how many came before, the lines, and whether they end with a newline."""
     number, size = 0, 0
     begun: list[bytes] = []
     # What waits in a pipe is taken as it comes, so that a live stream is judged at once.
     read: Callable[[int], bytes] = getattr(source, "read1", source.read)
-    while block := read(CHUNK):
+    while block := _read(read, path):
         end = block.rfind(b"\n")
         size += len(block) if end < 0 else end
         if size > LONGEST_LINE + CHUNK:
@@ -174,28 +202,3 @@ class Stamps:
             message = f"robot: {robot!r:.60} is not a text"
             raise UnreadableError(message)
         return robot
-
-
-def write_history(path: str, history: tuple[JSON, ...]) -> None:
-    """Write the lines of a history to a file, whole or not at all."""
-    write_whole(path, b"".join(orjson.dumps(line) + b"\n" for line in history))
-
-
-def write_whole(path: str, data: bytes) -> None:
-    """Write a file whole or not at all; ``-`` is stdout. Raises UnreadableError if that is not possible."""
-    if path == STDIN:
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
-        return
-    target = Path(path)
-    part = target.with_name(target.name + ".part")
-    try:
-        part.write_bytes(data)
-        part.replace(target)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        message = f"{path}: {error.strerror}"
-        raise UnreadableError(message) from None
-
-
-Warn = Callable[[str], None]

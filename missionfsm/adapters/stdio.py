@@ -23,6 +23,7 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 from missionfsm.kernel.transcript import brief
+from missionfsm.kernel.words import printable
 
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes in one line before a child counts as flooding."""
@@ -306,4 +307,4 @@ class Child:
                 break
         lines = self._logged.decode(errors="replace").strip().splitlines()
         telling = next((line for line in reversed(lines) if line.strip()), "")
-        return f" (stderr: {telling.strip()[:200]})" if telling else ""
+        return f" (stderr: {printable(telling.strip()[:200])})" if telling else ""

@@ -5,12 +5,15 @@ Exit status: 0 conforms (or done), 1 violates or inconclusive, 2 bad usage or ba
 
 from __future__ import annotations
 
+import io
 import sys
 
 import typer
 
 from missionfsm.cli import diagram, isaac, judging, listing
+from missionfsm.cli.common import BAD_INPUT, complain
 from missionfsm.cli.signals import ended_like_ctrl_c
+from missionfsm.kernel.codec import UnreadableError
 
 app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None, help=__doc__
@@ -32,15 +35,16 @@ for _command in (
 
 def main() -> None:
     """Run the command line."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # it may have no daggers, and no encoding has all names of files
+        sys.stdout.reconfigure(errors="replace")
     try:
         with ended_like_ctrl_c():
             app()
     except KeyboardInterrupt:
         sys.exit(130)
-    except BrokenPipeError:
-        # Whoever read our output has seen enough.
-        sys.stderr.close()
-        sys.exit(0)
+    except UnreadableError as error:
+        complain(str(error))
+        sys.exit(BAD_INPUT)
 
 
 if __name__ == "__main__":

@@ -1,27 +1,36 @@
-"""What the commands share: how bad input ends, how readings are given, where JSON goes."""
+"""What the commands share: how bad input ends, how readings are given, what people are told and where JSON goes."""
 
 from __future__ import annotations
 
 import contextlib
+import itertools
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NoReturn
 
 import orjson
 import typer
 
-from missionfsm.adapters.historyfile import write_whole
+from missionfsm.adapters.outputs import STDOUT, refuse_unwritable, same_file, to_stdout, write_whole
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
+from missionfsm.kernel.words import shown
 from missionfsm.systems import system
 
 DONE, FAILED, BAD_INPUT, ADAPTER_FAILED = 0, 1, 2, 3
 
 
+def complain(says: str) -> None:
+    """Say what is wrong, in one line on stderr."""
+    if sys.stderr is not None:  # print would take stdout instead
+        with contextlib.suppress(OSError):
+            print(f"missionfsm: {shown(says)}", file=sys.stderr, flush=True)  # noqa: T201 - the command line speaks
+
+
 def stop(says: str, status: int) -> NoReturn:
     """End with one line on stderr."""
-    print(f"missionfsm: {says}", file=sys.stderr)  # noqa: T201 - the command line speaks
+    complain(says)
     raise typer.Exit(status)
 
 
@@ -55,20 +64,69 @@ def choice(readings: list[str] | None) -> dict[str, str]:
     return found
 
 
+def refuse_outputs(outputs: Mapping[str, str | None], inputs: Iterable[str | None] = ()) -> None:
+    """Bad input, before any work is done, where something cannot be written or would destroy something else.
+
+    Args:
+        outputs: options to the files that they name, if they are given.
+        inputs: files that are read.
+    """
+    wanted = {option: path for option, path in outputs.items() if path is not None}
+    for option, path in wanted.items():
+        try:
+            refuse_unwritable(path)
+        except UnreadableError as error:
+            stop(f"{option}: {error}", BAD_INPUT)
+    for one, other in itertools.combinations(wanted, 2):
+        if wanted[one] == wanted[other] == STDOUT or same_file(wanted[one], wanted[other]):
+            stop(f"{one} and {other}: both go to {wanted[one]}", BAD_INPUT)
+    for (option, path), source in itertools.product(wanted.items(), inputs):
+        if source and same_file(path, source):
+            stop(f"{option}: {path} is read, and would be overwritten", BAD_INPUT)
+
+
+class Troubles:
+    """What went wrong while the rest was told and written all the same; it is said at the end, a line each."""
+
+    def __init__(self) -> None:
+        self._said: list[str] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._said)
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """What cannot be read or written here does not end the command."""
+        try:
+            yield
+        except UnreadableError as error:
+            self._said.append(str(error))
+
+    def end(self, status: int) -> NoReturn:
+        """End with that status, or as bad input if anything went wrong."""
+        for one in dict.fromkeys(self._said):
+            complain(one)
+        raise typer.Exit(BAD_INPUT if self else status)
+
+
+def readable(path: str) -> str:
+    """The name of a file as text: one that is not UTF-8 has what no encoding and no JSON has."""
+    return path.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
 def write_json(path: str | None, value: JSON) -> None:
-    """Write a value as JSON to a file or to stdout, if it is wanted."""
-    if path:
-        with one_line_errors():
-            write_whole(path, orjson.dumps(value, option=orjson.OPT_INDENT_2) + b"\n")
+    """Write a value as JSON to a file or to stdout, if it is wanted. Raises UnreadableError if that is impossible."""
+    if path is not None:
+        write_whole(path, orjson.dumps(value, option=orjson.OPT_INDENT_2) + b"\n")
 
 
-def say(text: str, *, json: str | None) -> None:
-    """Print for people, unless stdout is taken by JSON."""
-    if json != "-":
-        print(text)  # noqa: T201 - the command line speaks
+def say(text: str, *, json: str | None = None) -> None:
+    """Print for people, unless stdout is taken by JSON. Raises UnreadableError if stdout cannot be written to."""
+    if json != STDOUT and sys.stdout is not None:
+        with to_stdout():
+            print(text)  # noqa: T201 - the command line speaks
 
 
-def say_now(text: str, *, json: str | None) -> None:
-    """Print for people who wait for it."""
-    say(text, json=json)
-    sys.stdout.flush()
+def say_shown(text: str, *, json: str | None) -> None:
+    """Print what may hold texts from elsewhere: no terminal obeys them, and no line is longer than people read."""
+    say("\n".join(map(shown, text.split("\n"))), json=json)

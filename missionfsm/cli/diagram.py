@@ -118,7 +118,7 @@ def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
     text = _text(shown[0], forms[0])
     if text is None:
         stop(_no_machine(shown[0], forms[0]), BAD_INPUT)
-    say(text.rstrip("\n"), json=None)
+    say(text.rstrip("\n"))
 
 
 def _no_machine(shown: Picture, form: str) -> str:
@@ -142,11 +142,11 @@ def _write(folder: Path, shown: tuple[Picture, ...], forms: tuple[str, ...], *, 
     if not written:
         stop(_no_machine(shown[0], forms[0]), BAD_INPUT)
     files = "file" if written == 1 else "files"
-    say(f"{written} {files} in {folder}: {', '.join(FORMATS[one].suffix for one in forms)}", json=None)
+    say(f"{written} {files} in {folder}: {', '.join(FORMATS[one].suffix for one in forms)}")
 
 
 def _write_file(path: Path, text: str) -> None:
-    from missionfsm.adapters.historyfile import write_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.outputs import write_whole  # noqa: PLC0415 - commands load what they need
 
     with one_line_errors():
         try:

@@ -5,11 +5,12 @@ Plain functions for typer; what takes long to import is imported inside them.
 
 import enum
 import signal
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from missionfsm.cli.common import complain
 
 if TYPE_CHECKING:
     from missionfsm.cli.isaac_view import View
@@ -48,29 +49,30 @@ def dispatch(
     """
     import asyncio  # noqa: PLC0415
 
+    from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415
     from missionfsm.cli.isaac_view import view_for  # noqa: PLC0415
     from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.profile import PROFILES  # noqa: PLC0415
 
     readings = PROFILES[profile.value]
     try:
-        text = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
+        text = stdin().read() if str(file) == "-" else file.read_bytes()
     except OSError as error:
-        _complain(f"{file}: {error.strerror or error}")
+        complain(f"{file}: {error.strerror or error}")
         raise typer.Exit(2) from None
     missions = parse(text, readings)
     if not isinstance(missions, MissionFile):
         for problem in missions:
-            _complain(f"{file}: {problem}")
+            complain(f"{file}: {problem}")
         raise typer.Exit(2)
     view = view_for(missions)
     try:
         asyncio.run(_serve(missions, host, port, name_channel, readings, view))
     except KeyboardInterrupt:
-        _complain(f"interrupted: {view.unfinished} of {len(missions.missions)} missions had not ended")
+        complain(f"interrupted: {view.unfinished} of {len(missions.missions)} missions had not ended")
         raise typer.Exit(_INTERRUPTED) from None
     except OSError as error:
-        _complain(f"cannot listen on {host}:{port}: {error.strerror or error}")
+        complain(f"cannot listen on {host}:{port}: {error.strerror or error}")
         raise typer.Exit(2) from None
     raise typer.Exit(0 if view.succeeded == len(missions.missions) else 1)
 
@@ -122,20 +124,20 @@ def robot(  # noqa: PLR0913 - the options
     from missionfsm.isaac.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
 
     if not name:
-        _complain("--name: an empty name is no name")
+        complain("--name: an empty name is no name")
         raise typer.Exit(2)
     try:
         steps = (Behavior(behavior.value, duration),) if script is None else parse_script(script, duration)
     except ValueError:
-        _complain(f"--duration: wanted a finite number of seconds, found {duration}")
+        complain(f"--duration: wanted a finite number of seconds, found {duration}")
         raise typer.Exit(2) from None
     if isinstance(steps, ScriptProblem):
-        _complain(f"--script: {steps}")
+        complain(f"--script: {steps}")
         raise typer.Exit(2)
     try:
         asyncio.run(_be_a_robot(name, host, port, steps))
     except KeyboardInterrupt:
-        _complain("interrupted")
+        complain("interrupted")
         raise typer.Exit(_INTERRUPTED) from None
 
 
@@ -155,9 +157,3 @@ async def _be_a_robot(name: str, host: str, port: int, script: "tuple[Behavior, 
 
     core = RobotCore(name, script=script)
     await TcpRobot(core, host=host, port=port, observer=observe, notes=printer.say).run()
-
-
-def _complain(problem: str) -> None:
-    from missionfsm.cli.isaac_view import printable  # noqa: PLC0415
-
-    typer.echo(f"missionfsm: {printable(problem)}", err=True)

@@ -17,15 +17,11 @@ from missionfsm.isaac.messages import Uuid
 from missionfsm.isaac.mission import INCOMPLETE, RobotOffline, RobotOnline, Status, StatusChanged
 from missionfsm.isaac.missionfile import MissionFile
 from missionfsm.isaac.robot import Did
+from missionfsm.kernel.words import printable
 
 _STYLES: Final = {Status.SUCCESS: "green", Status.RUNNING: "cyan", Status.STARTED: "cyan"}
 _ACTIVE: Final = (Status.STARTED, Status.RUNNING)
 _FRAME: Final = 12  # lines of a table that are no rows, twice over
-
-
-def printable(text: str) -> str:
-    """The text without what a terminal would obey: names come from the network."""
-    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
 def robot_line(effect: object) -> str | None:

@@ -6,6 +6,7 @@ import re
 import secrets
 import sys
 import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,19 +16,23 @@ from missionfsm.cli.common import (
     BAD_INPUT,
     DONE,
     FAILED,
+    Troubles,
     choice,
     one_line_errors,
-    say,
-    say_now,
+    readable,
+    refuse_outputs,
+    say_shown,
     stop,
     the_system,
     write_json,
 )
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
 from missionfsm.cli.progress import Bar
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
+from missionfsm.kernel.words import printable
 from missionfsm.systems import names
+from missionfsm.tools.verdict import Verdict
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
@@ -98,6 +103,7 @@ def conform(  # noqa: PLR0913 - options of the command
     judged = the_system(system)
     readings = choice(reading)
     known = _known(expect_violations, judged)
+    refuse_outputs({"--record": record, "--json": json, "--html": html}, (expect_violations, missions))
     deadline = None if seconds is None else time.monotonic() + seconds
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
@@ -125,19 +131,26 @@ def conform(  # noqa: PLR0913 - options of the command
             stop(str(error), BAD_INPUT)
         finally:
             child.close()
-        if record and verdict.violation:
-            _record(record, judged, verdict.violation.history)
-    write_json(json, verdict.to_json())
-    write_report(html, ("", None, verdict))
-    say(str(verdict), json=json)
-    raise typer.Exit(DONE if verdict.conforms else FAILED)
+    troubles = Troubles()
+    with troubles.kept():
+        say_shown(str(verdict), json=json)
+    with troubles.kept():
+        write_json(json, verdict.to_json())
+    with troubles.kept():
+        write_report(html, ("", None, verdict))
+    with troubles.kept():
+        _record(record, judged, verdict)
+    troubles.end(DONE if verdict.conforms else FAILED)
 
 
-def _record(path: str, system: System, history: tuple[JSON, ...]) -> None:
-    """Write a history in the form that the name of the file asks for."""
-    from missionfsm.adapters.historyfile import write_history, write_whole  # noqa: PLC0415
+def _record(path: str | None, system: System, verdict: Verdict) -> None:
+    """Write the history of a violation in the form that the name of the file asks for, if there is one."""
+    if path is None or verdict.violation is None:
+        return
+    from missionfsm.adapters.outputs import write_history, write_whole  # noqa: PLC0415
     from missionfsm.tools.story import as_mermaid, as_pytest  # noqa: PLC0415
 
+    history = verdict.violation.history
     form = Path(path).suffix
     if form == ".py":
         name = re.sub(r"\W+", "_", Path(path).stem.removeprefix("test_")).strip("_") or system.name.replace(".", "_")
@@ -170,31 +183,45 @@ def check(
     html: HtmlFile = None,
 ) -> None:
     """Judge recorded histories, or the bare messages of a status subscription."""
-    from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.expected import Expected, excused  # noqa: PLC0415
+    from missionfsm.tools.expected import Expected, excused  # noqa: PLC0415 - commands load what they need
 
     readings = choice(reading)
-    known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations else ())
-    verdicts, pages = [], []
-    for path in files:
-        with one_line_errors():
-            try:
-                found = check_file(path, readings, lambda problem: say_now(problem, json=json))
-            except ValueError as error:
-                stop(str(error), BAD_INPUT)
-        for robot, judged in found:
-            verdict = excused(judged, known)
-            verdicts.append({"file": path, "robot": robot, **verdict.to_json()})
-            pages.append((path, robot, verdict))
-            say(f"{path}{f' {robot}' if robot else ''}: {verdict}", json=json)
-    for rule in known.stale:
-        say(f"a violation of {rule} was expected and was not met: take it off the list", json=json)
-    if known.stale:
-        verdicts = [{**one, "stale": list(known.stale)} for one in verdicts]
-    write_json(json, verdicts[0] if len(verdicts) == 1 else verdicts)
-    write_report(html, *pages)
-    right = not known.stale and all(one["verdict"] == "conforms" for one in verdicts)
-    raise typer.Exit(DONE if right else FAILED)
+    known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
+    refuse_outputs({"--json": json, "--html": html}, (*files, expect_violations))
+    reached: list[tuple[str, str | None, Verdict]] = []
+    troubles = Troubles()
+    for path in files:  # one that cannot be read keeps none of the others from being judged
+        with troubles.kept():
+            for robot, judged in _recorded(path, readings, lambda problem: say_shown(problem, json=json)):
+                reached.append((readable(path), robot, excused(judged, known)))
+                say_shown(_headed(*reached[-1]), json=json)
+    stale = () if troubles else known.stale  # they may be met in what cannot be read
+    with troubles.kept():
+        for rule in stale:
+            say_shown(f"a violation of {rule} was expected and was not met: take it off the list", json=json)
+    if reached:
+        more = {"stale": list(stale)} if stale else {}
+        verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
+        with troubles.kept():
+            write_json(json, verdicts[0] if len(verdicts) == 1 else verdicts)
+        with troubles.kept():
+            write_report(html, *reached)
+    troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
+
+
+def _recorded(path: str, readings: Mapping[str, str], tell: Callable[[str], None]) -> list[tuple[str | None, Verdict]]:
+    """The verdicts on a file. Raises UnreadableError, also for readings that there are not."""
+    from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - commands load what they need
+
+    try:
+        return check_file(path, readings, tell)
+    except ValueError as error:
+        raise UnreadableError(str(error)) from None
+
+
+def _headed(path: str, robot: str | None, verdict: Verdict) -> str:
+    """The verdict with what it is about."""
+    return f"{path}{f' {printable(robot)}' if robot else ''}: {verdict}"
 
 
 def explore(  # noqa: PLR0913 - options of the command
@@ -219,12 +246,17 @@ def explore(  # noqa: PLR0913 - options of the command
         assumed = constrain(explored.spec.ambiguities, choice(reading))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
+    refuse_outputs({"--json": json, "--html": html})
     bounds = Bounds(missions, goals, batch)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
-    write_json(json, found.to_json())
-    write_explorer(html, explored, bounds, assumed)
-    say(str(found), json=json)
-    raise typer.Exit(DONE if found.holds else FAILED)
+    troubles = Troubles()
+    with troubles.kept():
+        say_shown(str(found), json=json)
+    with troubles.kept():
+        write_json(json, found.to_json())
+    with troubles.kept():
+        write_explorer(html, explored, bounds, assumed)
+    troubles.end(DONE if found.holds else FAILED)
 
 
 def teeth(  # noqa: PLR0913 - options of the command
@@ -240,13 +272,20 @@ def teeth(  # noqa: PLR0913 - options of the command
     from missionfsm.tools.teeth import mutants  # noqa: PLC0415
 
     judged = the_system(system)
+    refuse_outputs({"--json": json, "--html": html})
     total = sum(only in mutant.name for mutant in mutants(judged))
+    if not total:
+        stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
     with Bar("implementations", total) as bar:
-        found = teeth_on(min(jobs or cores(), max(1, total)), system, seed=seed, only=only, progress=bar.one_more)
-    write_json(json, found.to_json())
-    write_teeth(html, judged, found)
-    say(str(found), json=json)
-    raise typer.Exit(FAILED if found.missed or found.untested or not found.bites else DONE)
+        found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, progress=bar.one_more)
+    troubles = Troubles()
+    with troubles.kept():
+        say_shown(str(found), json=json)
+    with troubles.kept():
+        write_json(json, found.to_json())
+    with troubles.kept():
+        write_teeth(html, judged, found)
+    troubles.end(FAILED if found.missed or found.untested else DONE)
 
 
 def adapter(
@@ -254,11 +293,15 @@ def adapter(
     reading: Readings = None,
 ) -> None:
     """Put the reference model behind the adapter protocol, on stdin and stdout."""
-    from missionfsm.adapters.stdio import serve  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.outputs import to_stdout  # noqa: PLC0415
+    from missionfsm.adapters.stdio import serve  # noqa: PLC0415
     from missionfsm.tools.subject import Reference  # noqa: PLC0415
 
     try:
         reference = Reference(the_system(system), choice(reading))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
-    serve(reference, sys.stdin.buffer, sys.stdout.buffer)
+    requests = stdin()
+    with to_stdout():
+        serve(reference, requests, sys.stdout.buffer)

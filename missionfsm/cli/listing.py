@@ -28,7 +28,7 @@ def rules(system: Which = None, json: AsJson = False) -> None:
             under = str(rule.under) if rule.under else None
             found.append({"id": rule.id, "says": rule.says, "cite": str(rule.cite), "code": rule.code, "under": under})
             if not json:
-                say(f"{rule.id}\n    {rule.says} [{rule.cite}]" + (f" under {under}" if under else ""), json=None)
+                say(f"{rule.id}\n    {rule.says} [{rule.cite}]" + (f" under {under}" if under else ""))
     if json:
         write_json("-", found)
 
@@ -53,6 +53,6 @@ def readings(system: Which = None, json: AsJson = False) -> None:
                 for letter, answer in ambiguity.readings.items():
                     mark = "*" if letter == ambiguity.default else "†" if letter in ambiguity.flagged else " "
                     lines.append(f"  {mark} {letter}  {answer}")
-                say("\n".join(lines), json=None)
+                say("\n".join(lines))
     if json:
         write_json("-", found)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from missionfsm.adapters.historyfile import STDIN, write_whole
-from missionfsm.cli.common import one_line_errors
+from missionfsm.adapters.outputs import STDOUT, write_whole
 from missionfsm.systems import system
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def _a_file(path: str | None) -> str | None:
-    if path == STDIN:
+    if path == STDOUT:
         message = "a page goes to a file"
         raise typer.BadParameter(message)
     return path
@@ -31,14 +30,13 @@ HtmlFile = Annotated[
 
 
 def _write(path: str, page: Callable[[], str]) -> None:
-    with one_line_errors():
-        # What an implementation sent may hold halves of surrogate pairs, which no encoding has.
-        write_whole(path, page().encode("utf-8", "xmlcharrefreplace"))
+    # What an implementation sent may hold halves of surrogate pairs, which no encoding has.
+    write_whole(path, page().encode("utf-8", "xmlcharrefreplace"))
 
 
 def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> None:
     """Write the page on some verdicts, each with the file and the robot that it is about, if it is wanted."""
-    if path:
+    if path is not None:
         from missionfsm.pages.report import Judged, report  # noqa: PLC0415 - pages load what they need
 
         _write(path, lambda: report([Judged(verdict, file, robot or "") for file, robot, verdict in judged], system))
@@ -46,7 +44,7 @@ def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> 
 
 def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
     """Write the page on all mutants of a system, if it is wanted."""
-    if path:
+    if path is not None:
         from missionfsm.pages.teeth import teeth_page  # noqa: PLC0415 - pages load what they need
 
         _write(path, lambda: teeth_page(judged, found))
@@ -54,7 +52,7 @@ def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
 
 def write_explorer(path: str | None, explored: System, bounds: Bounds, assumed: int) -> None:
     """Write the page to click through a system with, if it is wanted."""
-    if path:
+    if path is not None:
         from missionfsm.pages.explorer import explorer_page  # noqa: PLC0415 - pages load what they need
 
         _write(path, lambda: explorer_page(explored, bounds, assumed))

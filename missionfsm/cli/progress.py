@@ -29,7 +29,7 @@ class Bar:
         self._looked = 0.0
 
     def __enter__(self) -> Self:
-        if sys.stderr.isatty():
+        if sys.stderr is not None and sys.stderr.isatty():
             from rich.console import Console  # noqa: PLC0415 - only a terminal needs it
             from rich.progress import Progress  # noqa: PLC0415
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 
 from attrs import evolve
 
@@ -13,7 +12,9 @@ from missionfsm.adapters.historyfile import (
     STDIN,
     Lines,
     Stamps,
+    called,
     fingerprint,
+    is_plain_file,
     lines,
     lost_calls,
     open_history,
@@ -46,7 +47,7 @@ def check_file(
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
         ValueError: `readings` names something that does not exist.
     """
-    if not Path(path).is_file():  # it can be read only once
+    if not is_plain_file(path):  # it can be read only once
         return _judged(path, readings, tell, {}, KEPT)
     try:
         return _judged(path, readings, tell, None)
@@ -77,7 +78,7 @@ def _judged(
         numbered = iter(texts)
         number, text = next(numbered, (0, b""))
         if not number:
-            message = f"{'stdin' if path == STDIN else path}: the history is empty"
+            message = f"{called(path)}: the history is empty"
             raise UnreadableError(message)
         with placed(path, number):
             line = texts.json(text)

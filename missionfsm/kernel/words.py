@@ -1,0 +1,21 @@
+"""Texts that come from elsewhere, as people are shown them."""
+
+from __future__ import annotations
+
+LONGEST = 2000
+"""Characters that a line has room for."""
+
+
+def printable(text: str) -> str:
+    """The text without what a terminal would obey: names come from the network."""
+    if text.isprintable():
+        return text
+    return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
+
+
+def shown(text: str) -> str:
+    """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
+    if len(text) > LONGEST:
+        half = LONGEST // 2
+        text = f"{text[:half]} … {text[-half:]}"
+    return printable(text)

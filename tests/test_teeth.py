@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import pytest
 
+from missionfsm.cli.parallel import teeth_on
 from missionfsm.systems import names, system
 from missionfsm.tools.teeth import mutants, teeth
 
@@ -43,3 +52,40 @@ def test_every_mutant_can_be_made(name: str) -> None:
     """Mutants are found for every system, under names of their own."""
     found = [mutant.name for mutant in mutants(system(name))]
     assert (len(found) > 10, len(found) - len(set(found))) == (True, 0)
+
+
+def test_processes_find_what_one_finds() -> None:
+    """Two processes judge half of the mutants each; progress is told for every mutant."""
+    only, progress = "a-line-is-one-message", itertools.count()
+    several = teeth_on(2, "isaac.robot", seed=0, only=only, progress=lambda: next(progress))
+    one = teeth(system("isaac.robot"), only=only)
+    assert {bite.mutant: bite.killed for bite in several.bites} == {bite.mutant: bite.killed for bite in one.bites}
+    assert next(progress) == len(one.bites) > 1
+
+
+def children(process: int) -> list[int]:
+    """The processes that one has started and that live, according to /proc."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            state, parent = path.read_text().rpartition(")")[2].split()[:2]
+            if int(parent) == process and state != "Z":
+                found.append(int(path.parent.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="it is asked of /proc what lives")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_processes_end_with_the_one_that_started_them(number: int) -> None:
+    """``teeth`` that is told to end, alone, leaves nobody behind."""
+    command = [sys.executable, "-m", "missionfsm", "teeth", "bear.mission", "--jobs", "2"]
+    judging = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    until = time.monotonic() + 30
+    while len(started := children(judging.pid)) < 3 and time.monotonic() < until:  # two, and one that tracks
+        time.sleep(0.05)
+    judging.send_signal(number)
+    assert judging.wait(10) == 130
+    until = time.monotonic() + 5
+    while (left := [one for one in started if Path(f"/proc/{one}").exists()]) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert (len(started) > 1, left) == (True, [])

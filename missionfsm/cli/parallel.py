@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
-from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from typing import Any
+import signal
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnContext
 
 from missionfsm.systems import system
 from missionfsm.tools.teeth import Teeth, joined, teeth
 
-_MORE, _ENDED = "one more", "that was all"
-"""What a process tells the one that shows the progress."""
+_MORE = "one more"
+"""What a process tells the one that shows the progress, before it tells what it found."""
 
 
 def cores() -> int:
@@ -29,20 +31,35 @@ def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[
     if jobs == 1:
         return teeth(system(name), seed=seed, only=only, progress=lambda _: progress())
     context = multiprocessing.get_context("spawn")
-    with context.Manager() as manager, ProcessPoolExecutor(jobs, context) as processes:
-        judged = manager.Queue()
-        parts = [processes.submit(_part, name, seed, only, (which, jobs), judged) for which in range(jobs)]
-        ended = 0
-        while ended < jobs:
-            if judged.get() == _ENDED:
-                ended += 1
-            else:
-                progress()
-        return joined(system(name), (part.result() for part in parts))
+    with contextlib.ExitStack() as started:
+        parts = [started.enter_context(_begun(context, name, seed, only, (which, jobs))) for which in range(jobs)]
+        found: dict[Connection, Teeth] = {}
+        while len(found) < jobs:
+            for part in wait([part for part in parts if part not in found]):
+                assert isinstance(part, Connection)  # noqa: S101 - nothing else is waited for
+                said = part.recv()
+                if said == _MORE:
+                    progress()
+                else:
+                    found[part] = said
+    return joined(system(name), (found[part] for part in parts))
 
 
-def _part(name: str, seed: int, only: str, part: tuple[int, int], judged: Any) -> Teeth:  # noqa: ANN401 - a queue
+@contextlib.contextmanager
+def _begun(context: SpawnContext, name: str, seed: int, only: str, part: tuple[int, int]) -> Iterator[Connection]:
+    """A process that judges a part, as that which it tells; it ends with this one, however this one ends."""
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_judge, args=(name, seed, only, part, theirs), daemon=True)
+    process.start()
+    theirs.close()
     try:
-        return teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: judged.put(_MORE))
+        yield ours
     finally:
-        judged.put(_ENDED)
+        process.terminate()
+        process.join()
+        ours.close()
+
+
+def _judge(name: str, seed: int, only: str, part: tuple[int, int], told: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
+    told.send(teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: told.send(_MORE)))

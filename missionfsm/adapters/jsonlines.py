@@ -10,6 +10,7 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 
 DEEPEST = 200
 """How deep lists and objects may be nested in a line."""
+_NESTING = frozenset((list, dict))
 
 
 class TooDeepError(UnreadableError):
@@ -31,11 +32,10 @@ def loads(text: bytes) -> JSON:
 
 
 def _is_too_deep(value: JSON) -> bool:
-    level = [value]
+    level = [value] if type(value) in _NESTING else []
     for _ in range(DEEPEST):
-        lists = chain.from_iterable(one for one in level if isinstance(one, list))
-        objects = chain.from_iterable(one.values() for one in level if isinstance(one, dict))
-        level = [one for one in chain(lists, objects) if isinstance(one, list | dict)]
+        inner = chain.from_iterable(one.values() if type(one) is dict else one for one in level)
+        level = [one for one in inner if type(one) in _NESTING]
         if not level:
             return False
     return True

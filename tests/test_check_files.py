@@ -51,6 +51,7 @@ MALFORMED = {
     "another version": ([first(missionfsm=2)], 1, "history format 2 is not known; this is version 1"),
     "a version that is no number": ([first(missionfsm=True)], 1, "history format True is not known"),
     "an unknown system": ([first(system="bear.missoin")], 1, "there is no system 'bear.missoin'"),
+    "a system of 10 MB": ([first(system=10_000_000 * "x")], 1, "there is no system 'xxx"),
     "a system that is no text": ([first(system=7)], 1, "system: 7 is not the name of a system"),
     "an unknown key of the first line": ([first(wrold={})], 1, "'wrold' is not known in a first line"),
     "an unknown drive of the tester": ([first(drives=["fly"])], 1, "drives: bear.mission has no 'fly'"),
@@ -215,6 +216,16 @@ def test_what_is_no_history_is_refused(
     assert (ended.status, ended.out, ended.err.count("\n")) == (2, "", 1)
     assert ended.err.startswith(f"missionfsm: {path}{where}: ")
     assert says in ended.err
+
+
+@pytest.mark.parametrize("content", [1000 * b"\0", f"{FIRST}\r{CLEAR}".encode(), b'{"missionfsm" 1}'])
+def test_only_what_is_cut_short_is_called_so(command_line: CommandLine, tmp_path: Path, content: bytes) -> None:
+    """A last line without an end that goes wrong before its end is not said to be cut short."""
+    path = tmp_path / "log.jsonl"
+    path.write_bytes(content)
+    ended = command_line("check", path)
+    assert ended.err.startswith(f"missionfsm: {path}:1: not JSON: unexpected c")
+    assert "in the middle" not in ended.err
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from typing import IO
 import orjson
 from attrs import field, frozen
 
-from missionfsm.adapters.jsonlines import loads
+from missionfsm.adapters.jsonlines import CutShortError, loads
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 STDIN = "-"
@@ -120,7 +120,7 @@ class Lines:
         """What the line that came last says. Raises UnreadableError, which says what is wrong."""
         try:
             return loads(text)
-        except UnreadableError as error:
+        except CutShortError as error:
             short = " (the file ends in the middle of it)" if self._cut else ""
             message = f"{error}{short}"
             raise UnreadableError(message) from None

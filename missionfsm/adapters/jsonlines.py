@@ -13,6 +13,10 @@ DEEPEST = 200
 _NESTING = frozenset((list, dict))
 
 
+class CutShortError(UnreadableError):
+    """It is JSON as far as it goes, and ends too early."""
+
+
 class TooDeepError(UnreadableError):
     """It is JSON, but nested so deep that nobody means it."""
 
@@ -23,7 +27,7 @@ def loads(text: bytes) -> JSON:
         value = orjson.loads(text)
     except orjson.JSONDecodeError as error:
         message = f"not JSON: {error}"
-        raise UnreadableError(message) from None
+        raise (CutShortError if error.pos == len(error.doc) else UnreadableError)(message) from None
     # Nearly every line is too short to be too deep, and of the others nearly every one has too few brackets.
     if len(text) > 2 * DEEPEST and text.count(b"[") + text.count(b"{") > DEEPEST and _is_too_deep(value):
         message = f"nested more than {DEEPEST} deep"

@@ -63,6 +63,8 @@ def bridged(
         raise ValueError(f"--tolerance {sockets.tolerance:g}: times are never exact over TCP")
     if sockets.tcp is not None and sockets.listen is not None:
         raise ValueError("--tcp and --tcp-listen: one or the other")
+    if sockets.missions is not None and sockets.tcp is None:
+        raise ValueError("--missions: it belongs to --tcp, which says where the mission server listens")
     judge = _robot if sockets.listen is not None else _server
     wanted = "isaac.robot" if judge is _robot else "isaac.server"
     if system.name != wanted:
@@ -86,8 +88,7 @@ def _server(system: System, sockets: Sockets, command: list[str] | None, convers
     from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.realtime import in_real_time, submissions, with_file  # noqa: PLC0415
 
-    if sockets.tcp is None:
-        raise ValueError("--missions: it belongs to --tcp, which says where the mission server listens")
+    assert sockets.tcp is not None  # noqa: S101 - the caller has looked
     host, port = address(sockets.tcp)
     if sockets.missions is None:
         if not command:

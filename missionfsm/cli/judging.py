@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import secrets
 import sys
@@ -48,6 +49,17 @@ KnownFile = Annotated[
 ]
 
 
+DAY = 24 * 60 * 60.0
+"""Seconds that anything may be waited for."""
+
+
+def _finite(seconds: float | None) -> float | None:
+    if seconds is not None and not math.isfinite(seconds):
+        message = f"{seconds:g} is no number of seconds"
+        raise typer.BadParameter(message)
+    return seconds
+
+
 def conform(  # noqa: PLR0913 - options of the command
     system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
     command: Annotated[
@@ -59,14 +71,17 @@ def conform(  # noqa: PLR0913 - options of the command
     steps: Annotated[int, typer.Option(min=1, help="Calls and drives in a conversation, at most.")] = 40,
     seed: Annotated[int | None, typer.Option(help="The same seed asks the same.")] = None,
     seconds: Annotated[
-        float | None, typer.Option("--time", metavar="SECONDS", min=0.1, help="Begin no further step after that.")
+        float | None,
+        typer.Option("--time", metavar="SECONDS", min=0.1, callback=_finite, help="Begin no further step after that."),
     ] = None,
     reading: Readings = None,
     expect_violations: KnownFile = None,
     distinguish: Annotated[
         bool, typer.Option("--distinguish", help="Try at the end to tell readings apart that are still open.")
     ] = False,
-    timeout: Annotated[float, typer.Option(min=0.01, help="Seconds that an answer may take.")] = 10.0,
+    timeout: Annotated[
+        float, typer.Option(min=0.01, max=DAY, callback=_finite, help="Seconds that an answer may take.")
+    ] = 10.0,
     tcp: Annotated[
         str | None,
         typer.Option(metavar="HOST:PORT", help="Judge the mission server that listens there (isaac.server)."),
@@ -84,7 +99,9 @@ def conform(  # noqa: PLR0913 - options of the command
             help="Judge the robot that connects there; the command after -- starts it.",
         ),
     ] = None,
-    tolerance: Annotated[float, typer.Option(help="Over TCP: seconds that times may be off.")] = 0.2,
+    tolerance: Annotated[
+        float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
+    ] = 0.2,
     record: Annotated[
         str | None,
         typer.Option(
@@ -167,10 +184,16 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
         return ()
     from missionfsm.tools.expected import read_expected  # noqa: PLC0415 - commands load what they need
 
+    if not path:
+        stop("--expect-violations: an empty name is no name of a file", BAD_INPUT)
     try:
-        return read_expected(Path(path).read_text(encoding="utf-8"), [one.spec for one in judged])
+        data = Path(path).read_bytes()
+        return read_expected(data.decode(), [one.spec for one in judged])
     except OSError as error:
         stop(f"{path}: {error.strerror}", BAD_INPUT)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        stop(f"{path}:{line}: byte 0x{data[error.start]:02x} is not UTF-8", BAD_INPUT)
     except ValueError as error:
         stop(f"{path}:{error}", BAD_INPUT)
 
@@ -221,7 +244,7 @@ def _recorded(path: str, readings: Mapping[str, str], tell: Callable[[str], None
 
 def _headed(path: str, robot: str | None, verdict: Verdict) -> str:
     """The verdict with what it is about."""
-    return f"{path}{f' {printable(robot)}' if robot else ''}: {verdict}"
+    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict}"
 
 
 def explore(  # noqa: PLR0913 - options of the command

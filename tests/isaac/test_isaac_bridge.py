@@ -195,6 +195,14 @@ def test_a_server_that_is_not_there(command_line: CommandLine, diamond: Path, po
             "--missions: it belongs to --tcp, which says where the mission server listens",
         ),
         (
+            ("bear.mission", "--missions", "m.json"),
+            "--missions: it belongs to --tcp, which says where the mission server listens",
+        ),
+        (
+            ("isaac.robot", "--tcp-listen", "1024", "--missions", "m.json"),
+            "--missions: it belongs to --tcp, which says where the mission server listens",
+        ),
+        (
             ("isaac.server", "--tcp", "127.0.0.1:1", "--missions", "/no/such/file"),
             "/no/such/file: No such file or directory",
         ),

@@ -102,6 +102,9 @@ def test_a_list_that_names_no_rule_is_bad_input(tmp_path: Path, command_line: Co
     assert (wrong.status, f"{known}:2: there is no rule 'bear.mission/CreateMision'" in wrong.err) == (2, True)
     missing = command_line(command, subject, "--expect-violations", tmp_path / "none")
     assert (missing.status, "No such file" in missing.err) == (2, True)
+    known.write_bytes(b"# a comment\n\xff")
+    binary = command_line(command, subject, "--expect-violations", known)
+    assert (binary.status, binary.err) == (2, f"missionfsm: {known}:2: byte 0xff is not UTF-8\n")
 
 
 def test_each_rule_of_a_list_counts_once() -> None:

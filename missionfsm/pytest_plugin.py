@@ -52,13 +52,16 @@ class HistoryItem(pytest.Item):
         """Judge the history."""
         from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - see above
         from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
+        from missionfsm.kernel.words import printable  # noqa: PLC0415
 
         try:
             verdicts = check_file(str(self.path))
         except UnreadableError as error:
             raise UnexplainedError(str(error)) from None
         wrong = [
-            f"{robot + ': ' if robot else ''}{_told(verdict)}" for robot, verdict in verdicts if not verdict.conforms
+            f"{printable(robot) + ': ' if robot else ''}{_told(verdict)}"
+            for robot, verdict in verdicts
+            if not verdict.conforms
         ]
         if wrong:
             raise UnexplainedError("\n\n".join(wrong))

@@ -14,7 +14,10 @@ import pytest
 from commandline import CommandLine
 
 from missionfsm.adapters.outputs import same_file, write_whole
+from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.subject import SubjectError
+from missionfsm.tools.verdict import Outcome, Verdict
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission", "world": {}}'
 CLEAR = '{"call": 1, "method": "ClearMissionStatus", "params": {}}'
@@ -213,3 +216,79 @@ def test_what_an_encoding_does_not_have_is_replaced(good: Path) -> None:
     ended = shell("$m check $1 --json $2 --html $3", name, json, html)
     assert (ended.returncode, ended.stderr) == (0, "")
     assert orjson.loads(json.read_bytes())["file"] == str(good.with_name("g�"))
+
+
+# What comes from elsewhere.
+
+EVIL = "r\n\x1b[31mx"
+HARMLESS = r"r\n\x1b[31mx"
+DELIVERY = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
+
+
+def missions(path: Path, name: str, **more: str) -> Path:
+    """A robot answers two calls with one id, which is wrong."""
+    calls = [{"call": number, "method": "CreateMission", "params": DELIVERY} for number in (1, 2)]
+    answers = [{"return": number, "result": {"missionId": name}} for number in (1, 2)]
+    lines = (orjson.dumps({**line, **more}) for pair in zip(calls, answers, strict=True) for line in pair)
+    path.write_bytes(b"\n".join((FIRST.encode(), *lines)))
+    return path
+
+
+def test_no_terminal_obeys_a_robot(command_line: CommandLine, tmp_path: Path) -> None:
+    """Names of robots and of implementations, and file names, are shown with their control characters spelled out."""
+    log = missions(tmp_path / EVIL, "m", robot=EVIL)
+    ended = command_line("check", log)
+    assert ended.out.startswith(f"{tmp_path}/{HARMLESS} {HARMLESS}: violates: bear.mission, 4 events\n")
+    missing = command_line("check", tmp_path / f"no {EVIL}")
+    assert missing.err == f"missionfsm: {tmp_path}/no {HARMLESS}: No such file or directory\n"
+    verdict = Verdict(Outcome.CONFORMS, "bear.mission", EVIL)
+    assert str(verdict) == f"conforms: bear.mission {HARMLESS}, 0 events"
+
+
+def test_no_terminal_obeys_what_an_adapter_complains_of(command_line: CommandLine) -> None:
+    """The last line of its stderr is quoted in the one line that there is."""
+    script = r"import sys; sys.exit('bo\x1b[31mom')"
+    ended = command_line("conform", "bear.mission", "--", sys.executable, "-c", script)
+    says = r"the adapter exited with status 1 before answering initialize (stderr: bo\x1b[31mom)"
+    assert (ended.status, ended.err) == (3, f"missionfsm: {says}\n")
+    child = Child([sys.executable, "-c", script])
+    with pytest.raises(SubjectError, match=r"bo\\x1b"):
+        child.exchange("initialize", {})
+    child.close()
+
+
+def test_people_are_shown_the_ends_of_a_long_value(command_line: CommandLine, tmp_path: Path) -> None:
+    """A value of a megabyte is whole in JSON, and does not fill the terminal."""
+    json, name = tmp_path / "out.json", 1_000_000 * "m"
+    ended = command_line("check", missions(tmp_path / "log", name), "--json", json)
+    assert (ended.status, len(ended.out) < 10_000, " … " in ended.out) == (1, True, True)
+    assert orjson.loads(json.read_bytes())["violation"]["history"][2]["result"] == {"missionId": name}
+
+
+# Options.
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--time", "inf"),
+        ("--time", "nan"),
+        ("--timeout", "nan"),
+        ("--timeout", "inf"),
+        ("--timeout", "86401"),
+        ("--tolerance", "nan"),
+        ("--tolerance", "inf"),
+        ("--tolerance", "-1"),
+    ],
+)
+def test_seconds_are_finite(command_line: CommandLine, options: tuple[str, str]) -> None:
+    """Seconds that nobody can wait for are bad usage."""
+    ended = command_line("conform", "bear.mission", "--examples", 1, "--steps", 1, *options)
+    assert (ended.status, ended.out) == (2, "")
+    assert f"Invalid value for '{options[0]}'" in ended.err
+
+
+def test_teeth_need_something_to_bite(command_line: CommandLine) -> None:
+    """``--only`` with what is in no name is bad input."""
+    ended = command_line("teeth", "isaac.robot", "--only", "zzz")
+    assert (ended.status, ended.err) == (2, "missionfsm: --only zzz: no implementation has 'zzz' in its name\n")

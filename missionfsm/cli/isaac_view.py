@@ -1,8 +1,6 @@
 """What `missionfsm dispatch` shows: a live table on a terminal, a line a change on a pipe."""
 
-import contextlib
 import heapq
-import os
 import sys
 from types import TracebackType
 from typing import Final, Self
@@ -12,11 +10,13 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from missionfsm.cli.common import complain, say
 from missionfsm.isaac.codelet import Report
 from missionfsm.isaac.messages import Uuid
 from missionfsm.isaac.mission import INCOMPLETE, RobotOffline, RobotOnline, Status, StatusChanged
 from missionfsm.isaac.missionfile import MissionFile
 from missionfsm.isaac.robot import Did
+from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.words import printable
 
 _STYLES: Final = {Status.SUCCESS: "green", Status.RUNNING: "cyan", Status.STARTED: "cyan"}
@@ -33,15 +33,14 @@ def robot_line(effect: object) -> str | None:
 
 
 class Printer:
-    """Prints lines at once, and falls silent when nobody reads them any more."""
+    """Prints lines at once, and falls silent when nobody can read them any more: robots go on all the same."""
 
     def say(self, line: str) -> None:
         """Print one line."""
         try:
-            print(printable(line), flush=True)  # noqa: T201 - this is the command line
-        except BrokenPipeError:
-            with contextlib.suppress(OSError, ValueError):
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            say(printable(line))
+        except UnreadableError as error:
+            complain(str(error))
 
 
 class View:
@@ -170,4 +169,4 @@ class TableView(View):
 
 def view_for(file: MissionFile) -> View:
     """A live table where stdout is a terminal, else plain lines."""
-    return TableView(file) if sys.stdout.isatty() else View(file)
+    return TableView(file) if sys.stdout is not None and sys.stdout.isatty() else View(file)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.words import printable
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -199,7 +200,7 @@ class Verdict:
         }
 
     def __str__(self) -> str:
-        about = f"{self.system}{' ' + self.implementation if self.implementation else ''}"
+        about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
         counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
         lines = [f"{self.outcome.value}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
         if self.because:

@@ -183,6 +183,11 @@ def test_whoever_reads_no_more_changes_no_status(good: Path, wrong: Path, comman
         ("check - <&-", "stdin is closed"),
         ("dispatch - <&-", "stdin is closed"),
         ("check /proc/self/mem", "/proc/self/mem: Input/output error"),
+        ("check $1 --expect-violations /proc/self/mem", "/proc/self/mem: Input/output error"),
+        ("diagram --missions /proc/self/mem", "/proc/self/mem: Input/output error"),
+        ("dispatch /proc/self/mem", "/proc/self/mem: Input/output error"),
+        ("--help > /dev/full", "No space left on device"),
+        ("diagram -o ''", "--output: an empty name is no name of a folder"),
         ("check ''", "'': an empty name is no name of a file"),
     ],
 )

@@ -70,9 +70,15 @@ def placed(path: str, number: int) -> Iterator[None]:
         raise wrong_line(path, number, error) from None
 
 
-def _read(read: Callable[[int], bytes], path: str) -> bytes:
+def read_whole(path: str) -> bytes:
+    """All that is in a file; ``-`` is stdin. Raises UnreadableError."""
+    with open_history(path) as source:
+        return _read(source.read, -1, path)
+
+
+def _read(read: Callable[[int], bytes], most: int, path: str) -> bytes:
     try:
-        return read(CHUNK)
+        return read(most)
     except OSError as error:
         raise UnreadableError(f"{called(path)}: {error.strerror or error}") from None
 
@@ -83,7 +89,7 @@ def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bo
     begun: list[bytes] = []
     # What waits in a pipe is taken as it comes, so that a live stream is judged at once.
     read: Callable[[int], bytes] = getattr(source, "read1", source.read)
-    while block := _read(read, path):
+    while block := _read(read, CHUNK, path):
         end = block.rfind(b"\n")
         size += len(block) if end < 0 else end
         if size > LONGEST_LINE + CHUNK:

@@ -86,14 +86,14 @@ def to_stdout() -> Iterator[None]:
         yield
         sys.stdout.flush()
     except BrokenPipeError:
-        _silence_stdout()
+        silence_stdout()
     except OSError as error:
-        _silence_stdout()
+        silence_stdout()
         raise UnreadableError(f"stdout: {error.strerror or error}") from None
 
 
-def _silence_stdout() -> None:
-    """What is still to be written would fail as well, and so would the interpreter when it ends."""
+def silence_stdout() -> None:
+    """What is still to be written goes nowhere: it would fail as well, and so would the interpreter when it ends."""
     with contextlib.suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

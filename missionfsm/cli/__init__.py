@@ -10,6 +10,7 @@ import sys
 
 import typer
 
+from missionfsm.adapters.outputs import silence_stdout
 from missionfsm.cli import diagram, isaac, judging, listing
 from missionfsm.cli.common import BAD_INPUT, complain
 from missionfsm.cli.signals import ended_like_ctrl_c
@@ -44,6 +45,10 @@ def main() -> None:
         sys.exit(130)
     except UnreadableError as error:
         complain(str(error))
+        sys.exit(BAD_INPUT)
+    except OSError as error:  # what the commands do not expect, such as a help that finds no room
+        silence_stdout()
+        complain(error.strerror or str(error))
         sys.exit(BAD_INPUT)
 
 

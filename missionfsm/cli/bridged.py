@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from attrs import frozen
@@ -83,7 +82,8 @@ def _robot(system: System, sockets: Sockets, command: list[str] | None, conversa
 
 
 def _server(system: System, sockets: Sockets, command: list[str] | None, conversations: int, timeout: float) -> Bridged:
-    from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.stdio import Child  # noqa: PLC0415
     from missionfsm.adapters.tcp_bridge import Program, ServerBridge, address  # noqa: PLC0415
     from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.realtime import in_real_time, submissions, with_file  # noqa: PLC0415
@@ -96,10 +96,7 @@ def _server(system: System, sockets: Sockets, command: list[str] | None, convers
         bridge = ServerBridge(host, port, sockets.tolerance, adapter=Child(command, timeout))
         tried = in_real_time(system, sockets.tolerance, scripts=conversations)
         return Bridged(tried, bridge, conversations, _note(sockets))
-    try:
-        file = parse(Path(sockets.missions).read_bytes())
-    except OSError as error:
-        raise ValueError(f"{sockets.missions}: {error.strerror}") from None
+    file = parse(read_whole(sockets.missions))
     if not isinstance(file, MissionFile):
         raise ValueError(f"{sockets.missions}: {file[0]}")  # noqa: TRY004 - it is what the file holds that is wrong
     bridge = ServerBridge(

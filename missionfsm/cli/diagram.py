@@ -47,6 +47,8 @@ def diagram(  # noqa: PLR0913 - options of the command
     """Draw state diagrams from the model itself."""
     from missionfsm.tools.diagrams.gallery import FORMATS, Wanted  # noqa: PLC0415 - commands load what they need
 
+    if output == "":
+        stop("--output: an empty name is no name of a folder", BAD_INPUT)
     unknown = [one for one in form or () if one not in FORMATS]
     if unknown:
         stop(f"--format {unknown[0]}: there are {', '.join(FORMATS)}", BAD_INPUT)
@@ -98,13 +100,12 @@ def _known(systems: tuple[System, ...], wanted: Wanted) -> None:
 
 def _of_file(path: str) -> Picture:
     """The missions of a file, which wait for one another."""
-    from missionfsm.adapters.historyfile import STDIN, open_history  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.historyfile import STDIN, read_whole  # noqa: PLC0415 - commands load what they need
     from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.plans import plan  # noqa: PLC0415
     from missionfsm.tools.diagrams.gallery import of_plan  # noqa: PLC0415
 
-    with open_history(path) as source:
-        found = parse(source.read())
+    found = parse(read_whole(path))
     if not isinstance(found, MissionFile):
         stop(f"{path}: {found[0]}", BAD_INPUT)
     name = "stdin" if path == STDIN else Path(path).name

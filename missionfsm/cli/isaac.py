@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from missionfsm.cli.common import complain
+from missionfsm.cli.common import BAD_INPUT, complain, stop
+from missionfsm.kernel.codec import UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.cli.isaac_view import View
@@ -49,17 +50,16 @@ def dispatch(
     """
     import asyncio  # noqa: PLC0415
 
-    from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415
+    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
     from missionfsm.cli.isaac_view import view_for  # noqa: PLC0415
     from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.profile import PROFILES  # noqa: PLC0415
 
     readings = PROFILES[profile.value]
     try:
-        text = stdin().read() if str(file) == "-" else file.read_bytes()
-    except OSError as error:
-        complain(f"{file}: {error.strerror or error}")
-        raise typer.Exit(2) from None
+        text = read_whole(str(file))
+    except UnreadableError as error:
+        stop(str(error), BAD_INPUT)
     missions = parse(text, readings)
     if not isinstance(missions, MissionFile):
         for problem in missions:

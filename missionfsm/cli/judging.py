@@ -182,15 +182,13 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
     """The rules that a file lists as known to be broken; bad input if one of them is none."""
     if path is None:
         return ()
-    from missionfsm.tools.expected import read_expected  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.expected import read_expected  # noqa: PLC0415
 
-    if not path:
-        stop("--expect-violations: an empty name is no name of a file", BAD_INPUT)
+    with one_line_errors():
+        data = read_whole(path)
     try:
-        data = Path(path).read_bytes()
         return read_expected(data.decode(), [one.spec for one in judged])
-    except OSError as error:
-        stop(f"{path}: {error.strerror}", BAD_INPUT)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         stop(f"{path}:{line}: byte 0x{data[error.start]:02x} is not UTF-8", BAD_INPUT)

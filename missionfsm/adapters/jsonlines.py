@@ -28,11 +28,16 @@ def loads(text: bytes) -> JSON:
     except orjson.JSONDecodeError as error:
         message = f"not JSON: {error}"
         raise (CutShortError if error.pos == len(error.doc) else UnreadableError)(message) from None
-    # Nearly every line is too short to be too deep, and of the others nearly every one has too few brackets.
-    if len(text) > 2 * DEEPEST and text.count(b"[") + text.count(b"{") > DEEPEST and _is_too_deep(value):
+    if len(text) > 2 * DEEPEST and _may_be_too_deep(text) and _is_too_deep(value):
         message = f"nested more than {DEEPEST} deep"
         raise TooDeepError(message)
     return value
+
+
+def _may_be_too_deep(text: bytes) -> bool:
+    """Whether there are enough brackets; an object with its key takes five bytes, so that most lines are too short."""
+    lists = text.count(b"[")
+    return len(text) > 5 * (DEEPEST - lists) and text.count(b"{") + lists > DEEPEST
 
 
 def _is_too_deep(value: JSON) -> bool:

@@ -9,7 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -34,6 +34,10 @@ from missionfsm.kernel.system import System
 from missionfsm.kernel.words import printable
 from missionfsm.systems import names
 from missionfsm.tools.verdict import Verdict
+
+if TYPE_CHECKING:
+    from missionfsm.tools.explore import Exploration
+    from missionfsm.tools.teeth import Teeth
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
@@ -148,16 +152,22 @@ def conform(  # noqa: PLR0913 - options of the command
             stop(str(error), BAD_INPUT)
         finally:
             child.close()
-    troubles = Troubles()
-    with troubles.kept():
-        say_shown(str(verdict), json=json)
-    with troubles.kept():
-        write_json(json, verdict.to_json())
+    troubles = _told(verdict, json)
     with troubles.kept():
         write_report(html, ("", None, verdict))
     with troubles.kept():
         _record(record, judged, verdict)
     troubles.end(DONE if verdict.conforms else FAILED)
+
+
+def _told(found: Verdict | Exploration | Teeth, json: str | None) -> Troubles:
+    """Tell what was found and write it as JSON; what went wrong with either is kept."""
+    troubles = Troubles()
+    with troubles.kept():
+        say_shown(str(found), json=json)
+    with troubles.kept():
+        write_json(json, found.to_json())
+    return troubles
 
 
 def _record(path: str | None, system: System, verdict: Verdict) -> None:
@@ -270,11 +280,7 @@ def explore(  # noqa: PLR0913 - options of the command
     refuse_outputs({"--json": json, "--html": html})
     bounds = Bounds(missions, goals, batch)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
-    troubles = Troubles()
-    with troubles.kept():
-        say_shown(str(found), json=json)
-    with troubles.kept():
-        write_json(json, found.to_json())
+    troubles = _told(found, json)
     with troubles.kept():
         write_explorer(html, explored, bounds, assumed)
     troubles.end(DONE if found.holds else FAILED)
@@ -299,11 +305,7 @@ def teeth(  # noqa: PLR0913 - options of the command
         stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
     with Bar("implementations", total) as bar:
         found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, progress=bar.one_more)
-    troubles = Troubles()
-    with troubles.kept():
-        say_shown(str(found), json=json)
-    with troubles.kept():
-        write_json(json, found.to_json())
+    troubles = _told(found, json)
     with troubles.kept():
         write_teeth(html, judged, found)
     troubles.end(FAILED if found.missed or found.untested else DONE)

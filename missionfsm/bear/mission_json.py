@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -19,6 +18,7 @@ from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_requests import Defect, Request, Wanted
 from missionfsm.bear.mission_shown import show, with_bare_feedback
 from missionfsm.bear.mission_status import Garbled, Listing, Seen, without_ids
+from missionfsm.bear.mission_texts import TIMESTAMP, skim
 from missionfsm.bear.protojson import MalformedError, brief, camel, read, unknown_fields, write
 from missionfsm.kernel import codec
 from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
@@ -292,7 +292,7 @@ def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | Non
 def _sequence_number(metadata: dict[str, JSON]) -> int | None:
     """The sequence number of well-formed metadata; None where they are malformed."""
     number, timestamp = metadata.get("sequenceNumber"), metadata.get("timestamp")
-    if type(timestamp) is str and not _TIMESTAMP.fullmatch(timestamp):
+    if type(timestamp) is str and not TIMESTAMP.fullmatch(timestamp):
         return None
     if type(number) is int and type(timestamp) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
         return number  # by far the commonest form, read without further ado
@@ -300,12 +300,6 @@ def _sequence_number(metadata: dict[str, JSON]) -> int | None:
         return read(wire.EventMetadata, metadata).sequence_number
     except MalformedError:
         return None
-
-
-_TIMESTAMP = re.compile(
-    r"[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}(\.[0-9]{1,9})?(Z|[+-][0-9]{2}:[0-9]{2})", re.IGNORECASE
-)
-"""A google.protobuf.Timestamp in JSON."""
 
 
 def content(rest: JSON) -> Seen | Garbled:
@@ -475,5 +469,6 @@ CODEC = Codec(
     write_message=write_message,
     write_world=write_world,
     write_drive=write_drive,
+    skim=skim,
 )
 __all__ = ["AUTOMATIC", "CODEC"]

@@ -118,7 +118,7 @@ class _Judges:
         self._lost = lost
         self._keep = keep
         self._nobody = self._new(None)
-        self._texts = Texts(self._nobody.transcript)
+        self._texts = Texts(self._nobody.transcript, fingerprint)
         self._judges: dict[str | None, Judge] = {}
         self._stopped: dict[str | None, int] = {}
         self._waiting: dict[Judge, int] = {}
@@ -149,8 +149,7 @@ class _Judges:
         judge = self._judges.get(robot)
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
-        # No two messages are alike, so that their text is not worth remembering.
-        comes_again = plain and not self._keep and "message" not in line
+        comes_again = plain and not self._keep
         if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
             self._stopped.setdefault(robot, number)
 

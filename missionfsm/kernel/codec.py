@@ -31,6 +31,10 @@ Part = tuple[tuple[Name, ...], tuple[Mark, ...], JSON]
 """A part of a message: its names, its marks, and the rest."""
 
 
+Skimmed = tuple[list[bytes], tuple[Mark, ...], bytes]
+"""The names of a message, its marks, and the text that is left of it."""
+
+
 @frozen
 class Codec:
     """The JSON of one system.
@@ -58,6 +62,8 @@ class Codec:
         write_happened: (event, names) to what the result of a drive says besides that it happened.
         happened: the JSON of a drive that happened, with what its result says, to the event and its names, among them
             those that only the environment could give.
+        skim: the text of a message that is one part, as nearly all are written, to what `strip` finds; None for any
+            other text. Two texts of which the same is left have the same content.
     """
 
     methods: tuple[str, ...]
@@ -78,3 +84,4 @@ class Codec:
     happened: Callable[[JSON], tuple[Any, tuple[Name, ...]]] = field(
         default=Factory(lambda self: self.drive, takes_self=True)
     )
+    skim: Callable[[bytes], Skimmed | None] = lambda _text: None

@@ -6,34 +6,45 @@ that number is several times as fast as to read it.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from typing import Any
 
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Returned, Settled
+from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.transcript import REMEMBERED, Transcript
 
-_CALL, _RETURN, _STREAM = b'{"call":', b'{"return":', b'{"stream":'
-"""How nearly all lines begin that call, return or show a message; no two messages are alike."""
+_CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
+"""How nearly all lines begin that call, return or show a message."""
 _MOST_DIGITS = 19
 _NOBODY: tuple[Name, ...] = ()
 FORMS = 100
 """How many different texts around a name are remembered."""
-LONG = 1_000
+NAMES = 1_000
+"""How many names are remembered with the texts that they have in messages."""
+LONG = 2_000
 """Bytes of a line that is too long to be remembered."""
 
 
 class Texts:
     """The lines that a transcript has read, to know them again, with any name where one name was.
 
-    It is for lines that say neither a time nor a robot. With several names in it none is known again.
+    It is for lines that say neither a time nor a robot. But for messages, with several names in it none is known again.
+
+    Args:
+        transcript: what reads the lines.
+        write: JSON as a text, in the way that nearly all lines are written.
     """
 
-    def __init__(self, transcript: Transcript) -> None:
+    def __init__(self, transcript: Transcript, write: Callable[[JSON], bytes]) -> None:
         self._transcript = transcript
+        self._write = write
+        self._skim = transcript.codec.skim
         self._pending = transcript.pending
         self._calls: dict[bytes, tuple[str, Any]] = {}
         self._answers: dict[tuple[str | None, bytes], Answer] = {}
         self._others: dict[bytes, tuple[Event, ...]] = {}
+        self._contents: dict[bytes, Hashable] = {}
+        self._names: dict[bytes, Name] = {}
         self._called = _Named()
         self._answered = _Named()
 
@@ -44,7 +55,7 @@ class Texts:
             UnreadableError: the call was sent before.
         """
         if text.startswith(_STREAM):
-            return None
+            return self._message(text)
         if text.startswith(_CALL):
             end = text.find(b",")
             rest, names = text[end:], _NOBODY
@@ -71,6 +82,34 @@ class Texts:
             return None if answer is None else self._transcript.answers(number, answer, names)
         return self._others.get(text)
 
+    def _message(self, text: bytes) -> tuple[Event, ...] | None:
+        end = text.find(b",")
+        if not _is_number(text[10:end]) or not text.startswith(_MESSAGE, end):
+            return None
+        skimmed = self._skim(text[end + 11 : -1])
+        if skimmed is None:
+            return None
+        found, marks, rest = skimmed
+        content = self._contents.get(rest)
+        if content is None:
+            return None
+        names = tuple(map(self._names.get, found))
+        if None in names:
+            names = tuple(map(self._name, found))
+            if None in names:
+                return None
+        return (Received(("stream", int(text[10:end])), content, names, marks),)
+
+    def _name(self, written: bytes) -> Name | None:
+        """The name that is written so; None unless it is written just as it is."""
+        name = written.decode("ascii", "replace")
+        if not _is_plain(name):
+            return None
+        if len(self._names) >= NAMES:
+            self._names.clear()
+        self._names[written] = name
+        return name
+
     def read(self, text: bytes, line: JSON) -> tuple[Event, ...]:
         """The events of a line that was not known. Raises UnreadableError."""
         number = line.get("return") if isinstance(line, dict) else None
@@ -81,8 +120,9 @@ class Texts:
         return events
 
     def _remember(self, text: bytes, line: JSON, event: Event, method: str | None) -> None:
-        if len(self._calls) + len(self._answers) + len(self._others) >= REMEMBERED:
-            for known in (self._calls, self._answers, self._others):
+        remembered: tuple[dict[Any, Any], ...] = (self._calls, self._answers, self._others, self._contents)
+        if sum(map(len, remembered)) >= REMEMBERED:
+            for known in remembered:
                 known.clear()
         if type(event) is Called:
             rest = _rest(text, _CALL, line["call"])
@@ -98,6 +138,18 @@ class Texts:
                 self._answers[method, rest] = event.answer
         elif type(event) is Settled or (type(event) is Driven and not event.names):
             self._others[text] = (event,)
+        elif type(event) is Received and text == self._write(line):
+            self._remember_message(text, event)
+
+    def _remember_message(self, text: bytes, event: Received) -> None:
+        """Remember what a message shows that is written as nearly all are: in such a text nothing comes twice."""
+        begins, found, message = text.partition(_MESSAGE)
+        skimmed = self._skim(message[:-1])
+        if not found or not begins.startswith(_STREAM) or skimmed is None:
+            return
+        names, marks, rest = skimmed
+        if tuple(map(self._name, names)) == event.names and marks == event.marks:
+            self._contents[rest] = event.content
 
 
 class _Named:

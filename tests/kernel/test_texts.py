@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 
+import orjson
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Event
+from missionfsm.kernel.history import Event, Received
 from missionfsm.kernel.texts import LONG, Texts
 from missionfsm.kernel.transcript import Transcript
 from missionfsm.systems import system
@@ -53,6 +54,37 @@ WHOLE = (
     "{}",
 )
 
+METADATA = (
+    *(f'"metadata":{{"timestamp":"2025-01-01T00:00:0{n}Z","sequenceNumber":{n}}},' for n in range(4)),
+    '"metadata":{"timestamp":"2025-01-01T00:00:00.5+01:00","sequenceNumber":"7"},',
+    '"metadata":{"timestamp":"2025-01-01t00:00:00z","sequenceNumber":07},',
+    '"metadata":{"timestamp":"2025-01-01","sequenceNumber":8},',
+    '"metadata":{"sequenceNumber":8,"timestamp":"2025-01-01T00:00:00Z"},',
+    '"metadata": {"timestamp":"2025-01-01T00:00:00Z","sequenceNumber":8},',
+    '"metadata":{"timestamp":"2025-01-01T00:00:00Z","sequenceNumber":8,"x":1},',
+    "",
+)
+MISSIONS = (
+    '{"missionId":"%s","state":"STATE_RUNNING","owner":"api"}',
+    '{"missionId":"%s","state":"STATE_RUNNING","owner":"%s"}',
+    '{"mission_id":"%s","state":"STATE_RUNNING","owner":"api"}',
+    '{"missionId":"%s","missionId":"n","state":"STATE_RUNNING"}',
+    '{"missionId":"%s","mission_id":"m","state":"STATE_RUNNING"}',
+    '{"missionId":"%s","state":"STATE_RUNNING","missionFeedback":{"missionId":"%s"}}',
+    '{"x":{"missionId":"%s"},"mission_id":"m","state":"STATE_RUNNING"}',
+    '{"state":"STATE_RUNNING","owner":"%s"}',
+)
+MESSAGES = (
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s],"currentMissionIndex":0}}}',
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s],"currentMissionIndex":0}},"closed":true}',
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s],"currentMissionIndex":0}},"stream":2}',
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s]}},"message":{"missionStates":{"missions":[]}}}',
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s]},"metadata":null}}',
+    '{"stream":%s,"message":{%s"mission_states":{"missions":[%s]}}}',
+    '{"stream":%s,"message":{%s"missionStates":{"missions":[%s]}}',
+    '{"stream":%s,"closed":true,"message":{%s"missionStates":{"missions":[%s]}}}',
+)
+
 BEGINNINGS = ('{"call":', '{"return":')
 line = st.one_of(
     st.builds("".join, st.tuples(*map(st.sampled_from, (BEGINNINGS, NUMBERS, ENDS)))),
@@ -60,6 +92,18 @@ line = st.one_of(
 )
 named = st.builds(str.__mod__, st.sampled_from(NAMED), st.sampled_from(NAMES))
 CREATES = ',"method":"CreateMission","params":{}}'
+mission = st.builds(
+    lambda form, name: form.replace("%s", name), st.sampled_from(MISSIONS), st.sampled_from((*NAMES, "mn"))
+)
+message = st.builds(
+    str.__mod__,
+    st.sampled_from(MESSAGES),
+    st.tuples(
+        st.sampled_from(NUMBERS),
+        st.sampled_from(METADATA),
+        st.builds(",".join, st.lists(mission, max_size=3)),
+    ),
+)
 call, answer = (
     st.builds(begins.__add__, st.builds("{}{}".format, st.integers(1, 30), st.one_of(st.sampled_from(ends), named)))
     for begins, ends in (('{"call":', (*ENDS[:5], CREATES)), ('{"return":', ENDS[8:12]))
@@ -72,13 +116,13 @@ def read(transcript: Transcript, texts: Texts | None, text: str) -> tuple[Event,
         known = texts.again(text.encode()) if texts else None
         if known is not None:
             return known
-        parsed: JSON = json.loads(text)
+        parsed: JSON = orjson.loads(text)
         return texts.read(text.encode(), parsed) if texts else transcript.read(parsed)
     except (UnreadableError, json.JSONDecodeError) as error:
         return str(error)
 
 
-@given(st.lists(st.one_of(line, call, answer), max_size=40), st.frozensets(st.integers(1, 30), max_size=3))
+@given(st.lists(st.one_of(line, call, answer, message), max_size=40), st.frozensets(st.integers(1, 30), max_size=3))
 @example(['{"call":1,"method":"SkipGoal","params":{}}', '{"call":1,"method":"SkipGoal","params":{}}'], frozenset())
 @example(
     [
@@ -91,10 +135,20 @@ def read(transcript: Transcript, texts: Texts | None, text: str) -> tuple[Event,
 @example(
     ['{"call":1,"method":"SkipGoal"}', '{"call":2,"method":"SkipGoal"}', '{"return":2,"result":{}}'], frozenset({2})
 )
+@example(
+    [
+        text
+        for form in MESSAGES
+        for metadata in METADATA
+        for one in MISSIONS
+        for text in (form % ("1", metadata, one.replace("%s", name)) for name in NAMES)
+    ],
+    frozenset(),
+)
 def test_a_known_text_says_what_its_line_says(lines: list[str], lost: frozenset[int]) -> None:
     """With texts remembered and without: the same events, and the same complaints."""
     plain, known = Transcript(CODEC, lost=lost), Transcript(CODEC, lost=lost)
-    texts = Texts(known)
+    texts = Texts(known, orjson.dumps)
     for text in lines:
         assert read(known, texts, text) == read(plain, None, text)
         assert (known.pending, known.answered) == (plain.pending, plain.answered)
@@ -103,7 +157,7 @@ def test_a_known_text_says_what_its_line_says(lines: list[str], lost: frozenset[
 def test_what_comes_again_is_known() -> None:
     """A call, its answer, a drive and a silence need to be read once, whatever name is in them; not so a long line."""
     transcript = Transcript(CODEC)
-    texts = Texts(transcript)
+    texts = Texts(transcript, orjson.dumps)
     long = json.dumps({"call": 5, "method": "SkipGoal", "params": {"x": LONG * "x"}}, separators=(",", ":"))
     named = (
         '{"call":6,"method":"UpdateMission","params":{"missionCommand":{"missionId":"m","command":"COMMAND_PAUSE"}}}'
@@ -116,10 +170,36 @@ def test_what_comes_again_is_known() -> None:
     assert [texts.again(text.encode()) is not None for text in again] == [True, True, True, True, False, True]
 
 
+def test_a_message_is_known_whatever_its_ids_and_its_metadata_are() -> None:
+    """So that each thing shown is read once; but one that is written in another way, or with a key twice, anew."""
+    transcript = Transcript(CODEC)
+    texts = Texts(transcript, orjson.dumps)
+    form, two = MESSAGES[0], f"{MISSIONS[0]},{MISSIONS[0]}"
+    assert texts.again((form % (1, METADATA[1], two % ("a", "b"))).encode()) is None
+    read(transcript, texts, form % (1, METADATA[1], two % ("a", "b")))
+    known = texts.again((form % (3, METADATA[4], two % ("n-2", "a b"))).encode())
+    assert known is not None
+    (event,) = known
+    assert isinstance(event, Received)
+    assert (event.channel, event.names, event.marks) == (("stream", 3), ("n-2", "a b"), ((None, 7),))
+    for other in (
+        form % (3, METADATA[4], two % ("n-2", "\\u0061")),
+        form % (3, METADATA[4], two % ("n-2", "")),
+        form % (3, METADATA[4], two % ("n-2", "ü")),
+        form % (3, METADATA[6], two % ("a", "b")),
+        form % (3, METADATA[4], two % ("a", "b") + "," + MISSIONS[0] % "c"),
+        form % ("03", METADATA[4], two % ("a", "b")),
+    ):
+        assert texts.again(other.encode()) is None
+    twice = MESSAGES[3] % (1, METADATA[1], MISSIONS[0] % "a")
+    read(transcript, texts, twice)
+    assert texts.again(twice.encode()) is None
+
+
 @pytest.mark.parametrize("number", ["02", "2.0", "true", '"2"', " 2", "-2", "2e0", "9" * 30, ""])
 def test_only_plain_numbers_are_known(number: str) -> None:
     """A number that is written in another way, or is none, is left to be read."""
-    texts = Texts(Transcript(CODEC))
+    texts = Texts(Transcript(CODEC), orjson.dumps)
     read(texts._transcript, texts, '{"call":1' + ENDS[0])
     assert texts.again(f'{{"call":{number}{ENDS[0]}'.encode()) is None
     assert texts.again(f'{{"call":2{ENDS[0]}'.encode()) is not None

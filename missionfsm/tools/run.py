@@ -19,7 +19,7 @@ from missionfsm.tools.conversation import WRONG_NAME, Action, Conversation, Give
 from missionfsm.tools.guide import Guide, Proposal
 from missionfsm.tools.picking import kind_of, slots
 from missionfsm.tools.rulings import Ruling
-from missionfsm.tools.shortest import length, shortest
+from missionfsm.tools.shortest import everything, length, shortest
 from missionfsm.tools.shrink import shrink
 from missionfsm.tools.story import inconsistent
 from missionfsm.tools.verdict import Violation
@@ -380,11 +380,13 @@ class Run:
         if self.enough():
             return short
         alphabet = self.system.alphabet(short.world, self.bounds)
-        # From some long conversations no part can go though there are shorter ones.
-        shorter = shortest(short, functools.partial(same, short.world), alphabet, length(short) - 1)
-        if shorter is None or self._is_known(shorter):
-            return short
-        return shrink(shorter, same, self._simpler, self.guide.worlds[0])
+        # From some long conversations no part can go though there are shorter ones: of the same kinds of things, which
+        # can be looked for deep, or of anything.
+        for look in (functools.partial(shortest, short), everything):
+            shorter = look(functools.partial(same, short.world), alphabet, length(short) - 1)
+            if shorter is not None and not self._is_known(shorter):
+                short = shrink(shorter, same, self._simpler, self.guide.worlds[0])
+        return short
 
     def shorten_evidence(self) -> None:
         """Make the conversations that ruled out the readings of a contradiction as short as can be."""

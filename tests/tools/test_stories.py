@@ -65,8 +65,8 @@ def test_nothing_can_be_left_out_of_a_story(code: str, rule: str) -> None:
     assert _had(first, done, answering(code, rule)).violation is not None
 
 
-def test_no_story_is_much_longer_than_the_shortest() -> None:
-    """Whatever rule is broken: no conversation that is shorter by two, of anything worth trying, shows anything."""
+def test_no_story_is_longer_than_the_shortest() -> None:
+    """Whatever rule is broken: no shorter conversation, of anything worth trying, shows anything."""
     told = []
     for mutant in itertools.islice(mutants(MISSION), 0, None, 32):
         run = Run.of(MISSION, mutant.subject(MISSION))
@@ -75,11 +75,9 @@ def test_no_story_is_much_longer_than_the_shortest() -> None:
         if run.found is None:  # it does what some reading allows, or contradicts itself across conversations
             continue
         told.append(length(run.found))
-        assert _shortest(run, run.found, told[-1] - 2) is None, mutant.name
+        assert _shortest(run, run.found, told[-1] - 1) is None, mutant.name
         if told[-1] < 3:
-            again = _shortest(run, run.found, told[-1])
-            assert again is not None, mutant.name
-            assert told[-1] - length(again) <= 1
+            assert _shortest(run, run.found, told[-1]) is not None, mutant.name
     assert len(told) > 8
     assert max(told) >= 3
 

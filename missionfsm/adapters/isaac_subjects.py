@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Iterable
 
 from missionfsm.isaac import missionfile, strictjson
 from missionfsm.isaac.messages import MissionStatusProto, Payload, TextProto, Uuid, stamp
@@ -239,6 +238,3 @@ class ServerSubject(_InProcess):
 
 def _refused(says: str) -> Exchange:
     return Exchange(error={"status": INVALID_ARGUMENT, "message": says})
-
-
-Make = Callable[[], Any]

@@ -32,7 +32,7 @@ T = TypeVar("T")
 
 
 class MissionRefusedError(ValueError):
-    """The server did not take a mission. Nothing has changed."""
+    """The server did not take a mission; missions upstream of it may have been made known to it."""
 
 
 class Mission:

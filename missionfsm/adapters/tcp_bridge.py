@@ -380,6 +380,14 @@ class RobotBridge(_Bridge):
         if self._program is not None:
             self._program.close()
 
+    def _turn_away(self) -> None:
+        """Close the connections of a robot that came back before it was stopped."""
+        self._listener.settimeout(0)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                self._listener.accept()[0].close()
+        self._listener.settimeout(PATIENCE)
+
     def told(self, seconds: float) -> float:
         """A time as the oracle is told it: a little less than it was."""
         return super().told(max(0.0, seconds - self.tolerance))
@@ -388,6 +396,8 @@ class RobotBridge(_Bridge):
         """Have a fresh robot, and wait until it connects."""
         self._resets += 1
         if self._program is not None:
+            self._program.stop()
+            self._turn_away()
             self._program.restart()
         elif self._resets > 1:
             raise SubjectError("the robot cannot be started anew; give its command after --")

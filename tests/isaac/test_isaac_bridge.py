@@ -126,6 +126,34 @@ def test_a_robot_that_does_not_come(monkeypatch: pytest.MonkeyPatch) -> None:
         judged(bridge)
 
 
+RECONNECTS = """
+import os, signal, socket, sys, time
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+while True:
+    try:
+        with socket.create_connection(("127.0.0.1", int(sys.argv[1]))) as sock:
+            sock.sendall(b"%d\\n" % os.getpid())
+            while sock.recv(4096):
+                pass
+    except OSError:
+        time.sleep(0.005)
+"""
+
+
+def test_a_robot_that_comes_back_while_it_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is not taken for the one that is started next."""
+    bridge = RobotBridge(0, TOLERANCE, host="127.0.0.1")
+    program = Program([sys.executable, "-c", RECONNECTS, str(bridge.port)])
+    monkeypatch.setattr(bridge, "_program", program)
+    try:
+        heard = [[one.params["line"] for one in bridge.exchange("reset", {}).after if one.method == "line"][:1]]
+        heard += [[one.params["line"] for one in bridge.exchange("reset", {}).after if one.method == "line"][:1]]
+        assert program._process is not None
+        assert heard[1] == [str(program._process.pid)] != heard[0]
+    finally:
+        bridge.close()
+
+
 # Servers.
 
 

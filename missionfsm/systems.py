@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.transcript import brief
+from missionfsm.kernel.words import brief
 
 _MODULES: Mapping[str, str] = {
     "bear.mission": "missionfsm.bear.mission_system",

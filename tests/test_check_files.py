@@ -320,6 +320,17 @@ def test_robots_are_judged_apart(command_line: CommandLine, tmp_path: Path) -> N
     assert {one["file"] for one in found} == {str(path)}
 
 
+def test_what_other_robots_do_is_nothing_that_a_robot_did(command_line: CommandLine, tmp_path: Path) -> None:
+    """A robot of which nothing was seen is inconclusive in a file with others just as alone."""
+    lines = [*fleet({"result": {"missionId": "m"}}), {"settled": True, "robot": "idle"}]
+    ended = command_line("check", write(tmp_path / "log.jsonl", lines), "--json", "-")
+    busy, idle = orjson.loads(ended.out)
+    assert ended.status == 1
+    assert (busy["verdict"], idle["verdict"], idle["because"]) == ("conforms", "inconclusive", "nothing was exercised")
+    assert busy["coverage"]["rules"]
+    assert not idle["coverage"]["rules"]
+
+
 def test_lines_without_a_robot_are_a_robot_of_their_own(command_line: CommandLine, tmp_path: Path) -> None:
     """Lines with and without ``robot`` in one file are conversations apart."""
     named = {"call": 1, "method": "CreateMission", "params": DELIVERY}
@@ -330,6 +341,41 @@ def test_lines_without_a_robot_are_a_robot_of_their_own(command_line: CommandLin
     assert ended.status == 0
     heads = [line for line in ended.out.splitlines() if line.startswith(str(path))]
     assert heads == [f"{path} r: conforms: bear.mission, 2 events", f"{path}: conforms: bear.mission, 2 events"]
+
+
+def test_what_comes_after_a_violation_is_not_shown(command_line: CommandLine, tmp_path: Path) -> None:
+    """However much that is, and wherever it is read from: the history ends with the line that is wrong."""
+    wrong = [{"call": 1, "method": "SkipGoal"}, {"return": 1, "result": {"missionId": "m"}}]
+    path = write(tmp_path / "log.jsonl", [orjson.loads(FIRST), *wrong, *({"settled": True} for _ in range(300))])
+    shown = [
+        orjson.loads(command_line("check", source, "--json", "-", stdin=stdin).out)["violation"]
+        for source, stdin in ((path, b""), ("-", path.read_bytes()))
+    ]
+    assert [one["history"][1:] for one in shown] == [wrong, wrong]
+
+
+def test_a_file_that_is_called_like_stdin_is_not_read(
+    command_line: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``-`` is stdin, whatever else has that name; it is read once, whatever is undecided in it."""
+    monkeypatch.chdir(tmp_path)
+    Path("-").write_text("oops")
+    calls = "".join(clear(call=number) + "\n" for number in range(1, 40))
+    ended = command_line("check", "-", stdin=f"{FIRST}\n{calls}".encode())
+    assert (ended.status, ended.err) == (1, "")
+    assert "inconclusive" in ended.out
+
+
+def test_a_line_is_malformed_whatever_came_before(command_line: CommandLine, tmp_path: Path) -> None:
+    """Also one that only in its last byte differs from a line that is known."""
+    shown = '{"missionStates":{"missions":[],"currentMissionIndex":-1}}'
+    message = '{"stream":1,"message":{"metadata":{"timestamp":"2025-01-01T00:00:00Z","sequenceNumber":%d},' + shown[1:]
+    subscribed = ['{"call":1,"method":"SubscribeMissionStatus"}', '{"return":1,"result":{"stream":1}}']
+    path = tmp_path / "log.jsonl"
+    path.write_text("\n".join((FIRST, *subscribed, message % 1 + "}", message % 2 + "!")))
+    ended = command_line("check", path)
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err.startswith(f"missionfsm: {path}:5: not JSON")
 
 
 def test_only_the_last_lines_of_a_long_history_are_kept(command_line: CommandLine, tmp_path: Path) -> None:

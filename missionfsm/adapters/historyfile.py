@@ -1,6 +1,7 @@
 """Recorded histories: JSON Lines from a file or a stream, one conversation or a whole fleet's day.
 
-A history is read once and never held: what is kept is one judge for every robot that a file speaks of.
+A history is never held: what is kept is one judge for every robot that a file speaks of. Stdin is read once; a file may
+be read again, to find out which calls are never answered, and what came before a violation.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def stdin() -> IO[bytes]:
 def is_plain_file(path: str) -> bool:
     """Whether it can be read more than once."""
     try:
-        return Path(path).is_file()
+        return path != STDIN and Path(path).is_file()
     except OSError:
         return False
 

@@ -22,8 +22,7 @@ from missionfsm.adapters.processes import end_group
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
-from missionfsm.kernel.transcript import brief
-from missionfsm.kernel.words import printable
+from missionfsm.kernel.words import brief, printable
 
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes in one line before a child counts as flooding."""
@@ -40,7 +39,7 @@ MOST_READS = 100
 MOMENT = 0.05
 """Seconds after which a child that says nothing is looked at whether it is still there."""
 
-PARSE_ERROR, INVALID_REQUEST, METHOD_NOT_FOUND, INVALID_PARAMS = -32700, -32600, -32601, -32602
+PARSE_ERROR, INVALID_REQUEST, INVALID_PARAMS = -32700, -32600, -32602
 
 
 # The reference as a server.

@@ -57,7 +57,7 @@ from missionfsm.bear.mission_readings import (
 )
 from missionfsm.bear.mission_requests import Call, Request, Target, Wanted
 from missionfsm.bear.mission_rules import CHARGING, LAST_GOAL
-from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import (
     CANCELLED,
     DEADLINE_EXCEEDED,
@@ -183,17 +183,20 @@ def _as_possible(robot: Situation, kind: Kind, goals: tuple[Goal, ...]) -> Itera
         yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
 
 
-def _all_accepted(
-    robot: Situation, wanted: tuple[Wanted, ...], *, waits: bool | None = None
-) -> Iterator[tuple[tuple[Mission, ...], Assumed]]:
-    if not wanted:
-        yield (), ()
-        return
-    if waits is None:
-        waits = robot.active is not None or robot.queued or robot.world.blocked
-    for mission, assumes in _accepted(robot, wanted[0], waits=waits):
-        for rest, more in _all_accepted(robot, wanted[1:], waits=True):
-            yield (mission, *rest), (*assumes, *more)
+def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> list[tuple[tuple[Mission, ...], Assumed]]:
+    """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
+    waits = robot.active is not None or robot.queued or robot.world.blocked
+    ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), ANYTHING)]
+    for one in wanted:
+        accepted = tuple(_accepted(robot, one, waits=waits))
+        ways = [
+            ((*missions, mission), (*assumed, *assumes) if assumes else assumed, left)
+            for missions, assumed, before in ways
+            for mission, assumes in accepted
+            if (left := meet(before, assumes))
+        ]
+        waits = True
+    return [(missions, tuple(dict.fromkeys(assumed))) for missions, assumed, _ in ways]
 
 
 def _listed_anew(robot: Situation, edit: Edit) -> Iterator[Way]:

@@ -10,11 +10,11 @@ from attrs import evolve
 from missionfsm.bear.messages import State
 from missionfsm.bear.mission import (
     AUTOMATIC,
-    GOALLESS,
     NOT_CHOSEN,
     PATROLS,
     Edit,
     Fault,
+    Kind,
     Mission,
     Op,
     Situation,
@@ -99,7 +99,10 @@ class Happening:
 def goal_reached(robot: Situation) -> Iterable[Way]:
     """The running mission is done with its current goal."""
     mission = robot.active
-    if mission is None or mission.state is not State.STATE_RUNNING or mission.kind in GOALLESS:
+    if mission is None or mission.state is not State.STATE_RUNNING or mission.kind is Kind.CHARGE:
+        return
+    if mission.kind is Kind.RETURN:  # it goes to one place
+        yield end(mission, "succeed"), ()
         return
     if mission.goal == NOT_CHOSEN or _cannot_arrive(robot.world, mission):
         return

@@ -12,18 +12,18 @@ from attrs import evolve
 
 from missionfsm.bear import messages as wire
 from missionfsm.bear.messages import Command, Goal, MissionStates
-from missionfsm.bear.mission import AUTOMATIC, Family, Fault, Kind, World
+from missionfsm.bear.mission import Family, Fault, Kind, World
 from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_requests import Defect, Request, Wanted
 from missionfsm.bear.mission_shown import show, with_bare_feedback
-from missionfsm.bear.mission_status import Garbled, Listing, Seen, without_ids
+from missionfsm.bear.mission_status import Listing, Seen, without_ids
 from missionfsm.bear.mission_texts import TIMESTAMP, skim
-from missionfsm.bear.protojson import MalformedError, brief, camel, read, unknown_fields, write
-from missionfsm.kernel import codec
-from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
+from missionfsm.bear.protojson import MalformedError, camel, key_of, read, unknown_fields, write
+from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
+from missionfsm.kernel.words import brief
 
 # Requests: which member of which oneof means which kind of mission.
 
@@ -140,14 +140,16 @@ _READERS: Mapping[str, tuple[Callable[[str, JSON], Request], type]] = {
 
 def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     """The mission id of an UpdateMission and the params with a dash in its place; other requests have none."""
-    command = params.get("missionCommand", params.get("mission_command")) if isinstance(params, dict) else None
-    if method != "UpdateMission" or not isinstance(command, dict):
+    if method != "UpdateMission" or not isinstance(params, dict):
         return (), params
-    key = "missionId" if "missionId" in command else "mission_id"
+    outer = key_of(params, "mission_command")
+    command = params.get(outer)
+    if not isinstance(command, dict):
+        return (), params
+    key = key_of(command, "mission_id")
     named = command.get(key)
     if not isinstance(named, str) or not named:
         return (), params
-    outer = "missionCommand" if "missionCommand" in params else "mission_command"
     return (named,), {**params, outer: {**command, key: "-"}}
 
 
@@ -224,10 +226,10 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             return _NAMED, ()
         found: wire.MissionId | wire.MissionIds = read(kind, result)
     except MalformedError as error:
-        return Answer(OK, codec.Garbled(str(error)), unordered), ()
+        return Answer(OK, Garbled(str(error)), unordered), ()
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
     if not all(ids):
-        return Answer(OK, codec.Garbled("a mission id is missing"), unordered), ()
+        return Answer(OK, Garbled("a mission id is missing"), unordered), ()
     return _LISTED if unordered else _NAMED, ids
 
 
@@ -260,7 +262,7 @@ def strip(message: JSON) -> tuple[Part, ...]:
     else:
         marks = ((None, number),)
         del rest["metadata"]
-    key = "missionStates" if "missionStates" in message else "mission_states"
+    key = "missionStates" if message.get("missionStates") is not None else "mission_states"
     states = message.get(key)
     missions = states.get("missions") if isinstance(states, dict) else None
     found = _nameless(missions) if isinstance(missions, list) else None
@@ -279,8 +281,9 @@ def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | Non
     for mission in missions:
         if type(mission) is not dict:
             return None
-        name = "missionId" if "missionId" in mission else "mission_id"
-        given = mission.get(name)
+        name, given = "missionId", mission.get("missionId")
+        if given is None:
+            name, given = "mission_id", mission.get("mission_id")
         if type(given) is str and given:
             named.append(given)
             mission = mission.copy()  # noqa: PLW2901 - the same mission without its id
@@ -316,7 +319,6 @@ def content(rest: JSON) -> Seen | Garbled:
     return Seen(without_ids(states), named, tuple(bare))
 
 
-_FEEDBACK = ("missionFeedback", "mission_feedback")
 _MAYBE_BARE = ("serviFeedback", "cartiFeedback", "servi_feedback", "carti_feedback")
 
 
@@ -333,14 +335,17 @@ def _about_metadata(metadata: JSON) -> str:
 
 def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
     """AM-50: feedback that came as a bare enum put into a message; `bare` notes where."""
-    states = rest.get("missionStates", rest.get("mission_states")) if isinstance(rest, dict) else None
+    if not isinstance(rest, dict):
+        return rest
+    key = key_of(rest, "mission_states")
+    states = rest.get(key)
     missions = states.get("missions") if isinstance(states, dict) else None
     if not isinstance(states, dict) or not isinstance(missions, list):
         return rest
     wrapped = []
     for mission in missions:
-        key = next((key for key in _FEEDBACK if isinstance(mission, dict) and key in mission), "")
-        feedback = mission[key] if key else None
+        shown = key_of(mission, "mission_feedback") if isinstance(mission, dict) else ""
+        feedback = mission.get(shown) if shown else None
         members = feedback if isinstance(feedback, dict) else {}
         naked = {
             name: {"status": value}
@@ -348,11 +353,8 @@ def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
             if isinstance(value, str | int) and name in _MAYBE_BARE
         }
         bare.append(bool(naked))
-        wrapped.append({**mission, key: {**members, **naked}} if naked else mission)
-    return {
-        "missionStates": {**states, "missions": wrapped},
-        **({"metadata": rest["metadata"]} if "metadata" in rest else {}),
-    }
+        wrapped.append({**mission, shown: {**members, **naked}} if naked else mission)
+    return {**rest, key: {**states, "missions": wrapped}}
 
 
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
@@ -471,4 +473,4 @@ CODEC = Codec(
     write_drive=write_drive,
     skim=skim,
 )
-__all__ = ["AUTOMATIC", "CODEC"]
+__all__ = ["CODEC"]

@@ -273,7 +273,7 @@ def _rank_update(robot: Situation, holding: tuple[Rule, ...]) -> Ranked:
     """AM-04: the command, the id or the state is looked at first."""
     for code, about_command in dict.fromkeys((str(one.code), one.kind == SHAPE) for one in holding):
         forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
-        if the_robot_is_on_no_mission in holding:
+        if any(one.name == the_robot_is_on_no_mission.name for one in holding):
             # An id that cannot be read cannot be looked for either.
             yield code, (AM_04["a", "b"] if about_command else AM_04["c"],)
         elif about_command:

@@ -29,6 +29,7 @@ AM_02_ENDED = Ambiguity(
         "b": "NOT_FOUND",
         "c": "FAILED_PRECONDITION if nothing is active, else NOT_FOUND",
         "d": "INVALID_ARGUMENT",
+        "e": "FAILED_PRECONDITION if nothing is active, else INVALID_ARGUMENT",
     },
     default="a",
 )

@@ -219,10 +219,14 @@ def another_mission_is_queued(robot: Situation, _: Call) -> bool:
     return robot.active is None and robot.queued
 
 
+def _nothing_listed(robot: Situation) -> bool:
+    return robot.active is None and not robot.queued and not robot.ended
+
+
 @rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], kind=STATE)
 def the_mission_queue_is_empty(robot: Situation, _: Call) -> bool:
     """No mission is listed, so there is nothing to append to."""
-    return robot.active is None and not robot.queued and not robot.ended
+    return _nothing_listed(robot)
 
 
 @rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_11["b"], kind=STATE)
@@ -310,13 +314,13 @@ def a_mission_is_running_or_paused(robot: Situation, _: Call) -> bool:
 @rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["b"], kind=STATE)
 def nothing_is_listed(robot: Situation, _: Call) -> bool:
     """There is nothing to clear (AM-33)."""
-    return robot.active is None and not robot.queued and not robot.ended
+    return _nothing_listed(robot)
 
 
 @rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["c"], kind=SHAPE)
 def there_is_nothing_to_clear(robot: Situation, _: Call) -> bool:
     """There is nothing to clear, so the request means nothing (AM-33)."""
-    return robot.active is None and not robot.queued and not robot.ended
+    return _nothing_listed(robot)
 
 
 @rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus"], under=AM_34_GAP["c"], kind=STATE)
@@ -353,7 +357,9 @@ LAST_GOAL = {
     for code in (FAILED_PRECONDITION, INTERNAL)
 }
 CHARGING = {
-    code: _consequence(code, "charging-has-no-goals", "The robot is charging, which has no goals (AM-19).")
+    code: _consequence(
+        code, "charging-has-no-goals", "The robot charges or returns, which has no goals of its own (AM-19)."
+    )
     for code in (FAILED_PRECONDITION, INTERNAL)
 }
 
@@ -385,10 +391,6 @@ def the_mission_is_still_queued(_: Situation, call: Call) -> bool:
     return call.target is Target.QUEUED
 
 
-def _nothing_listed(robot: Situation) -> bool:
-    return robot.active is None and not robot.queued and not robot.ended
-
-
 def _id_rule(code: str, name: str, says: str, under: Assumption, holds: Callable[[Situation, Call], bool]) -> Rule:
     return Rule(name, says, "", MISSION["UpdateMission", "Errors"], code, holds, under, STATE)
 
@@ -414,7 +416,9 @@ def _no_mission(robot: Situation, call: Call) -> bool:
 
 
 WRONG_ID = (
-    _id_rule(FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c"], _ended),
+    _id_rule(
+        FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c", "e"], _ended
+    ),
     _id_rule(NOT_FOUND, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["b"], _ended),
     _id_rule(INVALID_ARGUMENT, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["d"], _ended),
     _id_rule(
@@ -435,7 +439,7 @@ WRONG_ID = (
         INVALID_ARGUMENT,
         "the-mission-has-ended-and-another-is-active",
         "Another mission is active.",
-        AM_02_ENDED["d"],
+        AM_02_ENDED["d", "e"],
         _ended_while_another_is_active,
     ),
     _id_rule(INVALID_ARGUMENT, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["a"], _unknown),

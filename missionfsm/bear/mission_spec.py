@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from attrs import evolve
 
-from missionfsm.bear.messages import Goal, State
+from missionfsm.bear.messages import State
 from missionfsm.bear.mission import (
     AUTOMATIC,
     ENDED,
@@ -22,7 +22,6 @@ from missionfsm.bear.mission import (
     Mission,
     Op,
     Robot,
-    World,
     apply,
     renumber,
     situation,
@@ -44,7 +43,7 @@ from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_shortcut import Shortcut, forget_ended
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
-from missionfsm.bear.mission_status import SEQUENCE, TOPIC, Listing, listing, matches
+from missionfsm.bear.mission_status import SEQUENCE, TOPIC, listing, matches
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
@@ -326,4 +325,4 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
 
 
 SPEC = specification()
-__all__ = ["SPEC", "Goal", "Listing", "World"]
+__all__ = ["SPEC"]

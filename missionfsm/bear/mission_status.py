@@ -45,6 +45,7 @@ from missionfsm.bear.mission_readings import (
     AM_51,
     AM_63,
 )
+from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
@@ -104,13 +105,6 @@ class Seen:
     states: MissionStates
     named: tuple[bool, ...]
     bare: tuple[bool, ...]
-
-
-@value(cache_hash=True)
-class Garbled:
-    """A status message that is not of the documented form."""
-
-    says: str
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:

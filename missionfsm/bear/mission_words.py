@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from missionfsm.bear.messages import Goal, MissionState, State
-from missionfsm.bear.mission import NOT_CHOSEN, Fault, Mission, Robot, World
+from missionfsm.bear.mission import NOT_CHOSEN, Fault, Mission, Robot
 from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Request, Wanted
-from missionfsm.bear.mission_status import Garbled, Listing, Seen
+from missionfsm.bear.mission_status import Listing, Seen
 
 
 def describe(value: object) -> str:
@@ -21,8 +21,6 @@ def describe(value: object) -> str:
     if isinstance(value, Seen):
         shown = ", ".join(map(_message, value.states.missions))
         return f"[{shown}], current_mission_index {value.states.current_mission_index}"
-    if isinstance(value, Garbled):
-        return f"a malformed message: {value.says}"
     if isinstance(value, Happening):
         return _happening(value)
     return str(value)
@@ -79,4 +77,4 @@ def _plain(value: object) -> str:
     return str(list(value)) if isinstance(value, tuple) else str(value)
 
 
-__all__ = ["World", "describe"]
+__all__ = ["describe"]

@@ -21,6 +21,8 @@ from typing import Any, NewType, TypeVar, get_args
 import attrs
 import cattrs
 
+from missionfsm.kernel.words import brief
+
 Int64 = NewType("Int64", int)
 """A 64-bit integer field; `int` is a 32-bit one."""
 
@@ -51,14 +53,14 @@ def camel(name: str) -> str:
     return head + "".join(word.capitalize() for word in rest)
 
 
-def brief(value: object) -> str:
-    """A value as an error message shows it: never long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+def key_of(message: dict[str, Any], name: str) -> str:
+    """The key under which a message has a field, given its ``snake_case`` name; null is the same as absent."""
+    usual = camel(name)
+    return name if message.get(usual) is None and message.get(name) is not None else usual
 
 
 def _integer(bits: int, value: object) -> int:
-    if isinstance(value, str) and re.fullmatch(r"-?\d{1,20}", value):
+    if isinstance(value, str) and re.fullmatch(r"-?[0-9]{1,20}", value):
         value = int(value)
     if isinstance(value, float) and value.is_integer():
         value = int(value)

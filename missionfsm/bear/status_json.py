@@ -11,7 +11,7 @@ from attrs import evolve
 
 from missionfsm.bear import status_messages as wire
 from missionfsm.bear.messages import EventMetadata, MissionState, Pose
-from missionfsm.bear.protojson import MalformedError, brief, camel, read, unknown_fields, write
+from missionfsm.bear.protojson import MalformedError, camel, read, unknown_fields, write
 from missionfsm.bear.status import (
     GET,
     LOCALIZATION,
@@ -29,11 +29,12 @@ from missionfsm.bear.status import (
 )
 from missionfsm.bear.status_messages import ErrorCodes, RobotState, Wifi
 from missionfsm.bear.status_rules import OPERATIONS
-from missionfsm.bear.status_stream import Garbled, Promised, Seen, View, canonical, canonical_state, show
+from missionfsm.bear.status_stream import Promised, Seen, View, canonical, canonical_state, show
 from missionfsm.bear.status_values import clamped, single
-from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import INTERNAL, OK
+from missionfsm.kernel.words import brief
 
 STREAMS = tuple(endpoint.value for endpoint in Endpoint)
 

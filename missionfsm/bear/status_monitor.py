@@ -19,7 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from attrs import frozen
 
 from missionfsm.bear.messages import EventMetadata
-from missionfsm.bear.protojson import MalformedError, brief, camel
+from missionfsm.bear.protojson import MalformedError, camel
 from missionfsm.bear.status import MAPS, PARTS, SINGLES, WIFI, Endpoint, Value
 from missionfsm.bear.status_json import TIMESTAMP, map_value, metadata_of, read_state, single_value
 from missionfsm.bear.status_spec import sequence
@@ -28,6 +28,7 @@ from missionfsm.bear.status_values import Fault, a_stuck_state_is_known, faults,
 from missionfsm.kernel.belief import relation
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.spec import Mismatch
+from missionfsm.kernel.words import brief
 
 REMEMBERED = 50_000
 """How many different payloads a monitor remembers before it starts to remember anew."""

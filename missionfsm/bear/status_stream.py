@@ -11,7 +11,6 @@ import attrs
 from attrs import evolve, frozen
 
 from missionfsm.bear.messages import MissionState, State
-from missionfsm.bear.protojson import brief
 from missionfsm.bear.status import (
     GET,
     LOCALIZATION,
@@ -56,9 +55,11 @@ from missionfsm.bear.status_values import (
     reserved_reasons_are_not_used,
     within,
 )
+from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
+from missionfsm.kernel.words import brief
 
 Assumed = tuple[Assumption, ...]
 
@@ -152,16 +153,6 @@ class Seen:
 
     def __str__(self) -> str:
         return brief_value(self.value)
-
-
-@frozen(cache_hash=True)
-class Garbled:
-    """A message that is not of the documented form."""
-
-    says: str
-
-    def __str__(self) -> str:
-        return f"(malformed: {self.says})"
 
 
 @frozen(cache_hash=True)

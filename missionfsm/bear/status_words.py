@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.protojson import brief, camel
+from missionfsm.bear.protojson import camel
 from missionfsm.bear.status import GET, Fleet, Happening, Request
-from missionfsm.bear.status_stream import Garbled, Promised, Seen, View, brief_value
+from missionfsm.bear.status_stream import Promised, Seen, View, brief_value
+from missionfsm.kernel.words import brief
 
 
 def describe(value: object) -> str:
@@ -18,8 +19,6 @@ def describe(value: object) -> str:
         return f"{value.robot}: {_shown(value)}"
     if isinstance(value, Seen):
         return f"{value.robot}: {brief_value(value.value)}"
-    if isinstance(value, Garbled):
-        return f"a malformed message: {value.says}"
     if isinstance(value, Promised):
         return str(value)
     if isinstance(value, Happening):

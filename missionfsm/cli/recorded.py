@@ -121,20 +121,21 @@ class _Judges:
         self._texts = Texts(self._nobody.transcript, fingerprint)
         self._judges: dict[str | None, Judge] = {}
         self._stopped: dict[str | None, int] = {}
-        self._waiting: dict[Judge, int] = {}
+        self._waiting: dict[Judge, int | None] = {}
 
     def _new(self, robot: str | None) -> Judge:
         calls = (self._lost or {}).get(robot, frozenset())
-        return Judge(self._system, self._head, self._automaton, fingerprint=fingerprint, lost=calls, keep=self._keep)
+        automaton, keep = self._automaton, self._keep
+        return Judge(self._system, self._head, automaton, fingerprint=fingerprint, lost=calls, keep=keep, apart=True)
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""
         again, take = self._texts.again, self._nobody.take
-        read_again, looks = not self._keep, self._lost is None
+        read_again, looks, nobody = not self._keep, self._lost is None, self._nobody
         for number, text in numbered:
             try:
                 if looks and not number % LOOK:
-                    self._look()
+                    self._look(nobody)
                 known = again(text) if read_again else None
                 if known is None:
                     self._take(number, text, texts.json(text))
@@ -149,17 +150,18 @@ class _Judges:
         judge = self._judges.get(robot)
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
+        if self._lost is None and robot is not None and not judge.read % LOOK:
+            self._look(judge)
         comes_again = plain and not self._keep
         if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
             self._stopped.setdefault(robot, number)
 
-    def _look(self) -> None:
+    def _look(self, judge: Judge) -> None:
         """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""
-        pending = {judge: judge.transcript.pending for judge in self._judges.values()}
-        waiting = {judge: next(iter(calls)) for judge, calls in pending.items() if calls}
-        if any(self._waiting.get(judge) == call for judge, call in waiting.items()):
+        oldest = next(iter(judge.transcript.pending), None)
+        if oldest is not None and self._waiting.get(judge) == oldest:
             raise _UndecidedError
-        self._waiting = waiting
+        self._waiting[judge] = oldest
 
     def verdicts(self) -> list[tuple[str | None, Verdict]]:
         """What each judge says of its robot, in the order of their first lines."""

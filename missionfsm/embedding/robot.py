@@ -33,11 +33,12 @@ from missionfsm.bear.mission_shown import show
 from missionfsm.bear.mission_status import Listing, listing
 from missionfsm.bear.mission_system import SYSTEM
 from missionfsm.bear.mission_words import describe
-from missionfsm.bear.protojson import brief, camel, read, write
+from missionfsm.bear.protojson import camel, read, write
 from missionfsm.embedding.errors import error
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.rules import OK
+from missionfsm.kernel.words import brief
 from missionfsm.tools.model import Model, Reply, Sent, Snapshot
 
 _USUAL = World()

@@ -24,7 +24,7 @@ from missionfsm.isaac.wire import decode_line, encode
 from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
-from missionfsm.kernel.transcript import brief
+from missionfsm.kernel.words import brief
 
 NAME_CHANNEL = "name"
 MISSION_CHANNEL = "mission"

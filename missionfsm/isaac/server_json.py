@@ -22,7 +22,7 @@ from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.transcript import brief
+from missionfsm.kernel.words import brief
 
 _KEYS = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
 _BUFFERS = "type"

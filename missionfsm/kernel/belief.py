@@ -8,6 +8,7 @@ the order in which the explanations mention them, so that the same situation wit
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Hashable, Iterable
 from typing import Any
 
@@ -31,6 +32,8 @@ from missionfsm.kernel.readings import ANYTHING
 from missionfsm.kernel.sifting import surviving_names
 from missionfsm.kernel.spec import Spec
 
+Tally = defaultdict[int, int]
+"""How often which set of rules was exercised; an automaton numbers the sets."""
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
 REMEMBERED = 100_000
@@ -56,21 +59,19 @@ class Edge:
     Attributes:
         keep: for every name of the next node its number before (new names count on from the width); None: unchanged.
         retired: numbers of names that are gone for good.
-        rules: ids of the rules that were exercised.
+        exercises: which rules it exercises, as the automaton numbers such sets.
         touched: the bits of the ambiguities on which this event's explanations depend.
         appends: whether nothing becomes of the names before but that others follow them.
         cuts: whether nothing becomes of the names but that the last ones are left out.
-        walked: how often.
     """
 
     node: Node
     keep: tuple[int, ...] | None
     retired: tuple[int, ...]
-    rules: tuple[str, ...]
+    exercises: int
     touched: int
     appends: bool = False
     cuts: bool = False
-    walked: int = 0
 
 
 class Automaton:
@@ -80,6 +81,9 @@ class Automaton:
         spec: the system.
         driven: names of the drives that a tester commands.
         assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
+
+    Attributes:
+        tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
     """
 
     def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
@@ -88,8 +92,9 @@ class Automaton:
         self.moves = Moves(spec, driven, assumed)
         self.oracle = Oracle(self.moves)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
-        self._edges: list[Edge] = []
-        self._times: dict[str, int] = {}
+        self._edges = 0
+        self._rules: dict[tuple[str, ...], int] = {}
+        self.tally: Tally = defaultdict(int)
 
     def start(self, world: object) -> Node:
         """The node in which a fresh instance in this world is."""
@@ -106,12 +111,11 @@ class Automaton:
         return node
 
     def _start_over(self) -> None:
-        """Forget everything but how often the rules were exercised."""
-        self._times = self.exercised
+        """Forget everything but what the rules are that were exercised."""
         for node in self._nodes.values():
             node.next.clear()
         self._nodes.clear()
-        self._edges.clear()
+        self._edges = 0
         self.moves.forget()
 
     def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
@@ -129,17 +133,18 @@ class Automaton:
         keep = tuple(new)
         touched = self._touched({one.assumed for one in node.explanations}, {one.assumed for one in explanations})
         in_order = keep == tuple(range(len(keep)))
+        rules = tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules))
         edge = Edge(
             next_node,
             None if in_order and len(keep) == node.width and not retired else keep,
             retired,
-            tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules)),
+            self._rules.setdefault(rules, len(self._rules)),
             touched,
             len(keep) > node.width and in_order and not retired,
             len(keep) < node.width and in_order and not retired,
         )
         node.next[symbol] = edge
-        self._edges.append(edge)
+        self._edges += 1
         return edge
 
     def _touched(self, before: set[int], after: set[int]) -> int:
@@ -151,20 +156,18 @@ class Automaton:
                     touched |= ambiguity.group
         return touched
 
-    @property
-    def exercised(self) -> dict[str, int]:
-        """How often each rule was exercised by all beliefs that walked here."""
-        times = dict(self._times)
-        for edge in self._edges:
-            if edge.walked:
-                for rule in edge.rules:
-                    times[rule] = times.get(rule, 0) + edge.walked
+    def exercised(self, tally: Tally | None = None) -> dict[str, int]:
+        """How often each rule was exercised, by a tally of beliefs that walked here; by the automaton's own if none."""
+        sets, times = tuple(self._rules), dict[str, int]()
+        for number, walked in (self.tally if tally is None else tally).items():
+            for rule in sets[number]:
+                times[rule] = times.get(rule, 0) + walked
         return times
 
     @property
     def size(self) -> tuple[int, int]:
         """How many nodes and edges have been built."""
-        return len(self._nodes), len(self._edges)
+        return len(self._nodes), self._edges
 
 
 class Belief:
@@ -172,6 +175,11 @@ class Belief:
 
     ``observe`` returns False once no explanation is left; from then on it stays so, and `node` is the last one that
     had explanations.
+
+    Args:
+        automaton: the automaton that it walks.
+        world: where it begins.
+        tally: counts what is exercised; the automaton's own if none.
     """
 
     __slots__ = (
@@ -181,14 +189,16 @@ class Belief:
         "_numbers",
         "_renumbered",
         "_retired",
+        "_tally",
         "automaton",
         "broken",
         "node",
         "touched",
     )
 
-    def __init__(self, automaton: Automaton, world: object) -> None:
+    def __init__(self, automaton: Automaton, world: object, tally: Tally | None = None) -> None:
         self.automaton = automaton
+        self._tally = automaton.tally if tally is None else tally
         self.node = automaton.start(world)
         self.broken = False
         self.touched = 0
@@ -214,7 +224,7 @@ class Belief:
         edge = self.node.next.get(symbol)
         if edge is None:
             edge = self.automaton.edge(self.node, symbol)
-        edge.walked += 1
+        self._tally[edge.exercises] += 1
         if not edge.node.explanations:
             self.broken = True
             return False
@@ -228,7 +238,7 @@ class Belief:
             self._start_over(event.event)  # type: ignore[union-attr]
         elif kind is Cancelled:
             self._given_up[event.channel] = None  # type: ignore[union-attr]
-            self._marks.pop(event.channel, None)  # type: ignore[union-attr]
+            self._unmark(event.channel)  # type: ignore[union-attr]
             if len(self._given_up) > REMEMBERED:
                 del self._given_up[next(iter(self._given_up))]
         return True
@@ -306,6 +316,12 @@ class Belief:
                 self._renumbered.discard((channel, track))
             tracks[track] = number
 
+    def _unmark(self, channel: Name) -> None:
+        """A channel numbers nothing any more."""
+        if self._renumbered:
+            self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
+        self._marks.pop(channel, None)
+
     def _start_over(self, event: Any) -> None:  # noqa: ANN401 - a drive's event
         renumbers = self.automaton.spec.drives[event.name].renumbers
         for track in renumbers(event) if renumbers else ():
@@ -329,7 +345,7 @@ class Belief:
 
     def _retire(self, name: Name) -> None:
         self._retired[name] = None
-        self._marks.pop(name, None)
+        self._unmark(name)
         if len(self._retired) > REMEMBERED:
             del self._retired[next(iter(self._retired))]
 

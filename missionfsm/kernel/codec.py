@@ -17,7 +17,7 @@ class UnreadableError(ValueError):
     """Something that was to be read is not what it should be; the message says what is wrong and where."""
 
 
-@frozen
+@frozen(cache_hash=True)
 class Garbled:
     """What an implementation sent in the place of a documented result or message; nothing explains it."""
 

@@ -263,7 +263,7 @@ class Moves:
 
     def outdone(self, seen: Seen, explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
-        self._spend()
+        self.spend()
         key = point(explanation)
         others = seen.setdefault(key, [])
         for assumed, left in others:
@@ -272,7 +272,8 @@ class Moves:
         others.append((explanation.assumed, explanation.lost))
         return False
 
-    def _spend(self) -> None:
+    def spend(self) -> None:
+        """Count one thing more that was looked at. Raises ExhaustedError when it is too many for one event."""
         self._spent += 1
         if self._spent > self.budget:
             raise ExhaustedError

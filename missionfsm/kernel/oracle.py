@@ -121,12 +121,12 @@ class Oracle:
         if call.done:
             for match in self.moves.agreements(call.done.answer, answer):
                 assumed = meet(rest.assumed, match.assumes)
-                for bound in _bindings(rest, answer, call.done.names, names) if assumed else ():
+                for bound in self._bound(rest, answer, call.done.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), match.rules
         for ready in call.ready:
             for match in self.moves.agreements(ready.answer, answer):
                 assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
-                for bound in _bindings(rest, answer, ready.names, names) if assumed else ():
+                for bound in self._bound(rest, answer, ready.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), ready.rules + match.rules
         if call.done:
             return
@@ -146,8 +146,22 @@ class Oracle:
         lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
         taken = self.moves.advance(where.but(lost=lost, assumed=assumed), step)
         if taken:
-            for bound in _bindings(taken[0], answer, taken[1], names):
+            for bound in self._bound(taken[0], answer, taken[1], names):
                 yield bound, step.rules + match.rules
+
+    def _bound(self, explanation: Explanation, answer: Answer, own: Names, observed: Names) -> Iterator[Explanation]:
+        """The explanation with the names of an answer, in every way in which they can be ours.
+
+        In an unordered answer those that are known go together; of the others, any can be any. Where nothing else
+        mentions ours, though, which is which makes no difference.
+        """
+        if len(own) != len(observed):
+            return
+        for pairs in _pairings(explanation, own, observed) if answer.unordered else (zip(own, observed, strict=True),):
+            self.moves.spend()
+            bound = unify(explanation, pairs)
+            if bound:
+                yield bound
 
     def _received(
         self,
@@ -375,33 +389,22 @@ def _channel_names(explanation: Explanation) -> set[int]:
     return {channel.name for channel in explanation.channels}
 
 
-def _bindings(explanation: Explanation, answer: Answer, own: Names, observed: Names) -> Iterator[Explanation]:
-    """The explanation with the names of an answer, in every way in which they can be ours.
-
-    In an unordered answer those that are known go together; of the others, any can be any. Where nothing else mentions
-    ours, though, which is which makes no difference.
-    """
-    if len(own) != len(observed):
+def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator[list[tuple[int, int]]]:
+    """The pairs of names that an unordered answer may mean."""
+    shared = [name for name in own if name in observed]
+    left, free = ([name for name in names if name not in shared] for names in (own, observed))
+    if max(left, default=GONE - 1) >= GONE or len(left) != len(free):
         return
-    if answer.unordered:
-        shared = [name for name in own if name in observed]
-        left, free = ([name for name in names if name not in shared] for names in (own, observed))
-        told = [name for name in left if name in set(mentioned(explanation))] if len(left) > 1 else []
-        rest = [name for name in left if name not in told]
-        ways = (
-            [
-                *zip(shared, shared, strict=True),
-                *zip(told, some, strict=True),
-                *zip(rest, (name for name in free if name not in some), strict=False),
-            ]
-            for some in (itertools.permutations(free, len(told)) if max(left, default=-2) < GONE else ())
-        )
-    else:
-        ways = iter([list(zip(own, observed, strict=True))])  # type: ignore[assignment]
-    for pairs in ways:
-        bound = unify(explanation, pairs)
-        if bound:
-            yield bound
+    elsewhere = set(mentioned(explanation)) if len(left) > 1 else set()
+    told = [name for name in left if name in elsewhere]
+    rest = [name for name in left if name not in elsewhere]
+    for some in itertools.permutations(free, len(told)):
+        others = (name for name in free if name not in some)
+        yield [
+            *zip(shared, shared, strict=True),
+            *zip(told, some, strict=True),
+            *zip(rest, others, strict=True),
+        ]
 
 
 _OBSERVERS: dict[type, Callable[..., Iterator[Sighting]]] = {

@@ -1,6 +1,6 @@
 """Where a document can be read in more than one way, and what an execution has assumed so far.
 
-An `Ambiguity` is a question that the documents leave open; its `Reading`s are the answers that a sensible
+An `Ambiguity` is a question that the documents leave open; its readings are the answers that a sensible
 implementation may give. What an execution has assumed is one integer, a set of bits with one bit for every reading
 that is *still possible*: assuming something clears bits, and an execution whose question has no reading left is
 impossible. Sets of readings ("b or c") are therefore assumed as cheaply as single ones, and two executions that

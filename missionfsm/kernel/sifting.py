@@ -74,6 +74,6 @@ def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:
     """
     explanations = tuple(explanations)
     seen = dict.fromkeys(name for one in explanations for name in mentioned(one) if name > GONE)
-    outlasted = (name for one in explanations for name in one.gone)
-    seen.update(dict.fromkeys(name for name in outlasted if not all(name in one.gone for one in explanations)))
+    everywhere = set.intersection(*(set(one.gone) for one in explanations)) if explanations else set()
+    seen.update(dict.fromkeys(name for one in explanations for name in one.gone if name not in everywhere))
     return {name: number for number, name in enumerate(seen)}

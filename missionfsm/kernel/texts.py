@@ -84,7 +84,7 @@ class Texts:
 
     def _message(self, text: bytes) -> tuple[Event, ...] | None:
         end = text.find(b",")
-        if not _is_number(text[10:end]) or not text.startswith(_MESSAGE, end):
+        if not _is_number(text[10:end]) or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
             return None
         skimmed = self._skim(text[end + 11 : -1])
         if skimmed is None:

@@ -25,6 +25,7 @@ from missionfsm.kernel.history import (
     Settled,
 )
 from missionfsm.kernel.rules import OK, STATUS_NUMBERS
+from missionfsm.kernel.words import brief
 
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
@@ -63,12 +64,6 @@ class Head:
     drives: tuple[str, ...] = ()
 
 
-def brief(value: object) -> str:
-    """A value as an error message shows it: never long."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
 def _wrong(says: str) -> UnreadableError:
     return UnreadableError(says)
 
@@ -84,7 +79,7 @@ class Ids:
 
     def __init__(self) -> None:
         self._blocks: dict[int, int] = {}
-        self._next = 1  # all from 1 up to this one are in the set: most clients count
+        self._next = 1  # all from 1 up to, but not with, this one are in the set: most clients count
 
     def add(self, number: int) -> bool:
         """Add a number; whether it is new."""

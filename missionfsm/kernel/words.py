@@ -6,6 +6,12 @@ LONGEST = 2000
 """Characters that a line has room for."""
 
 
+def brief(value: object) -> str:
+    """A value as an error message shows it: never long."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
 def printable(text: str) -> str:
     """The text without what a terminal would obey: names come from the network."""
     if text.isprintable():

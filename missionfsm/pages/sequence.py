@@ -12,7 +12,8 @@ from attrs import evolve, frozen
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event
 from missionfsm.kernel.system import System
-from missionfsm.kernel.transcript import Transcript, brief
+from missionfsm.kernel.transcript import Transcript
+from missionfsm.kernel.words import brief
 from missionfsm.tools.explain import event_words, name_words
 
 SHOWN = 60

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
 from attrs import evolve
 
-from missionfsm.kernel.belief import Automaton, Belief
+from missionfsm.kernel.belief import Automaton, Belief, Tally
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.moves import ExhaustedError
@@ -32,8 +32,10 @@ class Judge:
         system: the system.
         head: the first line of the history.
         automaton: a belief automaton to walk; its own is made where none is given. Sharing one makes many judges fast.
+        readings: the readings to assume, in an automaton of its own.
         fingerprint, lost: see `missionfsm.kernel.transcript.Transcript`.
         keep: how many lines are kept to be shown.
+        apart: whether what is exercised is counted apart from what other judges see who share the automaton.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
@@ -51,6 +53,7 @@ class Judge:
         fingerprint: Callable[[JSON], Hashable] = repr,
         lost: frozenset[int] = frozenset(),
         keep: int = KEPT,
+        apart: bool = False,
     ) -> None:
         self.system = system
         self.head = head
@@ -61,7 +64,8 @@ class Judge:
         self.automaton = automaton or Automaton(
             system.spec, head.drives, constrain(system.spec.ambiguities, readings or {})
         )
-        self.belief = Belief(self.automaton, system.codec.world(head.world))
+        self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
+        self.belief = Belief(self.automaton, system.codec.world(head.world), self._tally)
         self.rulings = Rulings(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost)
@@ -82,14 +86,15 @@ class Judge:
             UnreadableError: the line is not of the format.
         """
         events = self.transcript.read(line)
-        self.lines.append(line)
+        if self.right:
+            self.lines.append(line)
         return self.take(events)
 
     def take(self, events: tuple[Event, ...]) -> bool:
         """Take the events of a line into account that was read already and need not be shown; see `feed`."""
-        self.read += 1
         if not self.right:
             return False
+        self.read += 1
         belief = self.belief
         for event in events:
             self.events += 1
@@ -126,20 +131,20 @@ class Judge:
 
     def verdict(self) -> Verdict:
         """The judgement of what was fed so far."""
-        outcome, because = Outcome.CONFORMS, ""
+        outcome, because, exercised = Outcome.CONFORMS, "", self.exercised
         if self._unexplained is not None:
             outcome = Outcome.VIOLATES
         elif self.exhausted:
             outcome, because = Outcome.INCONCLUSIVE, f"event {self.events} has too many explanations to decide"
-        elif not self.exercised:
+        elif not exercised:
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
         return Verdict(
             outcome,
             self.system.name,
             events=self.events,
             readings=self.belief.readings,
-            exercised=self.exercised,
-            uncovered=uncovered(self.system.spec, self.exercised, self.belief.readings),
+            exercised=exercised,
+            uncovered=uncovered(self.system.spec, exercised, self.belief.readings),
             violation=self.violation,
             because=because,
             flagged=flagged(self.system.spec, self.belief.readings),
@@ -148,8 +153,8 @@ class Judge:
 
     @property
     def exercised(self) -> dict[str, int]:
-        """How often each rule was exercised in the automaton that is walked."""
-        return self.automaton.exercised
+        """How often each rule was exercised: here, or by all that walk the automaton."""
+        return self.automaton.exercised(self._tally)
 
 
 def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
@@ -163,9 +168,10 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 
 
 def flagged(spec: Spec, readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """The readings followed for certain that depart from the letter of the text."""
+    """Where the letter of the text is departed from for certain: the readings that may be followed there."""
     return tuple(
-        f"{ambiguity.id}={letters[0]}: {ambiguity.question} {ambiguity.readings[letters[0]]}"
+        f"{ambiguity.id}={'|'.join(letters)}: {ambiguity.question} "
+        + "; or: ".join(ambiguity.readings[letter] for letter in letters)
         for ambiguity in spec.ambiguities
         if (letters := readings.get(ambiguity.id, ())) and set(letters) <= ambiguity.flagged
     )

@@ -6,7 +6,7 @@ the same list makes sense with a fresh instance, and with some of its actions le
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from typing import TypeVar
 
 from attrs import frozen
@@ -17,7 +17,8 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.subject import Exchange, GibberishError, Notification, Subject, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.transcript import STREAM_KEYS, Head, brief
+from missionfsm.kernel.transcript import STREAM_KEYS, Head
+from missionfsm.kernel.words import brief
 from missionfsm.tools.check import Judge
 from missionfsm.tools.picking import fill, is_template
 
@@ -230,11 +231,3 @@ def _heard(read: Callable[..., _Read], *sent: JSON) -> _Read:
     except UnreadableError as error:
         message = f"the adapter sent what cannot be read: {error}"
         raise GibberishError(message) from None
-
-
-def simplest_first(params: Iterable[JSON]) -> list[JSON]:
-    """JSON values, the ones with the shortest text first."""
-    return sorted(params, key=lambda one: len(repr(one)))
-
-
-Worlds = Mapping[str, JSON]

@@ -43,7 +43,7 @@ SCOPES = (
     Scope(Bounds(missions=2, goals=2, batch=2), worlds=3, follows_all=False),
 )
 TIMED = (Scope(Bounds(missions=1)),)
-"""Those for systems with clocks, which make many states of one (see `Spec.outline`)."""
+"""Those for systems with clocks, which make many states of one (see `Abstraction.outline`)."""
 
 Assumed = tuple[Assumption, ...]
 Options = frozenset[Assumed]

@@ -168,7 +168,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     """Every state whose extent is `most` or less (see `Spec.extent`).
 
     Args:
-        forget_ended: what has ended is only counted, where the system can (see `Spec.forget_ended`).
+        forget_ended: what has ended is only counted, where the system can (see `Abstraction.forget_ended`).
     """
     if spec.abstraction.shortcut:
         events = [event for event, _ in labels.events]

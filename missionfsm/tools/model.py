@@ -18,6 +18,9 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 
+REMEMBERED = 1_000
+"""How many steps a model remembers; states that list all that has ended are large."""
+
 
 @frozen
 class Open:
@@ -153,6 +156,8 @@ class Model:
             if step is None:
                 message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
                 raise AssertionError(message)
+            if len(self._chosen) >= REMEMBERED:
+                self._chosen.clear()
             self._chosen[key] = step
         return step
 

@@ -143,7 +143,7 @@ class Run:
         times = dict(self._before)
         for automaton in (self.automaton, self.narrowed):
             if automaton is not None and automaton is not besides:
-                for rule, count in automaton.exercised.items():
+                for rule, count in automaton.exercised().items():
                     times[rule] = times.get(rule, 0) + count
         return times
 

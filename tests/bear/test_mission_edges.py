@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import orjson
 import pytest
 
 from missionfsm.cli.recorded import check_file
+from missionfsm.kernel.codec import JSON
+from missionfsm.tools.verdict import Outcome, Verdict
 
 EDGES = Path(__file__).parent / "edges"
 
@@ -16,3 +19,49 @@ def test_the_history_is_judged_right(path: Path) -> None:
     """What some consistent choice of readings explains conforms; the rest violates."""
     ((_, verdict),) = check_file(str(path))
     assert verdict.outcome.value == f"{path.parent.name}s"
+
+
+def judged(tmp_path: Path, *lines: JSON) -> Verdict:
+    """The verdict on lines about a Servi robot of which nothing is driven."""
+    path = tmp_path / "log.jsonl"
+    first = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}}
+    path.write_bytes(b"\n".join(map(orjson.dumps, (first, *lines))))
+    ((_, verdict),) = check_file(str(path))
+    return verdict
+
+
+BASE = {"navigateAutoMission": {"goals": [{"destinationId": "table-1"}, {"destinationId": "table-2"}]}}
+MISSIONS = {
+    "that select a goal": {"baseMission": BASE},
+    "with a destination that is missing": {"baseMission": {"navigateMission": {"goal": {"destinationId": "nowhere"}}}},
+    "of another family, too": {"cartiMission": {"traverseMission": {"goals": [{"destinationId": "nowhere"}]}}},
+}
+
+
+@pytest.mark.parametrize(
+    ("of", "taken"),
+    [(of, taken) for of in MISSIONS for taken in (True, False) if taken or of != "that select a goal"],
+)
+def test_a_batch_may_be_long(tmp_path: Path, of: str, *, taken: bool) -> None:
+    """All missions of a batch follow the same readings, so that many are no more ways than one."""
+    missions = [{"mission": MISSIONS[of]}] * 300
+    ids = [f"m-{number}" for number in range(300)]
+    answer = {"result": {"missionIds": ids}} if taken else {"error": {"status": "INVALID_ARGUMENT"}}
+    create = {"call": 1, "method": "CreateMissionBatch", "params": {"missions": missions}}
+    assert judged(tmp_path, create, {"return": 1, **answer}).conforms
+
+
+@pytest.mark.parametrize(("count", "outcome"), [(3, Outcome.CONFORMS), (12, Outcome.INCONCLUSIVE)])
+def test_too_many_ways_to_name_missions_are_given_up(tmp_path: Path, count: int, outcome: Outcome) -> None:
+    """What is cleared and was never named can be any of the missions that a lost batch created, in any order."""
+    goal = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    verdict = judged(
+        tmp_path,
+        {"call": 1, "method": "SubscribeMissionStatus"},
+        {"return": 1, "result": {"stream": 1}},
+        {"call": 2, "method": "CreateMissionBatch", "params": {"missions": [goal] * count}},
+        {"return": 2, "error": {"status": "DEADLINE_EXCEEDED"}},
+        {"call": 3, "method": "ClearMissionStatus"},
+        {"return": 3, "result": {"missionIds": [f"m-{number}" for number in range(count)]}},
+    )
+    assert verdict.outcome is outcome

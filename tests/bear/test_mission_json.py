@@ -10,10 +10,9 @@ from missionfsm.bear.messages import Command, Goal, Pose
 from missionfsm.bear.mission import Family, Fault, Kind, World
 from missionfsm.bear.mission_happenings import Happening
 from missionfsm.bear.mission_requests import Defect, Request, Wanted
-from missionfsm.bear.mission_status import Garbled, Seen
-from missionfsm.kernel import codec
+from missionfsm.bear.mission_status import Seen
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.codec import JSON, Garbled, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.rules import OK
 from missionfsm.systems import system
@@ -170,17 +169,17 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
         ("ClearMissionStatus", {"missionIds": ["a"]}, Answer(OK, unordered=True), ("a",)),
         ("UpdateMission", {}, Answer(OK), ()),
         ("SubscribeMissionStatus", {"stream": 3}, Answer(OK), (("stream", 3),)),
-        ("CreateMission", {}, Answer(OK, codec.Garbled("a mission id is missing")), ()),
-        ("CreateMission", {"missionId": ""}, Answer(OK, codec.Garbled("a mission id is missing")), ()),
-        ("CreateMission", {"missionId": 7}, Answer(OK, codec.Garbled("missionId: 7 is not a text")), ()),
-        ("CreateMission", "m", Answer(OK, codec.Garbled("the message: 'm' is not an object")), ()),
+        ("CreateMission", {}, Answer(OK, Garbled("a mission id is missing")), ()),
+        ("CreateMission", {"missionId": ""}, Answer(OK, Garbled("a mission id is missing")), ()),
+        ("CreateMission", {"missionId": 7}, Answer(OK, Garbled("missionId: 7 is not a text")), ()),
+        ("CreateMission", "m", Answer(OK, Garbled("the message: 'm' is not an object")), ()),
         (
             "ClearMissionStatus",
             {"missionIds": ["a", None]},
-            Answer(OK, codec.Garbled("missionIds[1]: None is not a text"), unordered=True),
+            Answer(OK, Garbled("missionIds[1]: None is not a text"), unordered=True),
             (),
         ),
-        ("UpdateMission", [], Answer(OK, codec.Garbled("the message: [] is not an object")), ()),
+        ("UpdateMission", [], Answer(OK, Garbled("the message: [] is not an object")), ()),
     ],
 )
 def test_an_answer_is_read(method: str, result: JSON, answer: Answer, names: tuple[Any, ...]) -> None:

@@ -13,9 +13,10 @@ from missionfsm.bear.status import Endpoint
 from missionfsm.bear.status_json import CODEC
 from missionfsm.bear.status_monitor import StreamMonitor, watch
 from missionfsm.bear.status_spec import SPEC
-from missionfsm.bear.status_stream import Garbled, Seen, View, matches
+from missionfsm.bear.status_stream import Seen, View, matches
 from missionfsm.bear.status_values import CHECKS
 from missionfsm.kernel.belief import Automaton
+from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.spec import Mismatch
 
 BATTERY, NAVIGATION, NETWORK = "SubscribeBatteryStatus", "SubscribeNavigationStatus", "SubscribeNetworkStatus"

@@ -135,4 +135,4 @@ def test_rules_are_counted_as_often_as_they_were_exercised() -> None:
     automaton = Automaton(BUTTONS)
     pressed((("button", 0), "a"), (("button", 0), "a"), automaton=automaton)
     pressed((("button", 0), "a"), (("button", 1), "b"), automaton=automaton)
-    assert automaton.exercised == {"says-a": 3, "says-b": 1}
+    assert automaton.exercised() == {"says-a": 3, "says-b": 1}

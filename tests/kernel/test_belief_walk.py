@@ -100,7 +100,7 @@ def test_an_automaton_that_starts_over_decides_the_same(monkeypatch: pytest.Monk
     expected = walk(roomy, 2)
     monkeypatch.setattr(belief, "NODES", 50)
     found = walk(tight, 2)
-    assert (found, tight.exercised) == (expected, roomy.exercised)
+    assert (found, tight.exercised()) == (expected, roomy.exercised())
     assert max(tight.size) < 150
 
 
@@ -137,7 +137,7 @@ sys.path.insert(0, sys.argv[1])
 from test_belief_walk import SYSTEM, walk
 from missionfsm.kernel.belief import Automaton
 automaton = Automaton(SYSTEM.spec)
-print(walk(automaton, 3, 250), automaton.size, sorted(automaton.exercised.items()))
+print(walk(automaton, 3, 250), automaton.size, sorted(automaton.exercised().items()))
 """
 
 

@@ -15,7 +15,7 @@ from missionfsm.kernel.transcript import REMEMBERED, Transcript
 
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
 """How nearly all lines begin that call, return or show a message."""
-_MOST_DIGITS = 19
+_MOST_DIGITS, _ZERO = 19, ord("0")
 _NOBODY: tuple[Name, ...] = ()
 FORMS = 100
 """How many different texts around a name are remembered."""
@@ -40,6 +40,7 @@ class Texts:
         self._write = write
         self._skim = transcript.codec.skim
         self._pending = transcript.pending
+        self._begins, self._sends, self._answers_to = transcript.begins, transcript.sends, transcript.answers
         self._calls: dict[bytes, tuple[str, Any]] = {}
         self._answers: dict[tuple[str | None, bytes], Answer] = {}
         self._others: dict[bytes, tuple[Event, ...]] = {}
@@ -62,29 +63,29 @@ class Texts:
             called = self._calls.get(rest)
             if called is None:
                 called, names = self._called.find(None, rest)
-            if called is None or not _is_number(text[8:end]):
+            number = _number(text[8:end])
+            if called is None or not number:
                 return None
-            number, (method, request) = int(text[8:end]), called
-            self._transcript.begins(number)
-            return self._transcript.sends(number, method, request, names)
+            method, request = called
+            self._begins(number)
+            return self._sends(number, method, request, names)
         if text.startswith(_RETURN):
             end = text.find(b",")
-            if not _is_number(text[10:end]):
-                return None
-            number = int(text[10:end])
-            waiting = self._pending.get(number)
+            number = _number(text[10:end])
+            waiting = self._pending.get(number) if number else None
             if waiting is None:
                 return None
             rest, names = text[end:], _NOBODY
             answer = self._answers.get((waiting[0], rest))
             if answer is None:
                 answer, names = self._answered.find(waiting[0], rest)
-            return None if answer is None else self._transcript.answers(number, answer, names)
+            return None if answer is None else self._answers_to(number, answer, names)
         return self._others.get(text)
 
     def _message(self, text: bytes) -> tuple[Event, ...] | None:
         end = text.find(b",")
-        if not _is_number(text[10:end]) or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
+        number = _number(text[10:end])
+        if not number or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
             return None
         skimmed = self._skim(text[end + 11 : -1])
         if skimmed is None:
@@ -98,7 +99,7 @@ class Texts:
             names = tuple(map(self._name, found))
             if None in names:
                 return None
-        return (Received(("stream", int(text[10:end])), content, names, marks),)
+        return (Received(("stream", number), content, names, marks),)
 
     def _name(self, written: bytes) -> Name | None:
         """The name that is written so; None unless it is written just as it is."""
@@ -194,9 +195,9 @@ def _rest(text: bytes, begins: bytes, number: int) -> bytes:
     return rest if usual else b""
 
 
-def _is_number(digits: bytes) -> bool:
-    """Whether digits are a number as nearly all are written: positive, and not too long for JSON."""
-    return digits.isdigit() and digits[0] != ord("0") and len(digits) < _MOST_DIGITS
+def _number(digits: bytes) -> int:
+    """The number that is written as nearly all are, positive and not too long for JSON; 0 where it is not."""
+    return int(digits) if digits.isdigit() and len(digits) < _MOST_DIGITS and digits[0] != _ZERO else 0
 
 
 __all__ = ["Texts"]

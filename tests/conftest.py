@@ -1,4 +1,4 @@
-"""What several tests need: the command line in this process."""
+"""What several tests need: the command line in this process, and that no slow machine fails a test."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ import sys
 
 import pytest
 from commandline import CommandLine, Ended
+from hypothesis import HealthCheck, settings
 
 from missionfsm.cli import main
+
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 
 @pytest.fixture

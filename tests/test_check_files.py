@@ -366,6 +366,33 @@ def test_a_file_that_is_called_like_stdin_is_not_read(
     assert "inconclusive" in ended.out
 
 
+def test_an_id_that_comes_again_is_told_where_it_does(command_line: CommandLine, tmp_path: Path) -> None:
+    """Also where other calls have no answer, so that the file is looked through for such."""
+    refused = {"error": {"status": "FAILED_PRECONDITION"}}
+    answered = [
+        line
+        for number in range(2, 30)
+        for line in ({"call": number, "method": "SkipGoal"}, {"return": number, **refused})
+    ]
+    lost, again = {"call": 1, "method": "ClearMissionStatus"}, {"call": 5, "method": "SkipGoal"}
+    path = write(tmp_path / "log.jsonl", [orjson.loads(FIRST), lost, *answered, again])
+    ended = command_line("check", path)
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err == f"missionfsm: {path}:59: call 5 was sent before; ids are unique within a file\n"
+
+
+def test_a_key_may_be_written_with_escapes(command_line: CommandLine, tmp_path: Path) -> None:
+    """An answer is one however its keys are written; and a key that comes twice is the last, as in any JSON."""
+    escaped = '{"r\\u0065turn":2,"error":{"status":"FAILED_PRECONDITION"}}'
+    twice = '{"call":%d,"method":"SkipGoal","params":{},"c\\u0061ll":2}'
+    lost = ['{"call":1,"method":"ClearMissionStatus"}', '{"call":2,"method":"SkipGoal"}', *['{"settled":true}'] * 40]
+    path = tmp_path / "log.jsonl"
+    path.write_text("\n".join((FIRST, *lost, escaped)))
+    assert command_line("check", path).err == ""
+    path.write_text("\n".join((FIRST, twice % 2, escaped, twice % 3)))
+    assert "call 2 was sent before" in command_line("check", path).err
+
+
 def test_a_line_is_malformed_whatever_came_before(command_line: CommandLine, tmp_path: Path) -> None:
     """Also one that only in its last byte differs from a line that is known."""
     shown = '{"missionStates":{"missions":[],"currentMissionIndex":-1}}'

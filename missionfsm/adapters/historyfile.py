@@ -17,6 +17,7 @@ from attrs import field, frozen
 
 from missionfsm.adapters.jsonlines import CutShortError, loads
 from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.transcript import Ids
 
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024
@@ -153,25 +154,28 @@ def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
     """
     waiting: dict[str | None, set[int]] = {}
+    sent: dict[str | None, Ids] = {}
     with open_history(path) as source:
         try:
             for _, found, _ in _chunks(source, path):
-                _follow(found, waiting)
+                _follow(found, waiting, sent)
         except (orjson.JSONDecodeError, UnreadableError, TypeError, AttributeError):
             return {}
     return {robot: frozenset(calls) for robot, calls in waiting.items()}
 
 
-def _follow(found: list[bytes], waiting: dict[str | None, set[int]]) -> None:
-    """Take the calls and the returns of some lines into account."""
+def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, Ids]) -> None:
+    """Take the calls and the returns of some lines into account. Raises UnreadableError if an id comes twice."""
     for line in found:
-        if b'"call"' not in line and b'"return"' not in line:
+        if b'"call"' not in line and b'"return"' not in line and b"\\u" not in line:
             continue
         one = orjson.loads(line)
         if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
             continue
         known = waiting.setdefault(one.get("robot"), set())
         if "call" in one:
+            if not sent.setdefault(one.get("robot"), Ids()).add(one["call"]):
+                raise UnreadableError("an id that was sent before")
             known.add(one["call"])
         else:
             known.discard(one["return"])

@@ -123,7 +123,9 @@ def mission_succeeded(robot: Situation) -> Iterable[Way]:
 
 
 def _cannot_arrive(world: World, mission: Mission) -> bool:
-    """Whether a mission that fails on the way is at a goal that it cannot reach."""
+    """Whether a mission is bound to fail when it is started, or fails on the way and is at a goal that is not there."""
+    if mission.doomed:
+        return is_foreign(world, mission.kind) or is_missing(world, mission.goals)
     return mission.hopeless and (
         is_foreign(world, mission.kind) or is_missing(world, mission.goals[mission.goal : mission.goal + 1])
     )

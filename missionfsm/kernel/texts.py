@@ -191,7 +191,12 @@ def _rest(text: bytes, begins: bytes, number: int) -> bytes:
     """What comes after the number of a line; empty if the line is written in another way, or has the key twice."""
     end = text.find(b",")
     rest = text[end:]
-    usual = text.startswith(begins) and text[len(begins) : end] == b"%d" % number and begins[1:-1] not in rest
+    usual = (
+        text.startswith(begins)
+        and text[len(begins) : end] == b"%d" % number
+        and begins[1:-1] not in rest
+        and b"\\" not in rest
+    )
     return rest if usual else b""
 
 

@@ -205,7 +205,7 @@ class Transcript:
         names: tuple[Name, ...],
     ) -> tuple[Event, ...]:
         """The event of a call that has begun and whose params are known."""
-        if number in self._lost:
+        if number in self._lost and method not in self.codec.streams:  # what a stream shows tells that it was opened
             return (Called(("call", number), request, names, lost=True),)
         self._open[number] = method, request
         return (Called(("call", number), request, names),)

@@ -124,11 +124,10 @@ def mission_succeeded(robot: Situation) -> Iterable[Way]:
 
 def _cannot_arrive(world: World, mission: Mission) -> bool:
     """Whether a mission is bound to fail when it is started, or fails on the way and is at a goal that is not there."""
-    if mission.doomed:
-        return is_foreign(world, mission.kind) or is_missing(world, mission.goals)
-    return mission.hopeless and (
-        is_foreign(world, mission.kind) or is_missing(world, mission.goals[mission.goal : mission.goal + 1])
-    )
+    if not (mission.doomed or mission.hopeless):
+        return False
+    goals = mission.goals if mission.doomed else mission.goals[mission.goal : mission.goal + 1]
+    return is_foreign(world, mission.kind) or is_missing(world, goals)
 
 
 def mission_failed(robot: Situation) -> Iterable[Way]:

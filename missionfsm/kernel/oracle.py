@@ -390,10 +390,10 @@ def _channel_names(explanation: Explanation) -> set[int]:
 
 
 def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator[list[tuple[int, int]]]:
-    """The pairs of names that an unordered answer may mean."""
+    """The pairs of names that an unordered answer may mean; none where it says one twice."""
     shared = [name for name in own if name in observed]
     left, free = ([name for name in names if name not in shared] for names in (own, observed))
-    if max(left, default=GONE - 1) >= GONE or len(left) != len(free):
+    if max(left, default=GONE - 1) >= GONE or len(left) != len(set(free)):
         return
     elsewhere = set(mentioned(explanation)) if len(left) > 1 else set()
     told = [name for name in left if name in elsewhere]

@@ -51,6 +51,23 @@ def test_a_batch_may_be_long(tmp_path: Path, of: str, *, taken: bool) -> None:
     assert judged(tmp_path, create, {"return": 1, **answer}).conforms
 
 
+@pytest.mark.parametrize("ids", [["m", "m"], ["m", "n", "m"], ["m", "m", "m"]])
+def test_one_mission_is_not_cleared_twice(tmp_path: Path, ids: list[str]) -> None:
+    """Whichever of the missions that a lost batch created it is, and whatever is still to be shown."""
+    goal = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    verdict = judged(
+        tmp_path,
+        {"call": 1, "method": "SubscribeMissionStatus"},
+        {"return": 1, "result": {"stream": 1}},
+        {"call": 2, "method": "CreateMissionBatch", "params": {"missions": [goal] * len(ids)}},
+        {"return": 2, "error": {"status": "DEADLINE_EXCEEDED"}},
+        {"call": 3, "method": "AppendMission", "params": goal},
+        {"call": 4, "method": "ClearMissionStatus"},
+        {"return": 4, "result": {"missionIds": ids}},
+    )
+    assert verdict.outcome is Outcome.VIOLATES
+
+
 @pytest.mark.parametrize(("count", "outcome"), [(3, Outcome.CONFORMS), (12, Outcome.INCONCLUSIVE)])
 def test_too_many_ways_to_name_missions_are_given_up(tmp_path: Path, count: int, outcome: Outcome) -> None:
     """What is cleared and was never named can be any of the missions that a lost batch created, in any order."""

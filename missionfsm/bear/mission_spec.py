@@ -42,8 +42,8 @@ from missionfsm.bear.mission_operations import OPERATIONS
 from missionfsm.bear.mission_readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
 from missionfsm.bear.mission_requests import Request
 from missionfsm.bear.mission_shortcut import Shortcut, forget_ended
+from missionfsm.bear.mission_status import OWED, SEQUENCE, TOPIC, listing, matches
 from missionfsm.bear.mission_status import RULES as STATUS_RULES
-from missionfsm.bear.mission_status import SEQUENCE, TOPIC, listing, matches
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
@@ -196,7 +196,7 @@ def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
     ends = {INTERNAL: (), **dict.fromkeys(TRANSPORT, (AM_61["b"],))}
-    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends=ends)
+    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends=ends, unowed=(OWED.id,))
 
 
 # What holds of every robot, and what some robot can come to.
@@ -290,9 +290,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         drives={
             one.name: one
             for one in (
-                Drive("goalReached", _drive, (Happening("goalReached"),)),
-                Drive("missionSucceeded", _drive, (Happening("missionSucceeded"),)),
-                Drive("missionFailed", _drive, (Happening("missionFailed"),)),
+                *(Drive(name, _drive, (Happening(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
                 # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
                 Drive("world", _drive),
                 Drive("fault", _drive),
@@ -321,6 +319,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         ),
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
+        unopened=(OWED.id,),
     )
 
 

@@ -20,7 +20,7 @@ from missionfsm.bear.status_effects import armed, failing, moved, outcomes, repo
 from missionfsm.bear.status_messages import BatteryMode, ConnectionState, Stuck
 from missionfsm.bear.status_readings import AMBIGUITIES, AS_01, AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_34
 from missionfsm.bear.status_rules import OPERATIONS
-from missionfsm.bear.status_stream import RULES, SEQUENCE, Topic, answers, concerns, matches
+from missionfsm.bear.status_stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
 from missionfsm.bear.status_values import faults
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE, Operation
@@ -48,6 +48,7 @@ def _delivery(topic: Topic) -> Delivery:
         repeats=AS_12_HYBRID["a", "b"] if topic.endpoint is Endpoint.ROBOT else AS_12_EVENT["b"],
         echoes=AS_08["c"] if topic.endpoint in MAPS else None,
         ends=ends,
+        unowed=(UPDATES.id,),
     )
 
 
@@ -155,10 +156,10 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         drives={
             one.name: one
             for one in (
-                Drive("report", reported, (FORGET,)),
+                Drive("report", reported, (FORGET,), impossible=(SELECTED.id,)),
                 # Numbers that start over are recognised by their 0; nothing else tells of a restart that nobody drove.
-                Drive("restart", restarted, renumbers=_renumbered),
-                Drive("move", moved),
+                Drive("restart", restarted, renumbers=_renumbered, impossible=(SELECTED.id,)),
+                Drive("move", moved, impossible=(SELECTED.id,)),
                 # Failures that nobody arms are outcomes of their own.
                 Drive("fault", armed),
             )
@@ -179,6 +180,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         answers=answers,
         abstraction=Abstraction(shape=_shape),
         rebuilt=specification,
+        unopened=(UPDATES.id,),
     )
 
 

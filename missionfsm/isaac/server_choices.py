@@ -18,7 +18,12 @@ _ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_31))
 
 
 def split(move: Move, question: Ambiguity, letters: str) -> tuple[Move | None, Move | None]:
-    """What is left where the question is read in one of these ways, and where it is not; None where nothing is."""
+    """What is left where the question is read in one of these ways, and where it is not; None where nothing is.
+
+    Raises:
+        ValueError: one of the letters is no reading.
+    """
+    question.checked(letters)
     left = move.state.letters(question)
     yes = "".join(letter for letter in left if letter in letters)
     no = "".join(letter for letter in left if letter not in letters)

@@ -49,6 +49,9 @@ class Ambiguity:
         readings: letter to answer, in our own words.
         default: the letter that the reference model follows.
         flagged: letters that are accepted, but depart from the letter of the text; a verdict says so.
+        alike: what parts of one entry have in common that ask the same question, with the same letters, in calls that
+            look alike (``AM-01.create`` and ``AM-01.append``); None for a question that is asked once. Whoever reads
+            such parts differently is explained, and the verdict says that it is incoherent.
     """
 
     id: str
@@ -56,6 +59,7 @@ class Ambiguity:
     readings: Mapping[str, str]
     default: str
     flagged: frozenset[str] = frozenset()
+    alike: str | None = None
     _bit: Mapping[str, int] = field(init=False, repr=False)
     _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
     group: int = field(init=False, repr=False)
@@ -69,10 +73,22 @@ class Ambiguity:
         object.__setattr__(self, "group", functools.reduce(int.__or__, self._bit.values()))
 
     def __getitem__(self, letters: str | tuple[str, ...]) -> Assumption:
-        """The assumption that one of these letters is followed: ``AM_09["a"]``, ``AM_09["a", "b"]``."""
-        chosen = (letters,) if isinstance(letters, str) else letters
-        kept = functools.reduce(int.__or__, (self._bit[letter] for letter in chosen))
-        return self.where(kept)
+        """The assumption that one of these letters is followed: ``AM_09["a"]``, ``AM_09["a", "b"]``.
+
+        Raises:
+            ValueError: there is no such letter, or none at all is given.
+        """
+        chosen = self.checked((letters,) if isinstance(letters, str) else letters)
+        return self.where(functools.reduce(int.__or__, (self._bit[letter] for letter in chosen)))
+
+    def checked(self, letters: Iterable[str]) -> tuple[str, ...]:
+        """These letters. Raises ValueError if one of them is no reading, or there is none."""
+        chosen = tuple(letters)
+        unknown = [letter for letter in chosen if letter not in self.readings]
+        if unknown or not chosen:
+            msg = f"{self.id} has no reading {unknown[0] if unknown else ''!r}; it has {', '.join(self.readings)}"
+            raise ValueError(msg)
+        return chosen
 
     def where(self, bits: int) -> Assumption:
         """The assumption that a reading with one of these bits is followed."""
@@ -82,7 +98,8 @@ class Ambiguity:
         return made
 
     def besides(self, *letters: str) -> Assumption:
-        """The assumption that none of these letters is followed."""
+        """The assumption that none of these letters is followed. Raises ValueError as indexing does."""
+        self.checked(letters)
         return self[tuple(letter for letter in self.readings if letter not in letters)]
 
     def possible(self, assumed: int) -> tuple[str, ...]:
@@ -106,8 +123,9 @@ def meet(assumed: int, assumptions: Iterable[Assumption]) -> int:
 def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = None) -> int:
     """One reading of every ambiguity: the defaults, but for those in `choice` (ambiguity id to letter).
 
-    An id without its part (``AM-14`` for ``AM-14.paused``) speaks for every part that has the letter, unless there is
-    an ambiguity with just that id.
+    An entry's id speaks for all its parts that have the letter: ``AM-14`` for ``AM-14.paused``. An id that names less
+    speaks louder: where both ``AM-14=f`` and ``AM-14.paused=g`` are chosen, g is followed by that part and f by the
+    others.
 
     Raises:
         ValueError: an ambiguity or a letter that does not exist.
@@ -123,10 +141,10 @@ def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = 
 def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> int:
     """Only what is in `choice` is decided; the rest stays open. Raises ValueError as `choose` does."""
     ambiguities = tuple(ambiguities)
-    assumed = ANYTHING
-    for name, letter in choice.items():
-        named = [one for one in ambiguities if one.id == name]
-        named = named or [one for one in ambiguities if one.id.partition(".")[0] == name]
+    decided: dict[Ambiguity, str] = {}
+    for name in sorted(choice, key=lambda name: name.count(".")):
+        letter = choice[name]
+        named = [one for one in ambiguities if one.id == name or one.id.startswith(f"{name}.")]
         if not named:
             known = ", ".join(one.id for one in ambiguities)
             msg = f"there is no ambiguity {name}; there are {known}"
@@ -136,8 +154,32 @@ def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> in
             letters = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
             msg = f"{name} has no reading {letter}: {letters}"
             raise ValueError(msg)
-        assumed = meet(assumed, [one[letter] for one in fitting])
-    return assumed
+        decided.update(dict.fromkeys(fitting, letter))
+    return meet(ANYTHING, (one[letter] for one, letter in decided.items()))
+
+
+@functools.cache
+def alike(ambiguities: tuple[Ambiguity, ...]) -> tuple[tuple[Ambiguity, Ambiguity], ...]:
+    """Every pair of ambiguities that ask the same question in calls that look alike, and share a letter."""
+    return tuple(
+        (one, other)
+        for one, other in itertools.combinations(ambiguities, 2)
+        if one.alike is not None and one.alike == other.alike and one.readings.keys() & other.readings.keys()
+    )
+
+
+def clashes(ambiguities: tuple[Ambiguity, ...], assumed: int) -> tuple[tuple[Ambiguity, Ambiguity], ...]:
+    """The pairs of alike ambiguities that an execution with these assumptions reads differently."""
+    return tuple(
+        (one, other)
+        for one, other in alike(ambiguities)
+        if not set(one.possible(assumed)) & set(other.possible(assumed))
+    )
+
+
+def unflagged(ambiguities: Iterable[Ambiguity]) -> int:
+    """What is assumed where nothing departs from the letter of the text."""
+    return meet(ANYTHING, (one.besides(*one.flagged) for one in ambiguities if one.flagged))
 
 
 def merge(first: int, second: int, groups: Iterable[int]) -> int | None:

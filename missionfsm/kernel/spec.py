@@ -149,12 +149,17 @@ class Delivery:
         repeats: the assumption under which the last message may come again; None: never.
         echoes: the assumption under which the last message may come again with its old number; None: never.
         ends: status name to the readings under which the channel may end with it; one that is missing may not end it.
+        unowed: ids of the rules that are broken by a message that nothing owes, and by one that is owed and does not
+            come; the nearest first.
+        unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
     """
 
     skips: Assumption | None = None
     repeats: Assumption | None = None
     echoes: Assumption | None = None
     ends: Mapping[str, tuple[Assumption, ...]] = field(factory=dict)
+    unowed: tuple[str, ...] = ()
+    unending: tuple[str, ...] = ()
 
 
 RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative", "renumbered")
@@ -174,6 +179,7 @@ class Drive:
         by_itself: the events that the environment may produce unseen where nobody drives them.
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
         ends: what arrived while it was being done, arrived before it (it ends a channel).
+        impossible: ids of the rules that are broken where it is said to have happened though it could not.
     """
 
     name: str
@@ -182,6 +188,7 @@ class Drive:
     cite: Citation | None = None
     renumbers: Callable[[Any], tuple[Hashable, ...]] | None = None
     ends: bool = False
+    impossible: tuple[str, ...] = ()
 
 
 @frozen
@@ -277,6 +284,7 @@ class Spec:
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         abstraction: how a search and an exploration look at its states.
+        unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
     """
 
     system: str
@@ -304,6 +312,7 @@ class Spec:
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     abstraction: Abstraction = Abstraction()
+    unopened: tuple[str, ...] = ()
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

@@ -78,10 +78,14 @@ def violation(belief: Belief, event: Event, request: Any) -> Violation:  # noqa:
     elif isinstance(event, Settled):
         options, rules, notes = _still_due(belief, moves)
     elif isinstance(event, Ended):
-        options, rules, notes = [], _following(spec), ("the stream had to go on",)
+        options, rules, notes = [], _unending(belief, event), ("the stream had to go on",)
     else:
-        lifecycle = [rule.id for rule in spec.rules if LIFECYCLE in rule.id]
-        options, rules, notes = [], lifecycle, ("nothing that is in a state for it was there",)
+        drive = spec.drives[event.event.name] if isinstance(event, Driven) else None  # type: ignore[attr-defined]
+        options, rules, notes = (
+            [],
+            list(drive.impossible if drive else ()),
+            ("nothing that is in a state for it was there",),
+        )
     merged: dict[str, _Option] = {}
     for option in options:
         before = merged.get(option.what)
@@ -179,31 +183,34 @@ def _against_message(belief: Belief, moves: Moves, event: Received) -> tuple[lis
                     else:
                         notes.append("the content is right, the names in it or the readings that it follows are not")
                 if not channel.owed:
-                    rules += _following(spec)
+                    rules += spec.delivery(channel.topic).unowed
                     notes.append("the stream has nothing to show: nothing changed since its last message")
             if len(options) > MOST:
                 break
         if not found:
-            rules += _following(spec)
+            rules += spec.unopened
             notes.append(f"{name_words(event.channel)} is not open")
     return options, rules, tuple(notes)
 
 
-FOLLOWS = "updates-follow-the-state"
-"""What every system calls its promise that messages come when something changes, and not otherwise."""
-
-
-LIFECYCLE = "/lifecycle/"
-"""Where every system registers the moves of its lifecycle."""
-
-
-def _following(spec: Spec) -> list[str]:
-    return [rule.id for rule in spec.rules if rule.id.endswith(FOLLOWS)]
+def _unending(belief: Belief, event: Ended) -> list[str]:
+    """The rules that are broken by the end of a channel: those of its topic, or of a channel that is not open."""
+    spec = belief.automaton.spec
+    (_, _, number), _ = belief.symbol(event)
+    topics = dict.fromkeys(
+        channel.topic
+        for explanation in belief.node.explanations
+        for channel in explanation.channels
+        if channel.name == number
+    )
+    ways = [spec.delivery(topic) for topic in topics]
+    return [rule for way in ways for rule in way.unending or way.unowed] or list(spec.unopened)
 
 
 def _still_due(belief: Belief, moves: Moves) -> tuple[list[_Option], list[str], tuple[str, ...]]:
     spec = belief.automaton.spec
     options: list[_Option] = []
+    rules: list[str] = []
     notes: list[str] = []
     for explanation in belief.node.explanations:
         for here in _reachable(moves, explanation):
@@ -214,6 +221,7 @@ def _still_due(belief: Belief, moves: Moves) -> tuple[list[_Option], list[str], 
                     where = name_words(name) if name else "a stream"
                     options.append(_Option(f"{where} shows {spec.describe(due[-1].view)}", (), ()))
                     notes.append(f"{where} did not show {spec.describe(due[-1].view)}")
+                    rules += spec.delivery(channel.topic).unowed
             if len(options) > MOST:
                 break
-    return options, _following(spec), tuple(notes[:3])
+    return options, rules, tuple(notes[:3])

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import functools
 import itertools
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, choose, constrain, meet, merge
+from missionfsm.kernel.readings import (
+    ANYTHING,
+    Ambiguity,
+    Assumption,
+    choose,
+    clashes,
+    constrain,
+    meet,
+    merge,
+    unflagged,
+)
 
 COLOUR = Ambiguity("R-1", "Which colour?", {"a": "red", "b": "green", "c": "blue"}, "b")
 DAY = Ambiguity("R-2.day", "Which day?", {"a": "Monday", "b": "Friday"}, "a")
@@ -77,12 +88,21 @@ def test_an_entry_speaks_for_all_its_parts() -> None:
     }
 
 
-def test_an_exact_id_speaks_for_itself_alone() -> None:
-    """Where an ambiguity has the id of an entry, that id decides it and not the parts."""
-    hour = Ambiguity("R-2", "Which?", {"a": "this", "b": "that"}, default="a")
-    part = Ambiguity("R-2.part", "Which part?", {"a": "this", "b": "that"}, default="a")
-    both = choose((hour, part), {"R-2": "b"})
-    assert (hour.possible(both), part.possible(both)) == (("b",), ("a",))
+def test_an_id_speaks_for_what_is_below_it() -> None:
+    """An id decides the ambiguity that has it and every part of it, however deep; one that names more decides last."""
+    whole, part, deep, other = (
+        Ambiguity(name, "Which?", {"a": "this", "b": "that"}, default="a")
+        for name in ("R-2", "R-2.part", "R-2.part.deep", "R-22")
+    )
+    ambiguities = (whole, part, deep, other)
+
+    def chosen(**choice: str) -> str:
+        names = {name.replace("_", "."): letter for name, letter in choice.items()}
+        assumed = choose(ambiguities, {name.replace("R2", "R-2"): letter for name, letter in names.items()})
+        return "".join("".join(one.possible(assumed)) for one in ambiguities)
+
+    assert (chosen(R2="b"), chosen(R2_part="b"), chosen(R2_part_deep="b")) == ("bbba", "abba", "aaba")
+    assert (chosen(R2="b", R2_part="a"), chosen(R2_part="a", R2="b")) == ("baaa", "baaa")
 
 
 @pytest.mark.parametrize(
@@ -104,3 +124,43 @@ def test_the_default_and_the_flagged_are_readings(extra: dict[str, object]) -> N
     """An ambiguity whose default or flagged letter is none of its readings cannot be made."""
     with pytest.raises(ValueError, match="R-5: the default and the flagged letters must be readings, a, b"):
         Ambiguity("R-5", "?", {"a": "yes", "b": "no"}, **extra)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("write", "message"),
+    [
+        (lambda: COLOUR["z"], "R-1 has no reading 'z'; it has a, b, c"),
+        (lambda: COLOUR["a", "ab"], "R-1 has no reading 'ab'; it has a, b, c"),
+        (lambda: COLOUR.besides("d"), "R-1 has no reading 'd'; it has a, b, c"),
+        (lambda: COLOUR.besides("a", "b", "c"), "R-1 has no reading ''; it has a, b, c"),
+    ],
+)
+def test_a_letter_is_checked_when_it_is_written(write: Callable[[], Assumption], message: str) -> None:
+    """An assumption about a letter that is no reading, or about none, is refused where it is written."""
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        write()
+
+
+FIRST, SECOND, THIRD = (
+    Ambiguity(f"R-3.{call}", "Which code?", {"a": "this", "b": "that", **more}, "a", alike="R-3")
+    for call, more in (("create", {"c": "both"}), ("append", {}), ("skip", {"c": "both"}))
+)
+
+
+def test_alike_parts_that_share_no_letter_clash() -> None:
+    """An execution that reads alike parts differently is found, pair by pair; one that still can agree is not."""
+    asked = (*ALL, FIRST, SECOND, THIRD)
+    differing = meet(ANYTHING, (FIRST["a"], SECOND["b"], THIRD["b", "c"]))
+    agreeing = meet(ANYTHING, (FIRST["a", "b"], SECOND["b"], COLOUR["a"], DAY["b"]))
+    assert (clashes(asked, differing), clashes(asked, agreeing), clashes(asked, ANYTHING)) == (
+        ((FIRST, SECOND), (FIRST, THIRD)),
+        (),
+        (),
+    )
+
+
+def test_unflagged_leaves_what_the_text_says() -> None:
+    """Without departures from the text every flagged letter is ruled out and no other."""
+    odd = Ambiguity("R-4", "Odd?", {"a": "no", "b": "yes", "c": "very"}, "a", flagged=frozenset("bc"))
+    left = unflagged((*ALL, odd))
+    assert (odd.possible(left), choices(left)) == (("a",), choices(ANYTHING))

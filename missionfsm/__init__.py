@@ -10,24 +10,24 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from missionfsm.bear.messages import Command as Command
-    from missionfsm.bear.messages import Goal as Goal
-    from missionfsm.bear.messages import Pose as Pose
-    from missionfsm.bear.messages import State as State
-    from missionfsm.embedding import missions as missions
-    from missionfsm.embedding import workflows as workflows
-    from missionfsm.embedding.errors import ApiError as ApiError
-    from missionfsm.embedding.errors import DeadlineExceeded as DeadlineExceeded
-    from missionfsm.embedding.errors import FailedPrecondition as FailedPrecondition
-    from missionfsm.embedding.errors import Internal as Internal
-    from missionfsm.embedding.errors import InvalidArgument as InvalidArgument
-    from missionfsm.embedding.errors import NotFound as NotFound
-    from missionfsm.embedding.robot import Robot as Robot
+    from missionfsm.bear.wire.messages import Command as Command
+    from missionfsm.bear.wire.messages import Goal as Goal
+    from missionfsm.bear.wire.messages import Pose as Pose
+    from missionfsm.bear.wire.messages import State as State
+    from missionfsm.fakes import missions as missions
+    from missionfsm.fakes import workflows as workflows
+    from missionfsm.fakes.errors import ApiError as ApiError
+    from missionfsm.fakes.errors import DeadlineExceeded as DeadlineExceeded
+    from missionfsm.fakes.errors import FailedPrecondition as FailedPrecondition
+    from missionfsm.fakes.errors import Internal as Internal
+    from missionfsm.fakes.errors import InvalidArgument as InvalidArgument
+    from missionfsm.fakes.errors import NotFound as NotFound
+    from missionfsm.fakes.robot import Robot as Robot
 
 _PLACES: Mapping[str, tuple[str, ...]] = {
-    "missionfsm.bear.messages": ("Command", "Goal", "Pose", "State"),
-    "missionfsm.embedding": ("missions", "workflows"),
-    "missionfsm.embedding.errors": (
+    "missionfsm.bear.wire.messages": ("Command", "Goal", "Pose", "State"),
+    "missionfsm.fakes": ("missions", "workflows"),
+    "missionfsm.fakes.errors": (
         "ApiError",
         "DeadlineExceeded",
         "FailedPrecondition",
@@ -35,7 +35,7 @@ _PLACES: Mapping[str, tuple[str, ...]] = {
         "InvalidArgument",
         "NotFound",
     ),
-    "missionfsm.embedding.robot": ("Robot",),
+    "missionfsm.fakes.robot": ("Robot",),
 }
 _PLACE = {name: place for place, names in _PLACES.items() for name in names}
 
@@ -45,7 +45,7 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands fo
     if place is None:
         message = f"module 'missionfsm' has no attribute {name!r}"
         raise AttributeError(message)
-    if place == "missionfsm.embedding":
+    if place == "missionfsm.fakes":
         return importlib.import_module(f"{place}.{name}")
     return getattr(importlib.import_module(place), name)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from missionfsm.tools.verdict import Verdict
+    from missionfsm.tools.check.verdict import Verdict
 
 SUFFIX = ".history.jsonl"
 
@@ -50,9 +50,9 @@ class HistoryItem(pytest.Item):
 
     def runtest(self) -> None:
         """Judge the history."""
-        from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - see above
+        from missionfsm.app.recorded import check_file  # noqa: PLC0415 - see above
         from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
-        from missionfsm.kernel.words import printable  # noqa: PLC0415
+        from missionfsm.kernel.text import printable  # noqa: PLC0415
 
         try:
             verdicts = check_file(str(self.path))
@@ -83,7 +83,7 @@ def _told(verdict: Verdict) -> str:
 
     from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
     from missionfsm.systems import system  # noqa: PLC0415
-    from missionfsm.tools.story import story  # noqa: PLC0415
+    from missionfsm.tools.check.narrate import story  # noqa: PLC0415
 
     if verdict.violation is None:
         return str(verdict)

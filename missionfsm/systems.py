@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
 
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.words import brief
+from missionfsm.kernel.text import brief
 
-_MODULES: Mapping[str, str] = {
-    "bear.mission": "missionfsm.bear.mission_system",
-    "bear.status": "missionfsm.bear.status_system",
-    "isaac.server": "missionfsm.isaac.server_system",
-    "isaac.robot": "missionfsm.isaac.robot_system",
-}
-"""Where each system is put together; it is loaded when it is asked for."""
+_NAMES = ("bear.mission", "bear.status", "isaac.server", "isaac.robot")
+"""A system is put together in the module ``system`` of the package of its name, and loaded when it is asked for."""
 
 
 def names() -> tuple[str, ...]:
     """The names of all systems."""
-    return tuple(_MODULES)
+    return _NAMES
 
 
 def system(name: str) -> System:
     """The system with a name. Raises UnreadableError, which lists those that exist."""
-    if name not in _MODULES:
-        message = f"there is no system {brief(name)}; there are {', '.join(_MODULES)}"
+    if name not in _NAMES:
+        message = f"there is no system {brief(name)}; there are {', '.join(_NAMES)}"
         raise UnreadableError(message)
-    found: System = importlib.import_module(_MODULES[name]).SYSTEM
+    found: System = importlib.import_module(f"missionfsm.{name}.system").SYSTEM
     return found

@@ -19,7 +19,7 @@ import pytest
 
 if TYPE_CHECKING:
     from missionfsm.kernel.subject import Subject
-    from missionfsm.tools.survey import Finding, Survey
+    from missionfsm.tools.conform.survey import Finding, Survey
 
 
 class Suite:
@@ -59,7 +59,7 @@ class Suite:
         if not {"operation", "group"} & set(metafunc.fixturenames):
             return
         from missionfsm.systems import system  # noqa: PLC0415
-        from missionfsm.tools.survey import places  # noqa: PLC0415
+        from missionfsm.tools.conform.survey import places  # noqa: PLC0415
 
         spec = system(self.system).spec
         if "operation" in metafunc.fixturenames:
@@ -83,7 +83,7 @@ class Suite:
         """What a search comes to, or what is wrong with the adapter."""
         from missionfsm.kernel.subject import SubjectError  # noqa: PLC0415
         from missionfsm.systems import system  # noqa: PLC0415
-        from missionfsm.tools.survey import survey  # noqa: PLC0415
+        from missionfsm.tools.conform.survey import survey  # noqa: PLC0415
 
         tours = examples // 2
         try:

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from attrs import frozen
 
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.system import System
-from missionfsm.tools.conversation import introduce
-from missionfsm.tools.guide import Guide
-from missionfsm.tools.run import Run
-from missionfsm.tools.subject import Reference
+from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.guide import Guide
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.reference.subject import Reference
 
 BOUNDS = Bounds(missions=4, goals=3)
 

@@ -13,7 +13,7 @@ import pytest
 from commandline import CommandLine
 
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.transcript import Ids
+from missionfsm.oracle.transcript import Ids
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission", "world": {}}'
 CLEAR = '{"call": 1, "method": "ClearMissionStatus", "params": {}}'

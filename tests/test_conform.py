@@ -9,8 +9,8 @@ import pytest
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.systems import system
-from missionfsm.tools.conform import conform
-from missionfsm.tools.verdict import Verdict
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import conform
 
 NODE = shutil.which("node")
 SUBJECT = Path(__file__).parent / "subjects" / "bear_mission.mjs"

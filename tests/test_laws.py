@@ -23,7 +23,7 @@ from missionfsm.kernel.readings import ANYTHING, Ambiguity, choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore import Labels, reachable, references, steps
+from missionfsm.tools.explore.explore import Labels, reachable, references, steps
 
 BOUNDS = Bounds(missions=2, goals=2, batch=2)
 NEAR = 100
@@ -320,7 +320,7 @@ import hashlib, sys
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.systems import system
-from missionfsm.tools.explore import Labels, reachable, steps
+from missionfsm.tools.explore.explore import Labels, reachable, steps
 
 found = system(sys.argv[1])
 bounds = Bounds(1, 2, 1)

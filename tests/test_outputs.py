@@ -17,7 +17,7 @@ from missionfsm.adapters.outputs import same_file, write_whole
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.subject import SubjectError
-from missionfsm.tools.verdict import Outcome, Verdict
+from missionfsm.tools.check.verdict import Outcome, Verdict
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission", "world": {}}'
 CLEAR = '{"call": 1, "method": "ClearMissionStatus", "params": {}}'

@@ -15,10 +15,10 @@ from typing import Any
 import pytest
 from attrs import frozen
 
-from missionfsm.kernel import transcript
 from missionfsm.kernel.system import System
+from missionfsm.oracle import transcript
 from missionfsm.systems import system
-from missionfsm.tools.check import check
+from missionfsm.tools.check.judge import check
 from missionfsm.tools.specpages import base, citing, clauses, entries, named, regenerate
 
 SPECS = Path(__file__).parent.parent / "specs"
@@ -53,10 +53,10 @@ class Page:
 
 
 HOUSE = (
-    Page("bear-mission.md", "bear.mission", "missionfsm.bear.mission_readings", "AM", 64),
-    Page("bear-status.md", "bear.status", "missionfsm.bear.status_readings", "AS", 35),
-    Page("isaac-server.md", "isaac.server", "missionfsm.isaac.server_readings", "AI", 39),
-    Page("isaac-robot.md", "isaac.robot", "missionfsm.isaac.robot_readings", "AI", 39),
+    Page("bear-mission.md", "bear.mission", "missionfsm.bear.mission.readings", "AM", 64),
+    Page("bear-status.md", "bear.status", "missionfsm.bear.status.readings", "AS", 35),
+    Page("isaac-server.md", "isaac.server", "missionfsm.isaac.server.readings", "AI", 39),
+    Page("isaac-robot.md", "isaac.robot", "missionfsm.isaac.robot.readings", "AI", 39),
 )
 """The pages that there are to be; those that are written are looked at."""
 

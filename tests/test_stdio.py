@@ -21,15 +21,15 @@ from missionfsm.adapters.stdio import Child, serve
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.systems import system
-from missionfsm.tools.conform import conform
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.reference.subject import Reference
 
 # A child answers as the reference does, through `reference`, until it is asked for METHOD; then it does WRONG.
 CHILD = """
 import json, os, signal, sys, time
 from missionfsm.systems import system
 from missionfsm.adapters.stdio import _respond
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.reference.subject import Reference
 
 reference = Reference(system("bear.mission"))
 

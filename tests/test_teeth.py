@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from missionfsm.cli.parallel import teeth_on
+from missionfsm.app.parallel import teeth_on
 from missionfsm.systems import names, system
-from missionfsm.tools.teeth import mutants, teeth
+from missionfsm.tools.mutate.teeth import mutants, teeth
 
 
 def test_every_rule_has_a_mutant() -> None:

@@ -17,7 +17,7 @@ from attrs import field, frozen
 
 from missionfsm.adapters.jsonlines import CutShortError, loads
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.transcript import Ids
+from missionfsm.oracle.transcript import Ids
 
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024

@@ -22,7 +22,7 @@ from missionfsm.adapters.processes import end_group
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
-from missionfsm.kernel.words import brief, printable
+from missionfsm.kernel.text import brief, printable
 
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes in one line before a child counts as flooding."""

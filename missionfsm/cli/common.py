@@ -15,7 +15,7 @@ from missionfsm.adapters.outputs import STDOUT, refuse_unwritable, same_file, to
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.words import shown
+from missionfsm.kernel.text import shown
 from missionfsm.systems import system
 
 DONE, FAILED, BAD_INPUT, ADAPTER_FAILED = 0, 1, 2, 3

@@ -12,7 +12,7 @@ from missionfsm.cli.common import BAD_INPUT, choice, one_line_errors, say, stop,
 from missionfsm.kernel.system import System
 
 if TYPE_CHECKING:  # drawing is loaded when something is drawn
-    from missionfsm.tools.diagrams.gallery import Picture, Wanted
+    from missionfsm.tools.draw.gallery import Picture, Wanted
 
 _WITHOUT_DOT = "SVG is drawn by Graphviz, whose program dot was not found: install the package graphviz"
 
@@ -45,7 +45,7 @@ def diagram(  # noqa: PLR0913 - options of the command
     ] = None,
 ) -> None:
     """Draw state diagrams from the model itself."""
-    from missionfsm.tools.diagrams.gallery import FORMATS, Wanted  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.draw.gallery import FORMATS, Wanted  # noqa: PLC0415 - commands load what they need
 
     if output == "":
         stop("--output: an empty name is no name of a folder", BAD_INPUT)
@@ -68,7 +68,7 @@ def diagram(  # noqa: PLR0913 - options of the command
 def _chosen(what: Sequence[str], wanted: Wanted) -> Iterator[Picture]:
     """The pictures that are asked for."""
     from missionfsm.systems import names  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.diagrams.gallery import pictures  # noqa: PLC0415
+    from missionfsm.tools.draw.gallery import pictures  # noqa: PLC0415
 
     systems = tuple(the_system(one) for one in dict.fromkeys(one.partition("/")[0] for one in what) or names())
     _known(systems, wanted)
@@ -91,7 +91,7 @@ def _called(name: str, shown: Sequence[Picture]) -> list[Picture]:
 
 def _known(systems: tuple[System, ...], wanted: Wanted) -> None:
     """A reading has to be one of some system at least."""
-    from missionfsm.tools.diagrams.gallery import named  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.draw.gallery import named  # noqa: PLC0415 - commands load what they need
 
     for name in (*wanted.readings, *wanted.versus):
         if not any(named(system, name) for system in systems):
@@ -101,9 +101,9 @@ def _known(systems: tuple[System, ...], wanted: Wanted) -> None:
 def _of_file(path: str) -> Picture:
     """The missions of a file, which wait for one another."""
     from missionfsm.adapters.historyfile import STDIN, read_whole  # noqa: PLC0415 - commands load what they need
-    from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
-    from missionfsm.isaac.plans import plan  # noqa: PLC0415
-    from missionfsm.tools.diagrams.gallery import of_plan  # noqa: PLC0415
+    from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415
+    from missionfsm.isaac.server.plans import plan  # noqa: PLC0415
+    from missionfsm.tools.draw.gallery import of_plan  # noqa: PLC0415
 
     found = parse(read_whole(path))
     if not isinstance(found, MissionFile):
@@ -128,8 +128,8 @@ def _no_machine(shown: Picture, form: str) -> str:
 
 def _write(folder: Path, shown: tuple[Picture, ...], forms: tuple[str, ...], *, whole: bool) -> None:
     """Write every picture in every format that it can be had in; SVG comes last, as it may not work."""
-    from missionfsm.tools.diagrams.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.diagrams.index import index, path  # noqa: PLC0415
+    from missionfsm.tools.draw.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.draw.index import index, path  # noqa: PLC0415
 
     if whole:
         _write_file(folder / "README.md", index(shown))
@@ -158,7 +158,7 @@ def _write_file(path: Path, text: str) -> None:
 
 
 def _text(shown: Picture, form: str) -> str | None:
-    from missionfsm.tools.diagrams.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.draw.gallery import FORMATS, SVG  # noqa: PLC0415 - commands load what they need
 
     text = FORMATS[form].write(shown)
     return _svg(text) if form == SVG and text is not None else text

@@ -15,9 +15,9 @@ from missionfsm.kernel.codec import UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.cli.isaac_view import View
-    from missionfsm.isaac.missionfile import MissionFile
-    from missionfsm.isaac.profile import Profile
-    from missionfsm.isaac.robot import Behavior
+    from missionfsm.isaac.runtime.missionfile import MissionFile
+    from missionfsm.isaac.runtime.profile import Profile
+    from missionfsm.isaac.runtime.robot import Behavior
 
 _INTERRUPTED = 128 + signal.SIGINT
 
@@ -52,8 +52,8 @@ def dispatch(
 
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
     from missionfsm.cli.isaac_view import view_for  # noqa: PLC0415
-    from missionfsm.isaac.missionfile import MissionFile, parse  # noqa: PLC0415
-    from missionfsm.isaac.profile import PROFILES  # noqa: PLC0415
+    from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415
+    from missionfsm.isaac.runtime.profile import PROFILES  # noqa: PLC0415
 
     readings = PROFILES[profile.value]
     try:
@@ -82,7 +82,7 @@ async def _serve(  # noqa: PLR0913 - the options
 ) -> None:
     import asyncio  # noqa: PLC0415
 
-    from missionfsm.adapters.tcp import TcpMissionServer, fresh_uuid  # noqa: PLC0415
+    from missionfsm.adapters.isaac.tcp import TcpMissionServer, fresh_uuid  # noqa: PLC0415
 
     done = asyncio.Event()
 
@@ -121,7 +121,7 @@ def robot(  # noqa: PLR0913 - the options
     """Simulate a robot that connects to a mission server, again and again, until interrupted."""
     import asyncio  # noqa: PLC0415
 
-    from missionfsm.isaac.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
+    from missionfsm.isaac.runtime.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
 
     if not name:
         complain("--name: an empty name is no name")
@@ -142,9 +142,9 @@ def robot(  # noqa: PLR0913 - the options
 
 
 async def _be_a_robot(name: str, host: str, port: int, script: "tuple[Behavior, ...]") -> None:
-    from missionfsm.adapters.tcp import TcpRobot  # noqa: PLC0415
+    from missionfsm.adapters.isaac.tcp import TcpRobot  # noqa: PLC0415
     from missionfsm.cli.isaac_view import Printer, robot_line  # noqa: PLC0415
-    from missionfsm.isaac.robot import RobotCore  # noqa: PLC0415
+    from missionfsm.isaac.runtime.robot import RobotCore  # noqa: PLC0415
 
     printer = Printer()
     last: list[str] = []

@@ -11,13 +11,13 @@ from rich.table import Table
 from rich.text import Text
 
 from missionfsm.cli.common import complain, say
-from missionfsm.isaac.codelet import Report
-from missionfsm.isaac.messages import Uuid
-from missionfsm.isaac.mission import INCOMPLETE, RobotOffline, RobotOnline, Status, StatusChanged
-from missionfsm.isaac.missionfile import MissionFile
-from missionfsm.isaac.robot import Did
+from missionfsm.isaac.runtime.codelet import Report
+from missionfsm.isaac.runtime.missionfile import MissionFile
+from missionfsm.isaac.runtime.missions import INCOMPLETE, RobotOffline, RobotOnline, Status, StatusChanged
+from missionfsm.isaac.runtime.robot import Did
+from missionfsm.isaac.wire.messages import Uuid
 from missionfsm.kernel.codec import UnreadableError
-from missionfsm.kernel.words import printable
+from missionfsm.kernel.text import printable
 
 _STYLES: Final = {Status.SUCCESS: "green", Status.RUNNING: "cyan", Status.STARTED: "cyan"}
 _ACTIVE: Final = (Status.STARTED, Status.RUNNING)

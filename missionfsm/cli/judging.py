@@ -31,13 +31,13 @@ from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_t
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.words import printable
+from missionfsm.kernel.text import printable
 from missionfsm.systems import names
-from missionfsm.tools.verdict import Verdict
+from missionfsm.tools.check.verdict import Verdict
 
 if TYPE_CHECKING:
-    from missionfsm.tools.explore import Exploration
-    from missionfsm.tools.teeth import Teeth
+    from missionfsm.tools.explore.explore import Exploration
+    from missionfsm.tools.mutate.teeth import Teeth
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
@@ -117,9 +117,9 @@ def conform(  # noqa: PLR0913 - options of the command
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
-    from missionfsm.cli.bridged import Sockets, bridged  # noqa: PLC0415
-    from missionfsm.tools.conform import DEFAULT_EXAMPLES, planned  # noqa: PLC0415
-    from missionfsm.tools.conform import conform as judge  # noqa: PLC0415
+    from missionfsm.app.bridged import Sockets, bridged  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import DEFAULT_EXAMPLES, planned  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
     readings = choice(reading)
@@ -175,7 +175,7 @@ def _record(path: str | None, system: System, verdict: Verdict) -> None:
     if path is None or verdict.violation is None:
         return
     from missionfsm.adapters.outputs import write_history, write_whole  # noqa: PLC0415
-    from missionfsm.tools.story import as_mermaid, as_pytest  # noqa: PLC0415
+    from missionfsm.tools.check.narrate import as_mermaid, as_pytest  # noqa: PLC0415
 
     history = verdict.violation.history
     form = Path(path).suffix
@@ -193,7 +193,7 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
     if path is None:
         return ()
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.expected import read_expected  # noqa: PLC0415
+    from missionfsm.tools.check.baseline import read_expected  # noqa: PLC0415
 
     with one_line_errors():
         data = read_whole(path)
@@ -214,7 +214,7 @@ def check(
     html: HtmlFile = None,
 ) -> None:
     """Judge recorded histories, or the bare messages of a status subscription."""
-    from missionfsm.tools.expected import Expected, excused  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415 - commands load what they need
 
     readings = choice(reading)
     known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
@@ -242,7 +242,7 @@ def check(
 
 def _recorded(path: str, readings: Mapping[str, str], tell: Callable[[str], None]) -> list[tuple[str | None, Verdict]]:
     """The verdicts on a file. Raises UnreadableError, also for readings that there are not."""
-    from missionfsm.cli.recorded import check_file  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.recorded import check_file  # noqa: PLC0415 - commands load what they need
 
     try:
         return check_file(path, readings, tell)
@@ -270,7 +270,7 @@ def explore(  # noqa: PLR0913 - options of the command
     """Visit every state within bounds: invariants, possibilities, which rules fire."""
     from missionfsm.kernel.alphabet import Bounds  # noqa: PLC0415 - commands load what they need
     from missionfsm.kernel.readings import constrain  # noqa: PLC0415
-    from missionfsm.tools.explore import explore as visit  # noqa: PLC0415
+    from missionfsm.tools.explore.explore import explore as visit  # noqa: PLC0415
 
     explored = the_system(system)
     try:
@@ -295,8 +295,8 @@ def teeth(  # noqa: PLR0913 - options of the command
     html: HtmlFile = None,
 ) -> None:
     """Break every rule, one at a time, and see whether the oracle notices."""
-    from missionfsm.cli.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.teeth import mutants  # noqa: PLC0415
+    from missionfsm.app.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415
 
     judged = the_system(system)
     refuse_outputs({"--json": json, "--html": html})
@@ -319,7 +319,7 @@ def adapter(
     from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415 - commands load what they need
     from missionfsm.adapters.outputs import to_stdout  # noqa: PLC0415
     from missionfsm.adapters.stdio import serve  # noqa: PLC0415
-    from missionfsm.tools.subject import Reference  # noqa: PLC0415
+    from missionfsm.tools.reference.subject import Reference  # noqa: PLC0415
 
     try:
         reference = Reference(the_system(system), choice(reading))

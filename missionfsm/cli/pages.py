@@ -13,8 +13,8 @@ from missionfsm.systems import system
 if TYPE_CHECKING:
     from missionfsm.kernel.alphabet import Bounds
     from missionfsm.kernel.system import System
-    from missionfsm.tools.teeth import Teeth
-    from missionfsm.tools.verdict import Verdict
+    from missionfsm.tools.check.verdict import Verdict
+    from missionfsm.tools.mutate.teeth import Teeth
 
 
 def _a_file(path: str | None) -> str | None:

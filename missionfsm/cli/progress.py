@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
-    from missionfsm.tools.run import Run
+    from missionfsm.tools.conform.run import Run
 
 EVERY = 1.0
 """Seconds between two looks at what takes a while to count."""

@@ -12,9 +12,9 @@ from collections.abc import Iterable
 
 from attrs import evolve
 
-from missionfsm.isaac.messages import MissionStatusProto, TextProto
-from missionfsm.isaac.missionfile import MissionEntry, MissionFile
-from missionfsm.isaac.server_scripts import header
+from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
+from missionfsm.isaac.server.scripts import header
+from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
 from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System

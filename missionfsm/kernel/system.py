@@ -9,8 +9,8 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
+from missionfsm.kernel.picture import Plan, Sketch
 from missionfsm.kernel.rules import Rule
-from missionfsm.kernel.sketch import Plan, Sketch
 from missionfsm.kernel.spec import Spec, Step
 
 

@@ -6,7 +6,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.system import System
 from missionfsm.pages.graph import Graph
 from missionfsm.pages.render import rendered
-from missionfsm.tools.story import as_pytest
+from missionfsm.tools.check.narrate import as_pytest
 
 STAND_IN = "the history"
 """Where the page puts a history into the text of a test."""

@@ -19,9 +19,9 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Emission, Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.pages.doings import BY_ITSELF, ENVIRONMENT, Doings, Request, State, Tried
-from missionfsm.pages.written import PLACES, TEXT, Shared, Writer, dumped
-from missionfsm.tools.explain import answer_words
+from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Request, State, Tried
+from missionfsm.pages.naming import PLACES, TEXT, Shared, Writer, dumped
+from missionfsm.tools.check.explain import answer_words
 
 MOST_STATES = 4_000
 """How many states a page holds, the nearest ones: some megabytes."""

@@ -17,8 +17,8 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.pages.render import specification_page
+from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.specpages import Clause, base, citing, clauses, named
-from missionfsm.tools.verdict import Verdict
 
 _TAILS = re.compile(r"\*(Checked by|Not a rule:|Open:)\*")
 _WAIVED = re.compile(r"^\| \[([^\]]+)\]\([^)]*\) \| (.*) \|$")

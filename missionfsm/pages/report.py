@@ -21,8 +21,8 @@ from missionfsm.pages.outline import (
 )
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
-from missionfsm.tools.story import as_pytest
-from missionfsm.tools.verdict import Broken, Experiment, Outcome, Verdict
+from missionfsm.tools.check.narrate import as_pytest
+from missionfsm.tools.check.verdict import Broken, Experiment, Outcome, Verdict
 
 _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
 

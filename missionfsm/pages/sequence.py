@@ -12,9 +12,9 @@ from attrs import evolve, frozen
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event
 from missionfsm.kernel.system import System
-from missionfsm.kernel.transcript import Transcript
-from missionfsm.kernel.words import brief
-from missionfsm.tools.explain import event_words, name_words
+from missionfsm.kernel.text import brief
+from missionfsm.oracle.transcript import Transcript
+from missionfsm.tools.check.explain import event_words, name_words
 
 SHOWN = 60
 """How many of the last rows are shown at once; those before are folded away."""

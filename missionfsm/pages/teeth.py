@@ -9,7 +9,7 @@ from attrs import frozen
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.system import System
 from missionfsm.pages.render import rendered
-from missionfsm.tools.teeth import Bite, Teeth
+from missionfsm.tools.mutate.teeth import Bite, Teeth
 
 
 @frozen

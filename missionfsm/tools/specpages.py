@@ -14,7 +14,7 @@ two comments, the first of which says what it is:
 
 - ``operations``: every operation with its codes;
 - ``rules NAME``: the rules of an operation or a topic, each with the clauses that name it, and in how many ways it is
-  broken on purpose to see whether the oracle notices (`missionfsm.tools.teeth`);
+  broken on purpose to see whether the oracle notices (`missionfsm.tools.mutate.teeth`);
 - ``chart NAME``: the moves of a lifecycle, as a picture and as a table;
 - ``picture NAME``: a picture of the explored graph;
 - ``readings``: every ambiguity in one line;
@@ -35,9 +35,9 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
-from missionfsm.tools.diagrams.picture import state_name
-from missionfsm.tools.diagrams.tables import markdown
-from missionfsm.tools.teeth import mutants
+from missionfsm.tools.draw.diagram import state_name
+from missionfsm.tools.draw.tables import markdown
+from missionfsm.tools.mutate.teeth import mutants
 
 _PART = re.compile(
     r"(<!-- generated: (?P<kind>\w+)(?: (?P<what>[^\n]*?))? -->\n)(?P<body>.*?)(<!-- end -->)", re.DOTALL

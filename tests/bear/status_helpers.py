@@ -6,14 +6,14 @@ import random
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from missionfsm.bear.status_system import SYSTEM
+from missionfsm.bear.status.system import SYSTEM
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.subject import Exchange, Notification, Subject
-from missionfsm.kernel.transcript import Head
-from missionfsm.tools.check import Judge
-from missionfsm.tools.subject import Reference
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.transcript import Head
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.reference.subject import Reference
 
 ALPHABET = SYSTEM.alphabet({}, Bounds())
 WORLDS = ALPHABET.worlds

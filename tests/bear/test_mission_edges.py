@@ -7,9 +7,9 @@ from pathlib import Path
 import orjson
 import pytest
 
-from missionfsm.cli.recorded import check_file
+from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import JSON
-from missionfsm.tools.verdict import Outcome, Verdict
+from missionfsm.tools.check.verdict import Outcome, Verdict
 
 EDGES = Path(__file__).parent / "edges"
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from attrs import evolve
 
-from missionfsm.bear.mission import Robot
-from missionfsm.bear.mission_shortcut import forget_ended
+from missionfsm.bear.mission.compiled import forget_ended
+from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import ANYTHING, choose
 from missionfsm.kernel.spec import Invariant
 from missionfsm.systems import system
-from missionfsm.tools.explore import Labels, Reached, explore, firings, reachable, steps
+from missionfsm.tools.explore.explore import Labels, Reached, explore, firings, reachable, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec

@@ -7,12 +7,12 @@ from pathlib import Path
 import orjson
 import pytest
 
-from missionfsm.cli.recorded import check_file
+from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.transcript import Head
+from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check import check
-from missionfsm.tools.verdict import Verdict
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Verdict
 
 MISSION = system("bear.mission")
 DRIVES = tuple(MISSION.spec.drives)

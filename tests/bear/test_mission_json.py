@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from missionfsm.bear.messages import Command, Goal, Pose
-from missionfsm.bear.mission import Family, Fault, Kind, World
-from missionfsm.bear.mission_happenings import Happening
-from missionfsm.bear.mission_requests import Defect, Request, Wanted
-from missionfsm.bear.mission_status import Seen
+from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.inputs import Defect, Request, Wanted
+from missionfsm.bear.mission.state import Family, Fault, Kind, World
+from missionfsm.bear.mission.stream import Seen
+from missionfsm.bear.wire.messages import Command, Goal, Pose
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, Garbled, UnreadableError
 from missionfsm.kernel.history import Answer

@@ -7,12 +7,12 @@ import random
 import pytest
 
 from missionfsm.kernel.alphabet import ANY_NAME, Bounds
-from missionfsm.kernel.belief import Automaton
+from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import system
-from missionfsm.tools.conform import conform
-from missionfsm.tools.conversation import Action, Conversation, introduce
-from missionfsm.tools.run import Run
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.conversation import Action, Conversation, introduce
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
 BOUNDS = Bounds(2, 3, 2)

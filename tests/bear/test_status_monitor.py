@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 from status_helpers import WORLDS, Walk, battery, metadata, reference
 
-from missionfsm.bear.status import Endpoint
-from missionfsm.bear.status_json import CODEC
-from missionfsm.bear.status_monitor import StreamMonitor, watch
-from missionfsm.bear.status_spec import SPEC
-from missionfsm.bear.status_stream import Seen, View, matches
-from missionfsm.bear.status_values import CHECKS
-from missionfsm.kernel.belief import Automaton
+from missionfsm.bear.status.codec import CODEC
+from missionfsm.bear.status.monitor import StreamMonitor, watch
+from missionfsm.bear.status.spec import SPEC
+from missionfsm.bear.status.state import Endpoint
+from missionfsm.bear.status.stream import Seen, View, matches
+from missionfsm.bear.status.values import CHECKS
 from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.spec import Mismatch
+from missionfsm.oracle.belief import Automaton
 
 BATTERY, NAVIGATION, NETWORK = "SubscribeBatteryStatus", "SubscribeNavigationStatus", "SubscribeNetworkStatus"
 ROBOT, ERRORS, ONLINE = "SubscribeRobotStatus", "SubscribeErrorCodes", "SubscribeOnlineStatus"

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from status_helpers import SETTLED, WORLDS, judge, opened
 
-from missionfsm.bear.status_monitor import StreamMonitor
-from missionfsm.tools.verdict import Outcome
+from missionfsm.bear.status.monitor import StreamMonitor
+from missionfsm.tools.check.verdict import Outcome
 
 POSE = {"xMeters": 5.2, "yMeters": 3.1, "headingRadians": 0.0}
 CODES = [

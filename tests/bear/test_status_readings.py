@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from status_helpers import SYSTEM, reference, walk
 
-from missionfsm.bear.status_readings import AMBIGUITIES, WAIVED
-from missionfsm.tools.verdict import Outcome
+from missionfsm.bear.status.readings import AMBIGUITIES, WAIVED
+from missionfsm.tools.check.verdict import Outcome
 
 ALTERNATIVES = [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
 

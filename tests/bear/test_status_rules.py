@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 from status_helpers import ALPHABET, SETTLED, WORLDS, at, by_ids, judge, opened, refused
 
-from missionfsm.bear.status import GET, STATUS, Endpoint, initial
-from missionfsm.bear.status_json import CODEC
-from missionfsm.bear.status_readings import AMBIGUITIES
-from missionfsm.bear.status_rules import OPERATIONS
-from missionfsm.bear.status_spec import SPEC
+from missionfsm.bear.status.codec import CODEC
+from missionfsm.bear.status.readings import AMBIGUITIES
+from missionfsm.bear.status.rules import OPERATIONS
+from missionfsm.bear.status.spec import SPEC
+from missionfsm.bear.status.state import GET, STATUS, Endpoint, initial
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import INTERNAL, INVALID_ARGUMENT, NOT_FOUND, OK, PERMISSION_DENIED
-from missionfsm.tools.verdict import Outcome
+from missionfsm.tools.check.verdict import Outcome
 
 FLEET = initial(CODEC.world(WORLDS[0]))
 IA, NF, PD = INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED

@@ -21,8 +21,8 @@ from status_helpers import (
     robot_message,
 )
 
-from missionfsm.tools.check import Judge
-from missionfsm.tools.verdict import Outcome
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.verdict import Outcome
 
 BATTERY, ONLINE, ROBOT = "SubscribeBatteryStatus", "SubscribeOnlineStatus", "SubscribeRobotStatus"
 R1 = WORLDS[0]["robots"][0]

@@ -13,7 +13,7 @@ import pytest
 from status_helpers import walk
 
 from missionfsm.adapters.stdio import Child
-from missionfsm.tools.verdict import Outcome
+from missionfsm.tools.check.verdict import Outcome
 
 SUBJECT = Path(__file__).parent.parent / "subjects" / "bear_status.mjs"
 NODE = shutil.which("node")

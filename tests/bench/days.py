@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Notification
 from missionfsm.systems import system
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
 WORLD = {"family": "servi"}

@@ -20,15 +20,15 @@ import pytest
 from combinations import BOUNDS, Bench, combination, wrong
 
 from missionfsm.adapters.stdio import Child
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
+from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import names, system
-from missionfsm.tools.conform import DEFAULT_EXAMPLES, DEFAULT_STEPS, DEFAULT_TOURS, conform, search
-from missionfsm.tools.conversation import introduce
-from missionfsm.tools.run import Run
-from missionfsm.tools.shortest import everything, length
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.conform.conform import DEFAULT_EXAMPLES, DEFAULT_STEPS, DEFAULT_TOURS, conform, search
+from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.shortest import everything, length
+from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
 NODE = shutil.which("node")

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from missionfsm.isaac.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
-from missionfsm.isaac.mission import Effect, MissionRequest, Refused, Send, Status
-from missionfsm.isaac.server import MissionServerCore
-from missionfsm.isaac.wire import Decoder, encode
+from missionfsm.isaac.runtime.missions import Effect, MissionRequest, Refused, Send, Status
+from missionfsm.isaac.runtime.server import MissionServerCore
+from missionfsm.isaac.wire.framing import Decoder, encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
 
 ROBOTS, MISSIONS = 1_000, 10_000
 

@@ -18,18 +18,18 @@ from days import HEAD, MISSION, WORLD, day
 from transitions import Machine
 
 from missionfsm.adapters.historyfile import fingerprint
-from missionfsm.cli.recorded import check_file
+from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import ANYTHING, choose
-from missionfsm.kernel.transcript import Head, Transcript
-from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform
-from missionfsm.tools.explore import Labels, reachable, steps
-from missionfsm.tools.model import Model
-from missionfsm.tools.subject import Reference
+from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.transcript import Head, Transcript
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.explore.explore import Labels, reachable, steps
+from missionfsm.tools.reference.model import Model
+from missionfsm.tools.reference.subject import Reference
 
 SPEC = MISSION.spec
 DEFAULT = choose(SPEC.ambiguities)

@@ -16,7 +16,7 @@ from typing import Any
 import orjson
 import pytest
 
-from missionfsm.bear.status_monitor import StreamMonitor
+from missionfsm.bear.status.monitor import StreamMonitor
 
 ROBOTS = 1_000
 MESSAGES = 1_000_000

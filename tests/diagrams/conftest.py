@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from missionfsm import systems
-from missionfsm.kernel.sketch import Plan
-from missionfsm.tools.diagrams.gallery import FORMATS, Picture, Wanted, of_plan, pictures
-from missionfsm.tools.diagrams.machines import event
+from missionfsm.kernel.picture import Plan
+from missionfsm.tools.draw.gallery import FORMATS, Picture, Wanted, of_plan, pictures
+from missionfsm.tools.draw.machines import event
 
 NPM = Path(__file__).parent / "npm"
 ODD = (

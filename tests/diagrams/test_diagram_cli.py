@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from commandline import CommandLine
 
-from missionfsm.isaac.plans import FORKLIFTS
-from missionfsm.tools.diagrams.gallery import FORMATS, SVG, Picture
+from missionfsm.isaac.server.plans import FORKLIFTS
+from missionfsm.tools.draw.gallery import FORMATS, SVG, Picture
 
 
 @pytest.fixture

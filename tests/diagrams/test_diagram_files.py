@@ -11,9 +11,9 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from missionfsm.tools.diagrams.gallery import FORMATS, SVG, Picture
-from missionfsm.tools.diagrams.index import index, path
-from missionfsm.tools.diagrams.picture import Diagram
+from missionfsm.tools.draw.diagram import Diagram
+from missionfsm.tools.draw.gallery import FORMATS, SVG, Picture
+from missionfsm.tools.draw.index import index, path
 
 FOLDER = Path(__file__).parents[2] / "diagrams"
 REDRAW = "run: missionfsm diagram -o diagrams"

@@ -13,9 +13,9 @@ import attrs
 import pytest
 
 from missionfsm.kernel.chart import Chart
-from missionfsm.tools.diagrams.gallery import FORMATS, Picture
-from missionfsm.tools.diagrams.machines import event
-from missionfsm.tools.diagrams.picture import state_name
+from missionfsm.tools.draw.diagram import state_name
+from missionfsm.tools.draw.gallery import FORMATS, Picture
+from missionfsm.tools.draw.machines import event
 
 Moves = dict[str, dict[str, str]]
 

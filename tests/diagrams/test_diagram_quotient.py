@@ -12,18 +12,18 @@ from attrs import evolve, frozen
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Alphabet, Prompt
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.picture import Refs, Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
-from missionfsm.kernel.sketch import Refs, Sketch
 from missionfsm.kernel.spec import Delivery, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.diagrams import picture
-from missionfsm.tools.diagrams.gallery import Picture
-from missionfsm.tools.diagrams.picture import Arrow, Node, Side, Stay
-from missionfsm.tools.diagrams.quotient import Move, Quotient, quotient
-from missionfsm.tools.diagrams.tables import of_contrast, of_quotient
-from missionfsm.tools.explore import Labels, references
-from missionfsm.tools.model import Model, Snapshot
+from missionfsm.tools.draw import diagram as picture
+from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay
+from missionfsm.tools.draw.gallery import Picture
+from missionfsm.tools.draw.quotient import Move, Quotient, quotient
+from missionfsm.tools.draw.tables import of_contrast, of_quotient
+from missionfsm.tools.explore.explore import Labels, references
+from missionfsm.tools.reference.model import Model, Snapshot
 
 # A turnstile: a coin unlocks it for one push. What becomes of a second coin is nowhere said.
 

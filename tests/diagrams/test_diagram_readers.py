@@ -11,8 +11,8 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from missionfsm.tools.diagrams.gallery import FORMATS, Picture
-from missionfsm.tools.diagrams.picture import Arrow, Diagram
+from missionfsm.tools.draw.diagram import Arrow, Diagram
+from missionfsm.tools.draw.gallery import FORMATS, Picture
 
 SVG = "{http://www.w3.org/2000/svg}"
 Readers = dict[str, dict[str, Any]]

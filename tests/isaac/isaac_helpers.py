@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 
-from missionfsm.isaac.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
-from missionfsm.isaac.mission import Effect, MissionRequest, Refused, Send, Status, StatusChanged
-from missionfsm.isaac.profile import DOCUMENTED, Profile
-from missionfsm.isaac.server import MissionServerCore, elapse
+from missionfsm.isaac.runtime.missions import Effect, MissionRequest, Refused, Send, Status, StatusChanged
+from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
+from missionfsm.isaac.runtime.server import MissionServerCore, elapse
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
 
 RUNNING, SUCCESS, FAILURE = WireStatus.RUNNING, WireStatus.SUCCESS, WireStatus.FAILURE
 

@@ -14,11 +14,11 @@ import pytest
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.subject import Subject
+from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import system
-from missionfsm.tools.conversation import introduce
-from missionfsm.tools.run import Run
+from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.run import Run
 
 SUBJECTS = Path(__file__).parent.parent / "subjects"
 NODE = shutil.which("node")

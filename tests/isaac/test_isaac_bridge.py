@@ -13,16 +13,16 @@ from typing import Any
 import pytest
 from commandline import CommandLine
 
-from missionfsm.adapters.tcp_bridge import Program, RobotBridge, address
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
-from missionfsm.isaac.missionfile import MissionFile, parse
+from missionfsm.adapters.isaac.bridge import Program, RobotBridge, address
 from missionfsm.isaac.realtime import in_real_time, submissions
-from missionfsm.isaac.wire import Decoder, encode
+from missionfsm.isaac.runtime.missionfile import MissionFile, parse
+from missionfsm.isaac.wire.framing import Decoder, encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
 from missionfsm.kernel.subject import SubjectError
-from missionfsm.kernel.transcript import Head
+from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check import check
-from missionfsm.tools.live import live
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.conform.live import live
 
 SERVER = Path(__file__).parent.parent / "subjects" / "isaac_tcp_server.py"
 MISSIONFSM = (sys.executable, "-m", "missionfsm")
@@ -116,7 +116,7 @@ def test_the_robot_that_ships(command_line: CommandLine, port: int) -> None:
 
 def test_a_robot_that_does_not_come(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where no robot connects, or one program cannot be started, that is no violation."""
-    monkeypatch.setattr("missionfsm.adapters.tcp_bridge.PATIENCE", 0.1)
+    monkeypatch.setattr("missionfsm.adapters.isaac.bridge.PATIENCE", 0.1)
     bridge = RobotBridge(0, TOLERANCE, host="127.0.0.1")
     with pytest.raises(SubjectError, match=r"no robot has connected to port \d+ within 0.1 s"):
         judged(bridge)

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 from isaac_helpers import uuid
 
-from missionfsm.isaac.mission import RobotOffline, RobotOnline, Status, StatusChanged
-from missionfsm.isaac.missionfile import MissionEntry, MissionFile
+from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
+from missionfsm.isaac.runtime.missions import RobotOffline, RobotOnline, Status, StatusChanged
 
 APP = (
     "import typer; from missionfsm.cli.isaac import dispatch, robot; app = typer.Typer(); "

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from isaac_helpers import FAILURE, RUNNING, SUCCESS, uuid
 
-from missionfsm.isaac import codelet as machine
-from missionfsm.isaac.codelet import (
+from missionfsm.isaac.runtime import codelet as machine
+from missionfsm.isaac.runtime.codelet import (
     TABLE,
     Codelet,
     Configure,
@@ -24,9 +24,9 @@ from missionfsm.isaac.codelet import (
     mission_arrives,
     time_passes,
 )
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, WireStatus
-from missionfsm.isaac.robot import Behavior, Did, RobotCore, ScriptProblem, Transmit, parse_script
-from missionfsm.isaac.wire import WireError
+from missionfsm.isaac.runtime.robot import Behavior, Did, RobotCore, ScriptProblem, Transmit, parse_script
+from missionfsm.isaac.wire.framing import WireError
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, WireStatus
 
 
 def report(number: int | None, status: WireStatus) -> Report:

@@ -12,12 +12,12 @@ from collections.abc import Callable, Iterator
 import attrs
 import pytest
 
-from missionfsm.isaac.codelet import StartBehavior
-from missionfsm.isaac.messages import Header, Message, MissionProto, Payload, Uuid
-from missionfsm.isaac.mission import Close, MissionRequest, Refused, Send, Status
-from missionfsm.isaac.profile import DOCUMENTED, Profile
-from missionfsm.isaac.robot import Did, RobotCore, Transmit
-from missionfsm.isaac.server import MissionServerCore
+from missionfsm.isaac.runtime.codelet import StartBehavior
+from missionfsm.isaac.runtime.missions import Close, MissionRequest, Refused, Send, Status
+from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
+from missionfsm.isaac.runtime.robot import Did, RobotCore, Transmit
+from missionfsm.isaac.runtime.server import MissionServerCore
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, Payload, Uuid
 
 Plan = tuple[tuple[str, tuple[int, ...]], ...]
 """Missions: the robot, and the missions that it waits for."""

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from isaac_helpers import FAILURE, RUNNING, SUCCESS, Driver
 
-from missionfsm.isaac import wire
-from missionfsm.isaac.codelet import Codelet
-from missionfsm.isaac.messages import Header, Message, Uuid
-from missionfsm.isaac.mission import MissionRequest, Refused, Send, StatusChanged
-from missionfsm.isaac.robot import Behavior, RobotCore, Transmit
-from missionfsm.isaac.server import MissionServerCore
+from missionfsm.isaac.runtime.codelet import Codelet
+from missionfsm.isaac.runtime.missions import MissionRequest, Refused, Send, StatusChanged
+from missionfsm.isaac.runtime.robot import Behavior, RobotCore, Transmit
+from missionfsm.isaac.runtime.server import MissionServerCore
+from missionfsm.isaac.wire import framing as wire
+from missionfsm.isaac.wire.messages import Header, Message, Uuid
 
 
 class Naive:

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from isaac_helpers import uuid
 
-from missionfsm.isaac.graph import cycles, topological_order
-from missionfsm.isaac.mission import Refused
-from missionfsm.isaac.missionfile import MissionEntry, MissionFile, parse, submit_all
-from missionfsm.isaac.profile import AS_SHIPPED, DOCUMENTED, Profile
-from missionfsm.isaac.server import MissionServerCore
+from missionfsm.isaac.runtime.graph import cycles, topological_order
+from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile, parse, submit_all
+from missionfsm.isaac.runtime.missions import Refused
+from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
+from missionfsm.isaac.runtime.server import MissionServerCore
 
 
 def problems(text: str | bytes, profile: Profile = DOCUMENTED) -> list[str]:

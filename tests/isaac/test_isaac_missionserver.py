@@ -9,11 +9,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from missionfsm.adapters.missionserver import AsyncMissionServer, Mission, MissionRefusedError, MissionServer
-from missionfsm.adapters.tcp import TcpRobot
-from missionfsm.isaac.codelet import Codelet
-from missionfsm.isaac.profile import AS_SHIPPED, DOCUMENTED
-from missionfsm.isaac.robot import Behavior, RobotCore
+from missionfsm.adapters.isaac.missionserver import AsyncMissionServer, Mission, MissionRefusedError, MissionServer
+from missionfsm.adapters.isaac.tcp import TcpRobot
+from missionfsm.isaac.runtime.codelet import Codelet
+from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED
+from missionfsm.isaac.runtime.robot import Behavior, RobotCore
 
 INCOMPLETE = (Mission.Status.CREATED, Mission.Status.QUEUED, Mission.Status.STARTED, Mission.Status.RUNNING)
 

@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from isaac_helpers import FAILURE, RUNNING, SUCCESS, Driver, says_name, says_status, uuid
 
-from missionfsm.isaac.messages import Header, Message, MissionStatusProto
-from missionfsm.isaac.mission import Close, Refused
-from missionfsm.isaac.profile import AS_SHIPPED, DOCUMENTED, PROFILES, Profile
-from missionfsm.isaac.wire import WireError
+from missionfsm.isaac.runtime.missions import Close, Refused
+from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, PROFILES, Profile
+from missionfsm.isaac.wire.framing import WireError
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto
 
 
 def reading(*choices: str, **settings: float) -> Driver:

@@ -5,8 +5,7 @@ import math
 import pytest
 from isaac_helpers import FAILURE, RUNNING, SUCCESS, Driver, request, says_name, says_status, uuid
 
-from missionfsm.isaac.messages import Header, Message, MissionProto, TextProto
-from missionfsm.isaac.mission import (
+from missionfsm.isaac.runtime.missions import (
     Ignored,
     MissionRequest,
     Refused,
@@ -17,8 +16,9 @@ from missionfsm.isaac.mission import (
     Status,
     StatusChanged,
 )
-from missionfsm.isaac.server import MissionServerCore
-from missionfsm.isaac.wire import WireError
+from missionfsm.isaac.runtime.server import MissionServerCore
+from missionfsm.isaac.wire.framing import WireError
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, TextProto
 
 
 def test_isaac_server_a_mission_from_creation_to_success() -> None:

@@ -9,18 +9,18 @@ from typing import Any
 import pytest
 from spec_helpers import breaks, explained, needs_node, node, run_of
 
-from missionfsm.adapters.isaac_subjects import RobotSubject
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
-from missionfsm.isaac.robot_readings import AMBIGUITIES
-from missionfsm.isaac.wire import encode
-from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.transcript import Head
+from missionfsm.adapters.isaac.subjects import RobotSubject
+from missionfsm.isaac.robot.readings import AMBIGUITIES
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform
-from missionfsm.tools.subject import Reference
-from missionfsm.tools.teeth import teeth
-from missionfsm.tools.verdict import Verdict
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.mutate.teeth import teeth
+from missionfsm.tools.reference.subject import Reference
 
 ROBOT = system("isaac.robot")
 ONE, TWO = Uuid(1, 1 << 60 | 1), Uuid(2, 1 << 60 | 2)

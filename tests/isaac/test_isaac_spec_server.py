@@ -9,22 +9,30 @@ import attrs
 import pytest
 from spec_helpers import breaks, explained, needs_node, node, run_of
 
-from missionfsm.adapters.isaac_subjects import ServerSubject
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid, WireStatus
-from missionfsm.isaac.profile import AS_SHIPPED, DOCUMENTED, Profile
-from missionfsm.isaac.server_readings import AMBIGUITIES
-from missionfsm.isaac.wire import encode
+from missionfsm.adapters.isaac.subjects import ServerSubject
+from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
+from missionfsm.isaac.server.readings import AMBIGUITIES
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import (
+    Header,
+    Message,
+    MissionProto,
+    MissionStatusProto,
+    TextProto,
+    Uuid,
+    WireStatus,
+)
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.belief import Automaton
 from missionfsm.kernel.readings import choose
-from missionfsm.kernel.transcript import Head
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform
-from missionfsm.tools.explore import explore
-from missionfsm.tools.subject import Reference
-from missionfsm.tools.teeth import teeth
-from missionfsm.tools.verdict import Verdict
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.explore.explore import explore
+from missionfsm.tools.mutate.teeth import teeth
+from missionfsm.tools.reference.subject import Reference
 
 SERVER = system("isaac.server")
 SETTLED = {"settled": True}

@@ -12,15 +12,15 @@ import attrs
 import pytest
 from isaac_helpers import RUNNING, SUCCESS, says_name
 
-from missionfsm.adapters.lines import LineConnection
-from missionfsm.adapters.missionserver import AsyncMissionServer, Mission
-from missionfsm.adapters.tcp import TcpMissionServer, TcpRobot, fresh_uuid
-from missionfsm.isaac.codelet import Codelet
-from missionfsm.isaac.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
-from missionfsm.isaac.mission import MissionRequest
-from missionfsm.isaac.profile import DOCUMENTED
-from missionfsm.isaac.robot import Behavior, RobotCore
-from missionfsm.isaac.wire import Decoder, encode
+from missionfsm.adapters.isaac.lines import LineConnection
+from missionfsm.adapters.isaac.missionserver import AsyncMissionServer, Mission
+from missionfsm.adapters.isaac.tcp import TcpMissionServer, TcpRobot, fresh_uuid
+from missionfsm.isaac.runtime.codelet import Codelet
+from missionfsm.isaac.runtime.missions import MissionRequest
+from missionfsm.isaac.runtime.profile import DOCUMENTED
+from missionfsm.isaac.runtime.robot import Behavior, RobotCore
+from missionfsm.isaac.wire.framing import Decoder, encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
 
 LIMIT = 20.0
 

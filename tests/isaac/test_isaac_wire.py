@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missionfsm.isaac.messages import (
+from missionfsm.isaac.wire.framing import Decoder, WireError, decode_line, encode
+from missionfsm.isaac.wire.messages import (
     TYPE_IDS,
     Header,
     Message,
@@ -19,7 +20,6 @@ from missionfsm.isaac.messages import (
     signed,
     unsigned,
 )
-from missionfsm.isaac.wire import Decoder, WireError, decode_line, encode
 
 U64 = st.integers(0, 2**64 - 1)
 UUIDS = st.builds(Uuid, U64, U64)

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from toys import FLAKY_LAMP, LAMP, NEWS, PLAIN_TICKETS, REGISTER, TICKETS, Event
 
 from missionfsm.kernel import history
-from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Name, Received, Returned, Settled
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
@@ -24,6 +23,7 @@ from missionfsm.kernel.rules import (
     UNAVAILABLE,
 )
 from missionfsm.kernel.spec import Spec
+from missionfsm.oracle.belief import Automaton, Belief
 
 NAMES = ("x", "y", "z")
 STREAMS: tuple[Name, ...] = (("stream", 1), ("stream", 2))

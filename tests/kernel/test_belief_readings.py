@@ -7,10 +7,10 @@ import itertools
 import pytest
 from toys import BUTTONS, QUESTIONS
 
-from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.history import Answer, Called, Returned
 from missionfsm.kernel.readings import ANYTHING, constrain
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
+from missionfsm.oracle.belief import Automaton, Belief
 
 AUTOMATON = Automaton(BUTTONS)
 Asked = tuple[tuple[object, ...], object]

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from toys import REGISTER, Request
 
-from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.history import Answer, Called, Event, Returned
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, OK
+from missionfsm.oracle.belief import Automaton, Belief
 
 AUTOMATON = Automaton(REGISTER)
 

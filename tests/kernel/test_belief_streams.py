@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from toys import FLAKY_LAMP, LAMP, PLAIN_TICKETS, TICKETS, Event
 
-from missionfsm.kernel.belief import Automaton, Belief
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Name, Received, Returned, Settled
 from missionfsm.kernel.history import Event as Observed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, UNAVAILABLE
 from missionfsm.kernel.spec import Spec
+from missionfsm.oracle.belief import Automaton, Belief
 
 ONE, TWO = ("stream", 1), ("stream", 2)
 NUDGE, SERVE = Driven(Event("nudge")), Driven(Event("serve"))

@@ -11,16 +11,17 @@ from pathlib import Path
 import pytest
 from toys import TICKETS, Event
 
-from missionfsm.bear.messages import Command, Goal
-from missionfsm.bear.mission import Kind, World
-from missionfsm.bear.mission_happenings import Happening
-from missionfsm.bear.mission_requests import Request, Wanted
-from missionfsm.bear.mission_system import SYSTEM
-from missionfsm.kernel import belief, history
-from missionfsm.kernel.belief import Automaton, Belief
+from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.inputs import Request, Wanted
+from missionfsm.bear.mission.state import Kind, World
+from missionfsm.bear.mission.system import SYSTEM
+from missionfsm.bear.wire.messages import Command, Goal
+from missionfsm.kernel import history
 from missionfsm.kernel.history import Answer, Called, Driven, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
-from missionfsm.tools.model import Model, Reply
+from missionfsm.oracle import belief
+from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.tools.reference.model import Model, Reply
 
 EVENTS = 1_000
 GOALS = tuple(Goal(destination_id=f"table-{number}") for number in (1, 2, 3))
@@ -135,7 +136,7 @@ SCRIPT = """
 import sys
 sys.path.insert(0, sys.argv[1])
 from test_belief_walk import SYSTEM, walk
-from missionfsm.kernel.belief import Automaton
+from missionfsm.oracle.belief import Automaton
 automaton = Automaton(SYSTEM.spec)
 print(walk(automaton, 3, 250), automaton.size, sorted(automaton.exercised().items()))
 """

@@ -12,7 +12,10 @@ from attrs import evolve
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missionfsm.kernel.explanation import (
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import Ambiguity, choose
+from missionfsm.kernel.spec import Emission, Opening, Step
+from missionfsm.oracle.explanation import (
     GONE,
     Channel,
     Explanation,
@@ -32,9 +35,6 @@ from missionfsm.kernel.explanation import (
     within,
     without_lost,
 )
-from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import Ambiguity, choose
-from missionfsm.kernel.spec import Emission, Opening, Step
 
 OK = Answer("OK")
 ASKED = Ambiguity("E-1", "?", {"a": "yes", "b": "no"}, "a")

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Event, Received
-from missionfsm.kernel.texts import LONG, Texts
-from missionfsm.kernel.transcript import Transcript
+from missionfsm.oracle.line_cache import LONG, Texts
+from missionfsm.oracle.transcript import Transcript
 from missionfsm.systems import system
 
 CODEC = system("bear.mission").codec

@@ -11,9 +11,9 @@ import json
 import sys
 from typing import Any
 
-from missionfsm.adapters.missionserver import Mission, MissionRefusedError, MissionServer
+from missionfsm.adapters.isaac.missionserver import Mission, MissionRefusedError, MissionServer
 from missionfsm.adapters.stdio import serve
-from missionfsm.isaac.missionfile import MissionFile, parse
+from missionfsm.isaac.runtime.missionfile import MissionFile, parse
 from missionfsm.kernel.subject import Exchange, SubjectError
 
 

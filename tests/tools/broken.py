@@ -11,7 +11,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import system
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
 BUSY = "bear.mission/CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued"

@@ -10,14 +10,14 @@ import pytest
 from broken import MISSION
 from commandline import CommandLine
 
-from missionfsm.kernel.transcript import Head, head
+from missionfsm.oracle.transcript import Head, head
 from missionfsm.systems import names, system
-from missionfsm.tools.check import Judge, check
-from missionfsm.tools.conform import conform
-from missionfsm.tools.coverage import Census, rare
-from missionfsm.tools.run import Run
-from missionfsm.tools.subject import Reference
-from missionfsm.tools.verdict import PER, RATE
+from missionfsm.tools.check.judge import Judge, check
+from missionfsm.tools.check.verdict import PER, RATE
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.coverage import Census, rare
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.reference.subject import Reference
 
 HEAD: Any = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 

@@ -7,15 +7,15 @@ import functools
 import pytest
 from combinations import BOUNDS, Bench
 
-from missionfsm.kernel.belief import Automaton
-from missionfsm.kernel.transcript import head
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
-from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform
-from missionfsm.tools.conversation import introduce
-from missionfsm.tools.distinguish import Lab, Trial
-from missionfsm.tools.run import Run
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.distinguish import Lab, Trial
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
 ALTERNATIVES = [

@@ -10,9 +10,9 @@ from broken import BUSY, EMPTY, MISSION, NEVER, Fickle, answering
 from commandline import CommandLine
 
 from missionfsm.kernel.subject import Subject
-from missionfsm.tools.conform import conform
-from missionfsm.tools.expected import read_expected
-from missionfsm.tools.verdict import Outcome, Verdict
+from missionfsm.tools.check.baseline import read_expected
+from missionfsm.tools.check.verdict import Outcome, Verdict
+from missionfsm.tools.conform.conform import conform
 
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 CREATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}

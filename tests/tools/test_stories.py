@@ -14,16 +14,16 @@ from commandline import CommandLine
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
-from missionfsm.kernel.transcript import head
-from missionfsm.tools.check import check
-from missionfsm.tools.conform import conform, search
-from missionfsm.tools.conversation import Conversation
-from missionfsm.tools.run import Run
-from missionfsm.tools.shortest import everything, length
-from missionfsm.tools.story import as_mermaid, as_pytest, story, suspects
-from missionfsm.tools.subject import Reference
-from missionfsm.tools.teeth import mutants
-from missionfsm.tools.verdict import Verdict
+from missionfsm.oracle.transcript import head
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story, suspects
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import conform, search
+from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.shortest import everything, length
+from missionfsm.tools.mutate.teeth import mutants
+from missionfsm.tools.reference.subject import Reference
 
 HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 

@@ -23,7 +23,7 @@ from attrs import evolve
 from missionfsm.kernel.history import Answer
 from missionfsm.systems import system
 from missionfsm.testing import Suite
-from missionfsm.tools.subject import Reference
+from missionfsm.tools.reference.subject import Reference
 
 RULE = {rule!r}
 

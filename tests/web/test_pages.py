@@ -14,16 +14,16 @@ from attrs import evolve
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import ANYTHING, constrain
-from missionfsm.kernel.transcript import head
+from missionfsm.oracle.transcript import head
 from missionfsm.pages.graph import BEYOND, HERE, Graph
 from missionfsm.pages.outline import ClauseLine, Evidence, Section, Standing, document_map
 from missionfsm.pages.render import prose, specification_page
 from missionfsm.pages.report import Judged, report
 from missionfsm.pages.teeth import teeth_page
-from missionfsm.tools.check import check
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Experiment, Verdict
+from missionfsm.tools.mutate.teeth import Bite, Teeth
 from missionfsm.tools.specpages import clauses
-from missionfsm.tools.teeth import Bite, Teeth
-from missionfsm.tools.verdict import Experiment, Verdict
 
 HEAD = {
     "missionfsm": 1,

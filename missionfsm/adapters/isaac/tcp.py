@@ -1,0 +1,274 @@
+"""Mission server and robot on real sockets. MissionSubmission › JsonTcpServer Class, JsonTcpClient Codelet.
+
+Here are the sockets, the clock and the dice; what is done with them is decided by the very same
+:class:`~missionfsm.isaac.runtime.server.MissionServerCore` and :class:`~missionfsm.isaac.runtime.robot.RobotCore` that
+run under the oracle. Everything happens on one event loop; nothing here blocks it, and no peer can hold up another:
+reading is cut into slices, writing never waits, a peer that does not read is dropped.
+"""
+
+import asyncio
+import random
+import time
+import uuid as uuids
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from missionfsm.adapters.isaac.lines import LOG, WRITE_TIMEOUT, Alarm, LineConnection
+from missionfsm.isaac.runtime.missionfile import MissionFile, submit_all
+from missionfsm.isaac.runtime.missions import Close, Effect, Ignored, MissionRequest, Refused, Send
+from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
+from missionfsm.isaac.runtime.robot import RobotCore, RobotEffect, Transmit
+from missionfsm.isaac.runtime.server import MissionServerCore
+from missionfsm.isaac.wire.framing import MAX_LINE, Decoder, WireError, encode
+from missionfsm.isaac.wire.messages import Message, Payload, Uuid, stamp
+
+DEFAULT_PORT: Final = 9998
+ANY_HOST: Final = "0.0.0.0"  # noqa: S104 - robots connect from other machines
+BACKLOG: Final = 1024
+_GRACE: Final = 0.5  # seconds for what is written to go out when the server closes
+
+
+def fresh_uuid() -> Uuid:
+    """An identifier that nobody has used."""
+    return Uuid.of(uuids.uuid4().int)
+
+
+def _nothing(_: object) -> None:
+    """Observe nothing."""
+
+
+class TcpMissionServer:
+    """A mission server that listens. Made and used on one event loop; `observer` is told of every effect.
+
+    `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are not read.
+    """
+
+    def __init__(  # noqa: PLR0913 - all by keyword, each with a default
+        self,
+        *,
+        host: str = ANY_HOST,
+        port: int = DEFAULT_PORT,
+        name_channel: str = "name",
+        profile: Profile = DOCUMENTED,
+        line_limit: int = MAX_LINE,
+        write_timeout: float = WRITE_TIMEOUT,
+        observer: Callable[[Effect], None] = _nothing,
+    ) -> None:
+        self.core = MissionServerCore(profile, name_channel=name_channel)
+        self.host = host
+        self.port = port
+        self._profile = profile
+        self._line_limit = line_limit
+        self._write_timeout = write_timeout
+        self._observer = observer
+        self._alarm = Alarm(self._ring)
+        self._server: asyncio.Server | None = None
+        self._numbers: dict[LineConnection, int] = {}
+        self._connections: dict[int, LineConnection] = {}
+        self._accepted = 0
+        self._closing = False
+
+    async def start(self) -> None:
+        """Listen. OSError where the address cannot be had."""
+        loop = asyncio.get_running_loop()
+        self._server = await loop.create_server(self._accept, self.host, self.port, backlog=BACKLOG)
+        self.port = self._server.sockets[0].getsockname()[1]
+
+    async def close(self) -> None:
+        """Stop listening and drop everybody. Missions keep the status they have."""
+        self._closing = True
+        self._alarm.set(None)
+        if self._server is not None:
+            self._server.close()
+        waiting = [connection.gone for connection in self._numbers]
+        for connection in tuple(self._numbers):
+            connection.close()
+        if waiting:
+            await asyncio.wait(waiting, timeout=_GRACE)
+        for connection in tuple(self._numbers):
+            connection.abort()
+        if self._server is not None:
+            await self._server.wait_closed()
+
+    def create(self, request: MissionRequest, uuid: Uuid) -> Refused | None:
+        """Make a mission known; see `MissionServerCore.create`."""
+        return self.core.create(request, uuid)
+
+    def submit(self, uuid: Uuid) -> Refused | None:
+        """Run a created mission; see `MissionServerCore.submit`."""
+        return self._taken(self.core.submit(uuid, self._alarm.now()))
+
+    def submit_file(self, file: MissionFile, fresh: tuple[Uuid, ...]) -> Refused | None:
+        """Create and submit all missions of a file."""
+        return self._taken(submit_all(self.core, file, fresh, self._alarm.now()))
+
+    def _taken(self, result: Refused | tuple[Effect, ...]) -> Refused | None:
+        if isinstance(result, Refused):
+            return result
+        self._perform(result)
+        return None
+
+    def _accept(self) -> LineConnection:
+        return LineConnection(
+            Decoder(limit=self._line_limit, numbers=self._profile.ai_25 == "a"),
+            opened=self._opened,
+            arrived=self._arrived,
+            closed=self._closed,
+            read_last_line=self._profile.ai_26_last == "c",
+            write_timeout=self._write_timeout,
+        )
+
+    def _opened(self, connection: LineConnection) -> None:
+        self._accepted += 1
+        self._numbers[connection] = self._accepted
+        self._connections[self._accepted] = connection
+        if self._closing:
+            connection.abort()
+            return
+        self._perform(self.core.connected(self._accepted, self._alarm.now()))
+
+    def _arrived(self, connection: LineConnection, item: Message | WireError) -> None:
+        if not self._closing:
+            self._perform(self.core.received(self._numbers[connection], item, self._alarm.now()))
+
+    def _closed(self, connection: LineConnection) -> None:
+        number = self._numbers.pop(connection)
+        del self._connections[number]
+        if not self._closing:
+            self._perform(self.core.disconnected(number, self._alarm.now()))
+
+    def _ring(self) -> None:
+        self._perform(self.core.advance(self._alarm.now()))
+
+    def _perform(self, effects: Iterable[Effect]) -> None:
+        for effect in effects:
+            if isinstance(effect, Send):
+                self._send(effect)
+            elif isinstance(effect, Close):
+                if (closed := self._connections.get(effect.connection)) is not None:
+                    closed.close()
+            elif isinstance(effect, Ignored):
+                LOG.debug("connection %d: %s", effect.connection, effect.reason)
+            self._observer(effect)
+        if not self._closing:
+            self._alarm.set(self.core.next_deadline())
+
+    def _send(self, effect: Send) -> None:
+        connection = self._connections.get(effect.connection)
+        if connection is not None:
+            message = stamp(effect.payload, effect.channel, pubtime=time.time_ns(), uuid=fresh_uuid())
+            connection.send(encode(message, header_uuid_as_numbers=self._profile.header_uuid_as_numbers))
+
+
+class TcpRobot:
+    """A robot that connects, and connects again when the connection drops, for as long as `run` runs.
+
+    Between two attempts lie `first_delay` seconds, twice as many after each failure, never more than `longest_delay`,
+    each cut by up to a half at random so that a fleet does not come back all at once. `observer` is told of every
+    effect, `notes` of what happens to the connection.
+    """
+
+    def __init__(  # noqa: PLR0913 - all by keyword, each with a default
+        self,
+        core: RobotCore,
+        *,
+        host: str = "127.0.0.1",
+        port: int = DEFAULT_PORT,
+        first_delay: float = 0.1,
+        longest_delay: float = 5.0,
+        connect_timeout: float = 5.0,
+        line_limit: int = MAX_LINE,
+        write_timeout: float = WRITE_TIMEOUT,
+        observer: Callable[[RobotEffect], None] = _nothing,
+        notes: Callable[[str], None] = _nothing,
+    ) -> None:
+        self.core = core
+        self._host = host
+        self._port = port
+        self._first_delay = first_delay
+        self._longest_delay = longest_delay
+        self._connect_timeout = connect_timeout
+        self._line_limit = line_limit
+        self._write_timeout = write_timeout
+        self._observer = observer
+        self._notes = notes
+        self._alarm: Alarm | None = None
+        self._connection: LineConnection | None = None
+
+    async def run(self) -> None:
+        """Be a robot until cancelled."""
+        self._alarm = Alarm(self._ring)
+        delay = self._first_delay
+        try:
+            while True:
+                began = self._alarm.now()
+                if await self._one_connection() and self._alarm.now() - began > delay:
+                    delay = self._first_delay
+                await asyncio.sleep(delay * random.uniform(0.5, 1.0))  # noqa: S311 - no secret
+                delay = min(2 * delay, self._longest_delay)
+        finally:
+            self._alarm.set(None)
+            if (connection := self._connection) is not None:
+                connection.close()
+                await asyncio.wait([connection.gone], timeout=_GRACE)
+                connection.abort()
+
+    async def _one_connection(self) -> bool:
+        """Connect and stay until the connection drops; False if it could not be made."""
+        loop = asyncio.get_running_loop()
+        try:
+            async with asyncio.timeout(self._connect_timeout):
+                _, connection = await loop.create_connection(self._make, self._host, self._port)
+        except OSError as error:  # a TimeoutError is one too
+            self._notes(f"cannot connect to {self._host}:{self._port}: {error or type(error).__name__}")
+            return False
+        await connection.gone
+        return True
+
+    def _make(self) -> LineConnection:
+        return LineConnection(
+            Decoder(limit=self._line_limit),
+            opened=self._opened,
+            arrived=self._arrived,
+            closed=self._closed,
+            write_timeout=self._write_timeout,
+        )
+
+    def _opened(self, connection: LineConnection) -> None:
+        if connection.is_itself:
+            connection.abort()
+            return
+        self._connection = connection
+        self._notes(f"connected to {connection.peer}")
+        self._perform(self.core.connected(self._now()))
+
+    def _arrived(self, connection: LineConnection, item: Message | WireError) -> None:
+        if connection is self._connection:
+            if isinstance(item, WireError):
+                self._notes(f"from the server: {item}")
+            self._perform(self.core.received(item, self._now()))
+
+    def _closed(self, connection: LineConnection) -> None:
+        if connection is self._connection:
+            self._connection = None
+            self._notes("disconnected")
+            self._perform(self.core.disconnected(self._now()))
+
+    def _now(self) -> float:
+        assert self._alarm is not None  # noqa: S101 - set before there is a connection
+        return self._alarm.now()
+
+    def _ring(self) -> None:
+        self._perform(self.core.advance(self._now()))
+
+    def _perform(self, effects: Iterable[RobotEffect]) -> None:
+        for effect in effects:
+            if isinstance(effect, Transmit) and self._connection is not None:
+                self._connection.send(_line(effect.payload, effect.channel))
+            self._observer(effect)
+        if self._alarm is not None:
+            self._alarm.set(self.core.next_deadline())
+
+
+def _line(payload: Payload, channel: str) -> bytes:
+    return encode(stamp(payload, channel, pubtime=time.time_ns(), uuid=fresh_uuid()))

@@ -1,0 +1,65 @@
+"""Teeth on several cores: every process judges its part of the mutants, and tells how far it is."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnContext
+
+from missionfsm.systems import system
+from missionfsm.tools.mutate.teeth import Teeth, joined, teeth
+
+_MORE = "one more"
+"""What a process tells the one that shows the progress, before it tells what it found."""
+
+
+def cores() -> int:
+    """How many processes can run at once."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[], None]) -> Teeth:
+    """Judge every mutant of a system in so many processes; the same number of them finds the same.
+
+    Args:
+        progress: called for every mutant that has been judged.
+    """
+    if jobs == 1:
+        return teeth(system(name), seed=seed, only=only, progress=lambda _: progress())
+    context = multiprocessing.get_context("spawn")
+    with contextlib.ExitStack() as started:
+        parts = [started.enter_context(_begun(context, name, seed, only, (which, jobs))) for which in range(jobs)]
+        found: dict[Connection, Teeth] = {}
+        while len(found) < jobs:
+            for part in wait([part for part in parts if part not in found]):
+                assert isinstance(part, Connection)  # noqa: S101 - nothing else is waited for
+                said = part.recv()
+                if said == _MORE:
+                    progress()
+                else:
+                    found[part] = said
+    return joined(system(name), (found[part] for part in parts))
+
+
+@contextlib.contextmanager
+def _begun(context: SpawnContext, name: str, seed: int, only: str, part: tuple[int, int]) -> Iterator[Connection]:
+    """A process that judges a part, as that which it tells; it ends with this one, however this one ends."""
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_judge, args=(name, seed, only, part, theirs), daemon=True)
+    process.start()
+    theirs.close()
+    try:
+        yield ours
+    finally:
+        process.terminate()
+        process.join()
+        ours.close()
+
+
+def _judge(name: str, seed: int, only: str, part: tuple[int, int], told: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
+    told.send(teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: told.send(_MORE)))

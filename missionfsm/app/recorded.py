@@ -1,0 +1,193 @@
+"""Judge recorded histories: a file at a time, a robot at a time, a line at a time."""
+
+from __future__ import annotations
+
+import itertools
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+
+from attrs import evolve
+
+from missionfsm.adapters.historyfile import (
+    STDIN,
+    Lines,
+    Stamps,
+    called,
+    fingerprint,
+    is_plain_file,
+    lines,
+    lost_calls,
+    open_history,
+    placed,
+    wrong_line,
+)
+from missionfsm.app.watched import subscription, watch_messages
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.readings import constrain
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.line_cache import Texts
+from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import KEPT, Judge
+from missionfsm.tools.check.verdict import Verdict
+
+Lost = Mapping[str | None, frozenset[int]]
+"""For each robot the ids of the calls that are never answered."""
+
+
+def check_file(
+    path: str, readings: Mapping[str, str] | None = None, tell: Callable[[str], None] = lambda _: None
+) -> list[tuple[str | None, Verdict]]:
+    """The verdict for each robot that a history speaks of, in the order of their first lines.
+
+    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a status
+    subscription is the bare messages of that subscription; what is wrong with one is told at once.
+
+    Raises:
+        UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
+        ValueError: `readings` names something that does not exist.
+    """
+    if not is_plain_file(path):  # it can be read only once
+        return _judged(path, readings, tell, {}, KEPT)
+    try:
+        return _judged(path, readings, tell, None)
+    except _UndecidedError:
+        return _judged(path, readings, tell, lost_calls(path))
+
+
+class _UndecidedError(Exception):
+    """Calls wait for answers that may never come: it pays to know beforehand which."""
+
+
+LOOK = 16
+"""How many lines a call may wait for its answer before the file is looked through for such as never get one."""
+
+
+def _judged(
+    path: str, readings: Mapping[str, str] | None, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
+) -> list[tuple[str | None, Verdict]]:
+    """See `check_file`.
+
+    Args:
+        lost: which calls are never answered; None: hope that all are, or raise.
+        keep: how many lines are kept to be shown; with none the file is one that can be read again.
+    """
+    source = open_history(path)
+    try:
+        texts = Lines(source, path)
+        numbered = iter(texts)
+        number, text = next(numbered, (0, b""))
+        if not number:
+            message = f"{called(path)}: the history is empty"
+            raise UnreadableError(message)
+        with placed(path, number):
+            line = texts.json(text)
+        watched = subscription(line)
+        if watched:
+            messages = itertools.chain([(number, line)], texts.parsed(numbered))
+            return [(None, watch_messages(watched, messages, tell))]
+        with placed(path, number):
+            judges = _Judges(line, readings, lost, keep)
+        judges.read(path, texts, numbered)
+    finally:
+        if path != STDIN:
+            source.close()
+    found = judges.verdicts()
+    # What was not kept while it was read is read again.
+    return found if keep else [(robot, _retold(verdict, path, robot)) for robot, verdict in found]
+
+
+class _Judges:
+    """The judges of a file, one for each robot that it speaks of.
+
+    Args:
+        line: the first line.
+        keep: how many lines are kept to be shown; with none, lines that come again are known by their text.
+
+    Raises:
+        UnreadableError: that is no first line.
+    """
+
+    def __init__(self, line: JSON, readings: Mapping[str, str] | None, lost: Lost | None, keep: int) -> None:
+        self._head = head(line)
+        self._stamps = Stamps()
+        self._stamps.robot(line)
+        self._system = system(self._head.system)
+        assumed = constrain(self._system.spec.ambiguities, readings or {})
+        self._automaton = Automaton(self._system.spec, self._head.drives, assumed)
+        self._lost = lost
+        self._keep = keep
+        self._nobody = self._new(None)
+        self._texts = Texts(self._nobody.transcript, fingerprint)
+        self._judges: dict[str | None, Judge] = {}
+        self._stopped: dict[str | None, int] = {}
+        self._waiting: dict[Judge, int | None] = {}
+
+    def _new(self, robot: str | None) -> Judge:
+        calls = (self._lost or {}).get(robot, frozenset())
+        automaton, keep = self._automaton, self._keep
+        return Judge(self._system, self._head, automaton, fingerprint=fingerprint, lost=calls, keep=keep, apart=True)
+
+    def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
+        """Take all lines into account. Raises UnreadableError for one that is not of the format."""
+        again, take = self._texts.again, self._nobody.take
+        read_again, looks, nobody = not self._keep, self._lost is None, self._nobody
+        for number, text in numbered:
+            try:
+                if looks and not number % LOOK:
+                    self._look(nobody)
+                known = again(text) if read_again else None
+                if known is None:
+                    self._take(number, text, texts.json(text))
+                elif not take(known):  # it names neither a time nor a robot, as most lines
+                    self._stopped.setdefault(None, number)
+            except UnreadableError as error:
+                raise wrong_line(path, number, error) from None
+
+    def _take(self, number: int, text: bytes, line: JSON) -> None:
+        plain = type(line) is dict and "at" not in line and "robot" not in line
+        robot = None if plain else self._stamps.robot(line)
+        judge = self._judges.get(robot)
+        if judge is None:
+            judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
+        if self._lost is None and robot is not None and not judge.read % LOOK:
+            self._look(judge)
+        comes_again = plain and not self._keep
+        if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
+            self._stopped.setdefault(robot, number)
+
+    def _look(self, judge: Judge) -> None:
+        """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""
+        oldest = next(iter(judge.transcript.pending), None)
+        if oldest is not None and self._waiting.get(judge) == oldest:
+            raise _UndecidedError
+        self._waiting[judge] = oldest
+
+    def verdicts(self) -> list[tuple[str | None, Verdict]]:
+        """What each judge says of its robot, in the order of their first lines."""
+        judges = self._judges or {None: self._nobody}
+        if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
+            raise _UndecidedError
+        return [(robot, located(judge.verdict(), self._stopped.get(robot))) for robot, judge in judges.items()]
+
+
+def _retold(verdict: Verdict, path: str, robot: str | None) -> Verdict:
+    """The verdict with the last lines before its violation, read again."""
+    if verdict.violation is None:
+        return verdict
+    kept: deque[JSON] = deque(maxlen=KEPT)
+    with open_history(path) as source:
+        for number, line in lines(source, path):
+            if number > 1 and line.get("robot") == robot:
+                kept.append(line)
+            if number == verdict.violation.at:
+                break
+    told = (*verdict.violation.history, *kept)
+    return evolve(verdict, violation=evolve(verdict.violation, history=told))
+
+
+def located(verdict: Verdict, line: int | None) -> Verdict:
+    """The verdict with the line of the file in which the violation is."""
+    if verdict.violation is None or line is None:
+        return verdict
+    return evolve(verdict, violation=evolve(verdict.violation, at=line, where=f"line {line}: "))

@@ -1,0 +1,476 @@
+"""The JSON of the mission API: requests, answers, status messages, worlds and drives, in and out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import attrs
+from attrs import evolve
+
+from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.inputs import Defect, Request, Wanted
+from missionfsm.bear.mission.operations import OPERATIONS
+from missionfsm.bear.mission.render import show, with_bare_feedback
+from missionfsm.bear.mission.skim import TIMESTAMP, skim
+from missionfsm.bear.mission.state import Family, Fault, Kind, World
+from missionfsm.bear.mission.stream import Listing, Seen, without_ids
+from missionfsm.bear.wire import messages as wire
+from missionfsm.bear.wire.messages import Command, Goal, MissionStates
+from missionfsm.bear.wire.protojson import MalformedError, camel, key_of, read, unknown_fields, write
+from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.history import Answer, Mark, Name
+from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
+from missionfsm.kernel.text import brief
+
+# Requests: which member of which oneof means which kind of mission.
+
+_MISSIONS: Mapping[tuple[str, str], Kind] = {
+    ("base_mission", "navigate_mission"): Kind.BASE_NAVIGATE,
+    ("base_mission", "navigate_auto_mission"): Kind.BASE_NAVIGATE_AUTO,
+    ("servi_mission", "delivery_mission"): Kind.SERVI_DELIVERY,
+    ("servi_mission", "delivery_patrol_mission"): Kind.SERVI_DELIVERY_PATROL,
+    ("servi_mission", "bussing_mission"): Kind.SERVI_BUSSING,
+    ("servi_mission", "bussing_patrol_mission"): Kind.SERVI_BUSSING_PATROL,
+    ("servi_mission", "navigate_mission"): Kind.SERVI_NAVIGATE,
+    ("servi_mission", "navigate_auto_mission"): Kind.SERVI_NAVIGATE_AUTO,
+    ("carti_mission", "traverse_mission"): Kind.CARTI_TRAVERSE,
+    ("carti_mission", "traverse_patrol_mission"): Kind.CARTI_TRAVERSE_PATROL,
+    ("carti_mission", "navigate_mission"): Kind.CARTI_NAVIGATE,
+    ("carti_mission", "navigate_auto_mission"): Kind.CARTI_NAVIGATE_AUTO,
+}
+_WORKFLOWS: Mapping[tuple[str, str], Kind] = {
+    ("servi_workflow", "delivery"): Kind.SERVI_DELIVERY,
+    ("servi_workflow", "delivery_patrol"): Kind.SERVI_DELIVERY_PATROL,
+    ("servi_workflow", "bussing"): Kind.SERVI_BUSSING,
+    ("servi_workflow", "bussing_patrol"): Kind.SERVI_BUSSING_PATROL,
+    ("servi_workflow", "birthday"): Kind.SERVI_BIRTHDAY,
+    ("servi_workflow", "hosting"): Kind.SERVI_HOSTING,
+    ("servi_workflow", "hosting_patrol"): Kind.SERVI_HOSTING_PATROL,
+    ("carti_workflow", "traverse"): Kind.CARTI_TRAVERSE,
+    ("carti_workflow", "traverse_patrol"): Kind.CARTI_TRAVERSE_PATROL,
+}
+_SINGLE = frozenset({Kind.BASE_NAVIGATE, Kind.SERVI_NAVIGATE, Kind.CARTI_NAVIGATE, Kind.SERVI_BIRTHDAY})
+"""Kinds with one goal of its own name instead of a list."""
+
+
+def _set_member(message: Any) -> tuple[str, Any]:  # noqa: ANN401 - any oneof wrapper
+    """The member of a oneof that is set and its content; ("", None) if none is."""
+    for attribute in attrs.fields(type(message)):
+        content = getattr(message, attribute.name)
+        if content is not None:
+            return attribute.name, content
+    return "", None
+
+
+def _finite(goal: Goal) -> bool:
+    return goal.pose is None or all(math.isfinite(number) for number in attrs.astuple(goal.pose))
+
+
+def _wanted(wrapper: Any, kinds: Mapping[tuple[str, str], Kind]) -> tuple[Wanted, tuple[Defect, ...]]:  # noqa: ANN401
+    """The mission that a wrapper of two oneofs asks for, and what is wrong with it."""
+    family, inner = _set_member(wrapper) if wrapper is not None else ("", None)
+    which, payload = _set_member(inner) if inner is not None else ("", None)
+    if payload is None:
+        return Wanted(), (Defect.EMPTY,)
+    kind = kinds[family, which]
+    given = ((payload.goal,) if payload.goal is not None else ()) if kind in _SINGLE else payload.goals
+    defects: list[Defect] = []
+    if not given:
+        defects.append(Defect.MATCH)
+    if any((goal.pose is None and not goal.destination_id) or not _finite(goal) for goal in given):
+        defects.append(Defect.GOAL)
+        given = tuple(goal for goal in given if _finite(goal))
+    return Wanted(kind, given), tuple(defects)
+
+
+def _one_mission(name: str, params: JSON) -> Request:
+    wanted, defects = _wanted(read(wire.MissionRequest, params).mission, _MISSIONS)
+    return Request(name, (wanted,), None, defects)
+
+
+def _many_missions(name: str, params: JSON) -> Request:
+    entries = [_wanted(entry.mission, _MISSIONS) for entry in read(wire.BatchRequest, params).missions]
+    if not entries:
+        return Request(name, (), None, (Defect.EMPTY,))
+    defects = {defect for _, found in entries for defect in found}
+    return Request(name, tuple(wanted for wanted, _ in entries), None, _ordered(defects))
+
+
+def _workflow(name: str, params: JSON) -> Request:
+    wanted, defects = _wanted(read(wire.WorkflowRequest, params).mission_workflow, _WORKFLOWS)
+    return Request(name, (wanted,), None, defects)
+
+
+def _nothing(name: str, params: JSON) -> Request:
+    read(wire.Empty, params)
+    return Request(name)
+
+
+def _command(name: str, params: JSON) -> Request:
+    command = read(wire.UpdateRequest, params).mission_command or wire.MissionCommand()
+    defects: list[Defect] = []
+    if not command.mission_id:
+        defects.append(Defect.EMPTY)
+    if command.command == Command.COMMAND_UNKNOWN or not isinstance(command.command, Command):
+        defects.append(Defect.COMMAND)
+    asked = command.command if isinstance(command.command, Command) else None
+    return Request(name, (), asked, tuple(defects))
+
+
+def _ordered(defects: set[Defect]) -> tuple[Defect, ...]:
+    return tuple(defect for defect in Defect if defect in defects)
+
+
+_READERS: Mapping[str, tuple[Callable[[str, JSON], Request], type]] = {
+    "CreateMission": (_one_mission, wire.MissionRequest),
+    "AppendMission": (_one_mission, wire.MissionRequest),
+    "CreateMissionBatch": (_many_missions, wire.BatchRequest),
+    "AppendMissionBatch": (_many_missions, wire.BatchRequest),
+    "CreateMissionWorkflow": (_workflow, wire.WorkflowRequest),
+    "UpdateMission": (_command, wire.UpdateRequest),
+    "ChargeRobot": (_nothing, wire.Empty),
+    "ClearMissionStatus": (_nothing, wire.Empty),
+    "SkipGoal": (_nothing, wire.Empty),
+    "SubscribeMissionStatus": (_nothing, wire.Empty),
+}
+
+
+def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+    """The mission id of an UpdateMission and the params with a dash in its place; other requests have none."""
+    if method != "UpdateMission" or not isinstance(params, dict):
+        return (), params
+    outer = key_of(params, "mission_command")
+    command = params.get(outer)
+    if not isinstance(command, dict):
+        return (), params
+    key = key_of(command, "mission_id")
+    named = command.get(key)
+    if not isinstance(named, str) or not named:
+        return (), params
+    return (named,), {**params, outer: {**command, key: "-"}}
+
+
+def request(method: str, params: JSON) -> Request:
+    """The request that a call makes, whatever its names are."""
+    if method not in _READERS:
+        message = f"{brief(method)} is not a method of bear.mission; those are {', '.join(_READERS)}"
+        raise UnreadableError(message)
+    reader, kind = _READERS[method]
+    params = {} if params is None else params
+    try:
+        found = reader(method, params)
+    except MalformedError as error:
+        return Request(method, (), None, (Defect.FORMAT,), str(error))
+    if unknown_fields(kind, params):
+        found = evolve(found, defects=_ordered({*found.defects, Defect.FIELD}))
+    return found
+
+
+def write_request(asked: Request, names: tuple[Name, ...]) -> JSON:
+    """The params of a well-formed request; of a defective one the part that can be said."""
+    if asked.operation == "UpdateMission":
+        command = {} if asked.command is None else {"command": asked.command.name}
+        return {"missionCommand": {"missionId": str(names[0]) if names else "", **command}}
+    if asked.operation == "CreateMissionWorkflow":
+        return {"missionWorkflow": _write_wanted(asked.wanted[0], _WORKFLOWS)} if asked.wanted else {}
+    missions = [{"mission": _write_wanted(wanted, _MISSIONS)} for wanted in asked.wanted]
+    if asked.operation.endswith("Batch"):
+        return {"missions": missions}
+    return missions[0] if missions else {}
+
+
+def _write_wanted(wanted: Wanted, kinds: Mapping[tuple[str, str], Kind]) -> JSON:
+    place = next((place for place, kind in kinds.items() if kind is wanted.kind), None)
+    if place is None:
+        return {}
+    goals = [write(goal) for goal in wanted.goals]
+    payload = ({"goal": goals[0]} if goals else {}) if wanted.kind in _SINGLE else {"goals": goals}
+    return {camel(place[0]): {camel(place[1]): payload}}
+
+
+# Answers.
+
+_IDS = {
+    "CreateMission": wire.MissionId,
+    "AppendMission": wire.MissionId,
+    "ChargeRobot": wire.MissionId,
+    "SkipGoal": wire.MissionId,
+    "CreateMissionBatch": wire.MissionIds,
+    "AppendMissionBatch": wire.MissionIds,
+    "CreateMissionWorkflow": wire.MissionIds,
+    "ClearMissionStatus": wire.MissionIds,
+}
+_NAMED, _LISTED = Answer(OK), Answer(OK, unordered=True)
+
+
+def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
+    """What a successful result says; one that is not of the documented form is `Garbled`."""
+    if method in STREAMS:
+        stream = result.get("stream") if isinstance(result, dict) else None
+        if isinstance(stream, bool) or not isinstance(stream, int):
+            message = f"{method} answered {brief(result)}, which carries no stream number"
+            raise UnreadableError(message)
+        return Answer(OK), (("stream", stream),)
+    kind = _IDS.get(method)
+    if kind is wire.MissionId and isinstance(result, dict) and len(result) == 1:
+        name = result.get("missionId")
+        if isinstance(name, str) and name:
+            return _NAMED, (name,)  # by far the commonest form, read without further ado
+    unordered = method == "ClearMissionStatus"
+    try:
+        if kind is None:
+            read(wire.Empty, result)
+            return _NAMED, ()
+        found: wire.MissionId | wire.MissionIds = read(kind, result)
+    except MalformedError as error:
+        return Answer(OK, Garbled(str(error)), unordered), ()
+    ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
+    if not all(ids):
+        return Answer(OK, Garbled("a mission id is missing"), unordered), ()
+    return _LISTED if unordered else _NAMED, ids
+
+
+def write_answer(method: str, _: Answer, names: tuple[Name, ...]) -> JSON:
+    """The result of a call that succeeded."""
+    if method in STREAMS:
+        return {"stream": names[0][1]}  # type: ignore[index]
+    kind = _IDS.get(method)
+    if kind is wire.MissionIds:
+        return {"missionIds": list(names)}
+    return {"missionId": names[0]} if kind is wire.MissionId else {}
+
+
+# Status messages.
+
+
+def strip(message: JSON) -> tuple[Part, ...]:
+    """The mission ids of a status message, its sequence number, and the message without them.
+
+    What is not of the documented form is left in, for `content` to find.
+    """
+    if not isinstance(message, dict):
+        return (((), (), message),)
+    rest = message.copy()
+    marks: tuple[Mark, ...] = ()
+    metadata = message.get("metadata")
+    number = _sequence_number(metadata) if isinstance(metadata, dict) else None
+    if number is None:
+        rest["metadata"] = metadata
+    else:
+        marks = ((None, number),)
+        del rest["metadata"]
+    key = "missionStates" if message.get("missionStates") is not None else "mission_states"
+    states = message.get(key)
+    missions = states.get("missions") if isinstance(states, dict) else None
+    found = _nameless(missions) if isinstance(missions, list) else None
+    if found is None:
+        return (((), marks, rest),)
+    ids, bare = found
+    rest[key] = states = states.copy()  # type: ignore[union-attr]
+    states["missions"] = bare
+    return ((ids, marks, rest),)
+
+
+def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | None:
+    """The ids of missions, and the missions without them; None where one of them is no object."""
+    named: list[Name] = []
+    bare: list[JSON] = []
+    for mission in missions:
+        if type(mission) is not dict:
+            return None
+        name, given = "missionId", mission.get("missionId")
+        if given is None:
+            name, given = "mission_id", mission.get("mission_id")
+        if type(given) is str and given:
+            named.append(given)
+            mission = mission.copy()  # noqa: PLW2901 - the same mission without its id
+            mission[name] = "-"
+        bare.append(mission)
+    return tuple(named), bare
+
+
+def _sequence_number(metadata: dict[str, JSON]) -> int | None:
+    """The sequence number of well-formed metadata; None where they are malformed."""
+    number, timestamp = metadata.get("sequenceNumber"), metadata.get("timestamp")
+    if type(timestamp) is str and not TIMESTAMP.fullmatch(timestamp):
+        return None
+    if type(number) is int and type(timestamp) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
+        return number  # by far the commonest form, read without further ado
+    try:
+        return read(wire.EventMetadata, metadata).sequence_number
+    except MalformedError:
+        return None
+
+
+def content(rest: JSON) -> Seen | Garbled:
+    """What a stripped status message shows."""
+    bare: list[bool] = []
+    if isinstance(rest, dict) and "metadata" in rest:
+        return Garbled(_about_metadata(rest["metadata"]))
+    try:
+        status = read(wire.MissionStatus, _wrapped_feedback(rest, bare))
+    except MalformedError as error:
+        return Garbled(str(error))
+    states = status.mission_states or MissionStates()
+    named = tuple(bool(one.mission_id) for one in states.missions)
+    return Seen(without_ids(states), named, tuple(bare))
+
+
+_MAYBE_BARE = ("serviFeedback", "cartiFeedback", "servi_feedback", "carti_feedback")
+
+
+def _about_metadata(metadata: JSON) -> str:
+    """What is wrong with metadata that are left in a message."""
+    if metadata is None:
+        return "metadata: it is missing"
+    try:
+        timestamp = read(wire.EventMetadata, metadata).timestamp
+    except MalformedError as error:
+        return str(error.inside("metadata"))
+    return f"metadata.timestamp: {brief(timestamp)} is not a time"
+
+
+def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
+    """AM-50: feedback that came as a bare enum put into a message; `bare` notes where."""
+    if not isinstance(rest, dict):
+        return rest
+    key = key_of(rest, "mission_states")
+    states = rest.get(key)
+    missions = states.get("missions") if isinstance(states, dict) else None
+    if not isinstance(states, dict) or not isinstance(missions, list):
+        return rest
+    wrapped = []
+    for mission in missions:
+        shown = key_of(mission, "mission_feedback") if isinstance(mission, dict) else ""
+        feedback = mission.get(shown) if shown else None
+        members = feedback if isinstance(feedback, dict) else {}
+        naked = {
+            name: {"status": value}
+            for name, value in members.items()
+            if isinstance(value, str | int) and name in _MAYBE_BARE
+        }
+        bare.append(bool(naked))
+        wrapped.append({**mission, shown: {**members, **naked}} if naked else mission)
+    return {**rest, key: {**states, "missions": wrapped}}
+
+
+EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
+"""When the clock of the reference model starts."""
+
+
+def write_message(view: Listing, names: tuple[Name, ...], choice: int, number: int, seconds: float) -> JSON:
+    """The status message that shows a listing."""
+    states = with_bare_feedback(write(show(view, tuple(map(str, names)), choice)), choice)
+    timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
+    return {"metadata": {"timestamp": timestamp, "sequenceNumber": number}, "missionStates": states}
+
+
+# Worlds and drives: written by testers and authors of logs, so what is wrong is refused.
+
+_WORLD: Mapping[str, str] = {camel(attribute.name): attribute.name for attribute in attrs.fields(World)}
+
+
+def _world_field(name: str, value: JSON) -> Any:  # noqa: ANN401 - as the field is
+    if name == "family":
+        try:
+            return Family(value)
+        except ValueError:
+            families = ", ".join(family.value for family in Family)
+            message = f"world.family: {brief(value)} is none of {families}"
+            raise UnreadableError(message) from None
+    if name in ("destinations", "occupied"):
+        if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
+            message = f"world.{name}: {brief(value)} is not a list of texts"
+            raise UnreadableError(message)
+        return tuple(value)
+    if not isinstance(value, bool):
+        message = f"world.{name}: {brief(value)} is not true or false"
+        raise UnreadableError(message)
+    return value
+
+
+def _world_fields(given: JSON) -> dict[str, Any]:
+    if not isinstance(given, dict):
+        message = f"world: {brief(given)} is not an object"
+        raise UnreadableError(message)
+    fields = {}
+    for name, value in given.items():
+        if name not in _WORLD:
+            message = f"world.{name}: there is no such field; there are {', '.join(_WORLD)}"
+            raise UnreadableError(message)
+        fields[_WORLD[name]] = _world_field(name, value)
+    return fields
+
+
+def world(given: JSON) -> World:
+    """The world of a `reset` or of a history's first line."""
+    return World(**_world_fields(given))
+
+
+def write_world(one: World) -> JSON:
+    """The parameters of `reset`."""
+    fields = {camel(name): value for name, value in attrs.asdict(one, recurse=False).items()}
+    return {
+        name: value.value if isinstance(value, Family) else list(value) if isinstance(value, tuple) else value
+        for name, value in fields.items()
+    }
+
+
+def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
+    """The event of a drive."""
+    if not isinstance(given, dict) or not isinstance(given.get("event"), str):
+        message = f"drive: {brief(given)} names no event"
+        raise UnreadableError(message)
+    event, fields = given["event"], {name: value for name, value in given.items() if name != "event"}
+    if event == "world":
+        changed = _world_fields(fields)
+        if "family" in changed:
+            message = "drive.family: the family changes only with reset"
+            raise UnreadableError(message)
+        return Happening("world", tuple(sorted(changed.items()))), ()
+    if event == "fault":
+        status, applied = fields.get("status"), fields.get("applied", False)
+        if status not in (INTERNAL, DEADLINE_EXCEEDED) or not isinstance(applied, bool):
+            wanted = "status INTERNAL or DEADLINE_EXCEEDED and applied true or false"
+            message = f"drive: a fault has {wanted}, not {brief(fields)}"
+            raise UnreadableError(message)
+        return Happening("fault", Fault(status, applied)), ()
+    if event not in ("goalReached", "missionSucceeded", "missionFailed"):
+        message = f"drive.event: {brief(event)} is not a drive of bear.mission"
+        raise UnreadableError(message)
+    return Happening(event), ()
+
+
+def write_drive(happening: Happening, _: tuple[Name, ...] = ()) -> JSON:
+    """The JSON of a drive."""
+    what = happening.what
+    if isinstance(what, Fault):
+        return {"event": "fault", "status": what.status, "applied": what.applied}
+    fields = {}
+    if isinstance(what, tuple):
+        fields = {camel(name): list(value) if isinstance(value, tuple) else value for name, value in what}
+    return {"event": happening.name, **fields}
+
+
+STREAMS = tuple(name for name, operation in OPERATIONS.items() if operation.streaming)
+CODEC = Codec(
+    methods=tuple(OPERATIONS),
+    streams=STREAMS,
+    world=world,
+    split=split,
+    request=request,
+    answer=answer,
+    strip=strip,
+    content=content,
+    drive=drive,
+    write_request=write_request,
+    write_answer=write_answer,
+    write_message=write_message,
+    write_world=write_world,
+    write_drive=write_drive,
+    skim=skim,
+)
+__all__ = ["CODEC"]

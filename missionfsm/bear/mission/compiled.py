@@ -1,0 +1,225 @@
+"""The steps of a robot for the explorer: what a situation allows is found once, as edits, and then only applied.
+
+Most steps of a robot depend on its situation alone, and there are few of those; robots are told apart as numbers.
+``tests/bear/test_mission_explore.py`` holds this to what `missionfsm.bear.mission.spec` says step by step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from missionfsm.bear.mission.effects import outcomes
+from missionfsm.bear.mission.events import Happening, by_itself, due, happens
+from missionfsm.bear.mission.inputs import Call, Request, Target
+from missionfsm.bear.mission.operations import OPERATIONS
+from missionfsm.bear.mission.state import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
+from missionfsm.bear.wire.messages import State
+from missionfsm.kernel.readings import meet
+
+Code = tuple[int, tuple[int, ...], tuple[int, ...]]
+"""A robot as numbers: its frame, its ended missions, those that wait."""
+
+_Frame = tuple[World, Mission | None, bool, bool, Fault | None]
+"""What of a robot is not a list: its world, its active mission, whether it is halted and fresh, its fault."""
+
+_Ops = tuple[tuple[Op, tuple[int, ...]], ...]
+
+
+_Move = tuple[int, int, int, bool, _Ops]
+"""An edit as numbers: the frame after it where missions wait then, and where none does; how many missions it adds, and
+whether it makes room by taking the ended ones off the list; what becomes of the lists."""
+
+
+class Shortcut:
+    """The steps of robots that change them, within `most` listed missions, on robots as numbers.
+
+    Args:
+        requests, events: what is tried.
+        assumed: the readings that are possible.
+        forget_ended: what has ended is only counted (see `forget_ended`).
+    """
+
+    def __init__(
+        self,
+        requests: Iterable[tuple[Request, tuple[bool, ...]]],
+        events: Iterable[Happening],
+        assumed: int,
+        most: int,
+        *,
+        forget_ended: bool = False,
+    ) -> None:
+        self._calls = tuple(
+            Call(request, target) for request, named in requests for target in (tuple(Target) if named else (None,))
+        )
+        self._events = tuple(events)
+        self._assumed = assumed
+        self._most = most
+        self._forget = forget_ended
+        self._frames: dict[_Frame, int] = {}
+        self._frame: list[_Frame] = []
+        self._missions: dict[Mission, int] = {}
+        self._mission: list[Mission] = []
+        self._menus: dict[tuple[int, bool, bool], tuple[_Move, ...]] = {}
+        self._starts: dict[tuple[int, int], tuple[_Move, ...]] = {}
+        self._counted = self._number(_COUNTED)
+
+    def encode(self, robot: Robot) -> Code:
+        """The numbers of a robot."""
+        frame = (robot.world, robot.active, robot.halted, robot.fresh, robot.fault)
+        ended = (self._counted,) * len(robot.done) if self._forget else self._numbers(robot.done)
+        return self._frame_number(frame), ended, self._numbers(robot.pending)
+
+    def decode(self, code: Code) -> Robot:
+        """The robot with these numbers."""
+        frame, done, pending = code
+        world, active, halted, fresh, fault = self._frame[frame]
+        known = self._mission.__getitem__
+        return Robot(world, tuple(map(known, done)), active, tuple(map(known, pending)), halted, fresh, fault)
+
+    def successors(self, code: Code) -> list[Code]:
+        """The robots after every step, in any order and perhaps some twice."""
+        frame, done, pending = code
+        moves = self._menus.get((frame, not pending, not done))
+        if moves is None:
+            moves = self._menus[frame, not pending, not done] = self._menu(code)
+        room = self._most - len(done) - (self._frame[frame][1] is not None) - len(pending)
+        found: list[Code] = []
+        add = found.append
+        for busy, idle, added, forgets, ops in moves:
+            if added <= room or (forgets and added <= room + len(done)):
+                if not ops:
+                    add((busy if pending else idle, done, pending))
+                else:
+                    ended, waiting = self._moved(ops, done, pending)
+                    add((busy if waiting else idle, ended, waiting))
+        head = pending[0] if pending else -1
+        starts = self._starts.get((frame, head))
+        if starts is None:
+            starts = self._starts[frame, head] = self._due(code)
+        for busy, idle, _, _, ops in starts:
+            ended, waiting = self._moved(ops, done, pending)
+            add((busy if waiting else idle, ended, waiting))
+        return found
+
+    def _moved(
+        self, ops: _Ops, done: tuple[int, ...], pending: tuple[int, ...]
+    ) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        for op, what in ops:
+            if op is Op.ADD:
+                pending += what
+            elif op is Op.END:
+                done += what
+            elif op is Op.START:
+                pending = pending[1:]
+            elif op is Op.FORGET_ENDED:
+                done = ()
+            elif op is Op.CANCEL_QUEUE:
+                gone = (self._mission[one].moved("cancel with the queue") for one in pending)
+                done, pending = (*done, *self._numbers_ended(gone)), ()
+            elif op is Op.PUT_FIRST:
+                pending = what + pending
+            elif op is Op.DROP_QUEUE:
+                pending = ()
+            elif op is Op.CLEAR:
+                done = pending = ()
+        return done, pending
+
+    def _number(self, mission: Mission) -> int:
+        number = self._missions.get(mission)
+        if number is None:
+            number = self._missions[mission] = len(self._mission)
+            self._mission.append(mission)
+        return number
+
+    def _numbers(self, missions: Iterable[Mission]) -> tuple[int, ...]:
+        return tuple(map(self._number, missions))
+
+    def _numbers_ended(self, missions: Iterable[Mission]) -> tuple[int, ...]:
+        return tuple(self._counted if self._forget else self._number(one) for one in missions)
+
+    def _frame_number(self, frame: _Frame) -> int:
+        number = self._frames.get(frame)
+        if number is None:
+            number = self._frames[frame] = len(self._frame)
+            self._frame.append(frame)
+        return number
+
+    def _menu(self, code: Code) -> tuple[_Move, ...]:
+        here = situation(self.decode(code))
+        edits = dict.fromkeys(_edits(here, self._calls, self._events, self._assumed))
+        return tuple(self._compiled(edit, self._frame[code[0]]) for edit in edits if edit)
+
+    def _due(self, code: Code) -> tuple[_Move, ...]:
+        robot = self.decode(code)
+        head = robot.pending[0] if robot.pending else None
+        queued = head is not None
+        ways = (
+            *due(robot.world, robot.active, head, halted=robot.halted, queued=queued),
+            *by_itself(robot.world, robot.active, head, halted=robot.halted, queued=queued),
+        )
+        edits = (edit for edit, assumes in ways if meet(self._assumed, assumes))
+        return tuple(self._compiled(edit, self._frame[code[0]]) for edit in edits)
+
+    def _compiled(self, edit: Edit, frame: _Frame) -> _Move:
+        """An edit as numbers; what of it concerns no list is carried out here and now (see `apply`)."""
+        world, active, halted, fresh, fault = frame
+        ops: list[tuple[Op, tuple[int, ...]]] = []
+        added = 0
+        for op, what in edit:
+            if op in (Op.ADD, Op.PUT_FIRST):
+                ops.append((op, self._numbers(what)))
+                added += len(what)
+                fresh = False
+            elif op is Op.END:
+                ops.append((op, self._numbers_ended((what,))))
+                active = None
+            elif op in _LISTED:
+                ops.append((op, ()))
+                active = what if op is Op.START else None if op is Op.CLEAR else active
+            elif op is Op.BECOME:
+                active = what
+            elif op is Op.HALT:
+                halted = what
+            elif op is Op.ARM:
+                fault = what
+            elif op is Op.WORLD:
+                world = what
+        busy = self._frame_number((world, active, halted, fresh, fault))
+        idle = self._frame_number((world, active, False, fresh, fault))
+        forgets = any(op in (Op.FORGET_ENDED, Op.CLEAR) for op, _ in edit)
+        return busy, idle, added, forgets, tuple(ops)
+
+
+_LISTED = frozenset({Op.START, Op.CANCEL_QUEUE, Op.DROP_QUEUE, Op.FORGET_ENDED, Op.CLEAR})
+_COUNTED = Mission(Kind.RETURN, state=State.STATE_SUCCEEDED)
+
+
+def forget_ended(robot: Robot) -> Robot:
+    """The robot with its ended missions only counted: what they were decides nothing that comes."""
+    if not robot.done:
+        return robot
+    done = (_COUNTED,) * len(robot.done)
+    return Robot(robot.world, done, robot.active, robot.pending, robot.halted, robot.fresh, robot.fault)
+
+
+def _edits(robot: Situation, calls: Iterable[Call], happenings: Iterable[Happening], assumed: int) -> Iterator[Edit]:
+    for call in calls:
+        if call.target is not None and not _possible(robot, call.target):
+            continue
+        for outcome in outcomes(OPERATIONS[call.request.operation], robot, call):
+            if meet(assumed, outcome.assumes):
+                yield outcome.edit
+    for happening in happenings:
+        for edit, assumes in happens(robot, happening):
+            if meet(assumed, assumes):
+                yield edit
+
+
+def _possible(robot: Situation, target: Target) -> bool:
+    """Whether a robot in this situation has a mission there to name."""
+    return {
+        Target.ACTIVE: robot.active is not None,
+        Target.QUEUED: robot.queued,
+        Target.ENDED: robot.ended,
+        Target.UNKNOWN: True,
+    }[target]

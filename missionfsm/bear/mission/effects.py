@@ -1,0 +1,435 @@
+"""What the operations of the Mission page do where they are not refused.
+
+Everything is said for a `Situation` and as an `Edit`: what is decided does not depend on the missions that have ended,
+nor on how many wait. That makes it worth remembering, and every outcome is computed once.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+
+from attrs import evolve
+
+from missionfsm.bear.mission.inputs import Call, Request, Target, Wanted
+from missionfsm.bear.mission.operations import OPERATIONS, ranking
+from missionfsm.bear.mission.readings import (
+    AM_06,
+    AM_09,
+    AM_10,
+    AM_12_HALTED,
+    AM_13,
+    AM_17_LAST,
+    AM_17_PATROL,
+    AM_18,
+    AM_19,
+    AM_25,
+    AM_27,
+    AM_29,
+    AM_30,
+    AM_34_GAP,
+    AM_34_HALTED,
+    AM_37_QUEUED,
+    AM_41,
+    AM_43,
+    AM_45_WHEN,
+    AM_61,
+    AM_64,
+)
+from missionfsm.bear.mission.rules import CHARGING, LAST_GOAL
+from missionfsm.bear.mission.state import (
+    AUTOMATIC,
+    GOALLESS,
+    NOT_CHOSEN,
+    PATROLS,
+    RETURN_POINT,
+    SYSTEM,
+    Edit,
+    Kind,
+    Mission,
+    Op,
+    Robot,
+    Situation,
+    World,
+    free_goal,
+    is_foreign,
+    is_missing,
+)
+from missionfsm.bear.wire.messages import Command, Goal, State
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
+from missionfsm.kernel.rules import (
+    CANCELLED,
+    DEADLINE_EXCEEDED,
+    FAILED_PRECONDITION,
+    INTERNAL,
+    OK,
+    RESOURCE_EXHAUSTED,
+    UNAUTHENTICATED,
+    UNAVAILABLE,
+    UNIMPLEMENTED,
+    Operation,
+    Rule,
+    decide,
+)
+from missionfsm.kernel.spec import Failure
+from missionfsm.kernel.values import value
+
+Assumed = tuple[Assumption, ...]
+Way = tuple[Edit, Assumed]
+"""One way in which something takes effect, with what it assumes."""
+
+ADDED, ACTIVE, GONE, NOBODY = "those added", "the active one", "those that vanish", "none"
+"""Whose ids an answer has."""
+
+
+@value
+class Outcome:
+    """One answer that is allowed in a situation, with the edit that comes with it."""
+
+    code: str
+    edit: Edit = ()
+    whose: str = NOBODY
+    assumes: Assumed = ()
+    rules: tuple[str, ...] = ()
+
+
+@functools.lru_cache(maxsize=100_000)
+def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcome, ...]:
+    """Every answer that the rules of an operation allow to a call, success first."""
+    found: list[Outcome] = []
+    for decision in decide(operation.blocking(robot, call), ranking(robot, call)):
+        if decision.code is None:
+            promises = tuple(rule.id for rule in operation.promises)
+            found += (
+                evolve(one, assumes=(*decision.assumes, *one.assumes), rules=one.rules or promises)
+                for one in _effects(robot, call)
+            )
+        else:
+            rules = tuple(rule.id for rule in decision.rules)
+            found.append(Outcome(decision.code, assumes=decision.assumes, rules=rules))
+    found = [faulty for one in found for faulty in _with_fault(robot, one, operation.failures)]
+    found.sort(key=lambda one: one.code != OK)
+    return tuple(found)
+
+
+def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -> Iterator[Outcome]:
+    """The outcome, or the failure that a tester has armed in its place."""
+    fault = robot.fault
+    if fault is None or outcome.code != OK or fault.status not in failures or outcome.whose == "stream":
+        yield outcome
+        return
+    disarmed: Edit = ((Op.ARM, None),)
+    edit = outcome.edit + disarmed if fault.applied else disarmed
+    yield Outcome(fault.status, edit, NOBODY, outcome.assumes)
+
+
+TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
+"""AM-61: codes of the transport and of authentication, which no table lists."""
+
+
+def failing(request: Request, code: str) -> Failure | None:
+    """Codes that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
+
+    SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well. AM-61: codes of
+    the transport and of authentication, which no table lists.
+    """
+    operation = OPERATIONS[request.operation]
+    if code in operation.failures:
+        # No tester can drive a subscription to fail.
+        open_ended = code == DEADLINE_EXCEEDED or request.operation == "SkipGoal"
+        return Failure(open_ended=open_ended, driven=not operation.streaming)
+    if code in TRANSPORT:
+        return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED), driven=False)
+    return None
+
+
+def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
+    return _EFFECTS[call.request.operation](robot, call)
+
+
+# Missions that come.
+
+
+def _accepted(robot: Situation, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
+    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
+
+    Args:
+        waits: whether it does not start at once.
+    """
+    assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
+    for mission, assumes in _as_possible(robot, wanted.kind, wanted.goals):
+        if wanted.kind not in AUTOMATIC:
+            yield mission, assumes
+            continue
+        chosen = free_goal(wanted.goals, robot.world)
+        if chosen == NOT_CHOSEN or not waits:
+            # Selecting when it is created and when it starts is the same for a mission that starts at once.
+            yield evolve(mission, goal=NOT_CHOSEN), assumes
+        else:
+            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, AM_45_WHEN["i", "j"])
+            yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
+
+
+def _as_possible(robot: Situation, kind: Kind, goals: tuple[Goal, ...]) -> Iterator[tuple[Mission, Assumed]]:
+    """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
+    reasons = []
+    if is_missing(robot.world, goals):
+        reasons.append((AM_43["b"], AM_43["d"]))
+    if is_foreign(robot.world, kind):
+        reasons.append((AM_41["c"], AM_41["d"]))
+    for how in itertools.product(*reasons):
+        at_once = any(one in how for one, _ in reasons)
+        yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
+
+
+def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> list[tuple[tuple[Mission, ...], Assumed]]:
+    """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
+    waits = robot.active is not None or robot.queued or robot.world.blocked
+    ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), ANYTHING)]
+    for one in wanted:
+        accepted = tuple(_accepted(robot, one, waits=waits))
+        ways = [
+            ((*missions, mission), (*assumed, *assumes) if assumes else assumed, left)
+            for missions, assumed, before in ways
+            for mission, assumes in accepted
+            if (left := meet(before, assumes))
+        ]
+        waits = True
+    return [(missions, tuple(dict.fromkeys(assumed))) for missions, assumed, _ in ways]
+
+
+def _listed_anew(robot: Situation, edit: Edit) -> Iterator[Way]:
+    """AM-13: the new missions follow the ended ones, or replace them."""
+    if not robot.ended:
+        yield edit, ()
+        return
+    yield edit, (AM_13["a"],)
+    yield ((Op.FORGET_ENDED, None), *edit), (AM_13["b"],)
+
+
+def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
+    paused = (AM_06["b"],) if robot.active is not None else ()
+    for missions, assumes in _all_accepted(robot, call.request.wanted):
+        for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
+            yield Outcome(OK, edit, ADDED, (*paused, *assumes, *anew))
+
+
+def _create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
+    (wanted,) = call.request.wanted
+    each = tuple(evolve(wanted, goals=(goal,)) for goal in wanted.goals)
+    ways: list[tuple[tuple[Wanted, ...], Assumed]] = [
+        ((wanted,), (AM_25["a"], AM_27["a"])),
+        ((evolve(wanted, goals=(*wanted.goals, RETURN_POINT)),), (AM_25["a"], AM_27["b"])),
+        ((wanted, Wanted(Kind.RETURN)), (AM_25["b"],)),
+        (each, (AM_25["c"],)),
+        ((*each, Wanted(Kind.RETURN)), (AM_25["d"],)),
+    ]
+    for parts, how in ways:
+        for missions, assumes in _all_accepted(robot, parts):
+            for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
+                yield Outcome(OK, edit, ADDED, (*how, *assumes, *anew))
+                if robot.halted:
+                    yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*how, *assumes, *anew))
+
+
+def _append(robot: Situation, call: Call) -> Iterator[Outcome]:
+    for missions, assumes in _all_accepted(robot, call.request.wanted):
+        edit: Edit = ((Op.ADD, missions),)
+        if robot.halted:
+            yield Outcome(OK, edit, ADDED, (*assumes, AM_12_HALTED["a"]))
+            yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, AM_12_HALTED["c"]))
+        else:
+            yield Outcome(OK, edit, ADDED, assumes)
+
+
+def _charge(robot: Situation, _: Call) -> Iterator[Outcome]:
+    charge = (Mission(Kind.CHARGE),)
+    waiting = robot.active is None and robot.queued
+    ways: list[Way] = (
+        [
+            (((Op.ADD, charge), (Op.HALT, False)), (AM_37_QUEUED["b"],)),
+            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (AM_37_QUEUED["c"],)),
+        ]
+        if waiting
+        else [(((Op.ADD, charge),), ())]
+    )
+    for edit, assumes in ways:
+        for whole, anew in _listed_anew(robot, edit):
+            yield Outcome(OK, whole, ADDED, (*assumes, *anew))
+
+
+# Missions that end.
+
+
+def _with_queue(robot: Situation, how: Ambiguity, ended: Edit) -> Iterator[Way]:
+    """AM-09, AM-10: the waiting missions go on, halt, are cancelled too or vanish."""
+    if not robot.queued:
+        yield ended, ()
+        return
+    yield ended, (how["a"],)
+    yield (*ended, (Op.HALT, True)), (how["b"],)
+    yield (*ended, (Op.CANCEL_QUEUE, None)), (how["c"],)
+    yield (*ended, (Op.DROP_QUEUE, None)), (how["d"],)
+
+
+def end(mission: Mission, trigger: str) -> Edit:
+    """The active mission ends by a move of its lifecycle."""
+    return ((Op.END, mission.moved(trigger)),)
+
+
+def become(mission: Mission) -> Edit:
+    """The active mission becomes another."""
+    return ((Op.BECOME, mission),)
+
+
+def _cancelled(robot: Situation, mission: Mission) -> Iterator[Way]:
+    return _with_queue(robot, AM_09, end(mission, "cancel"))
+
+
+def failed(robot: Situation, mission: Mission) -> Iterator[Way]:
+    """The ways in which the active mission fails."""
+    return _with_queue(robot, AM_10, end(mission, "fail"))
+
+
+def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
+    if not robot.queued:
+        yield Outcome(OK, ((Op.CLEAR, None),) if robot.ended else (), GONE)
+        return
+    which = AM_34_HALTED if robot.halted else AM_34_GAP
+    yield Outcome(OK, ((Op.CLEAR, None),), GONE, (which["a"],))
+    yield Outcome(OK, ((Op.FORGET_ENDED, None),) if robot.ended else (), GONE, (which["b"],))
+
+
+# The active mission.
+
+
+def _cited(rule: Rule) -> tuple[str, ...]:
+    return (rule.of(SYSTEM, "SkipGoal").id,)
+
+
+def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
+    mission = robot.active
+    assert mission is not None, "without an active mission it is refused"  # noqa: S101 - as above
+    if mission.kind in GOALLESS:
+        yield from _skip_last(robot, mission, AM_17_LAST, (AM_19["a"],))
+        yield Outcome(FAILED_PRECONDITION, assumes=(AM_19["b"],), rules=_cited(CHARGING[FAILED_PRECONDITION]))
+        yield Outcome(INTERNAL, assumes=(AM_19["c"],), rules=_cited(CHARGING[INTERNAL]))
+    elif mission.kind in AUTOMATIC:
+        yield from _skip_automatic(robot, mission)
+    elif mission.goal + 1 < len(mission.goals) and not mission.finishing:
+        yield Outcome(OK, become(evolve(mission, goal=mission.goal + 1)), ACTIVE)
+    elif mission.kind in PATROLS and not mission.finishing:
+        yield from _skip_last(robot, mission, AM_17_PATROL, ())
+    else:
+        yield from _skip_last(robot, mission, AM_17_LAST, ())
+
+
+def _skip_automatic(robot: Situation, mission: Mission) -> Iterator[Outcome]:
+    free = free_goal(mission.goals, robot.world, mission.goal)
+    follows = mission.goal + 1 < len(mission.goals) and mission.goal != NOT_CHOSEN
+    for letter, goal in (("a", free), ("b", mission.goal + 1 if follows else NOT_CHOSEN), ("c", NOT_CHOSEN)):
+        if goal == NOT_CHOSEN or mission.finishing:
+            yield from _skip_last(robot, mission, AM_17_LAST, (AM_18[letter],))
+        else:
+            yield Outcome(OK, become(evolve(mission, goal=goal)), ACTIVE, (AM_18[letter],))
+
+
+def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assumed) -> Iterator[Outcome]:
+    succeeded = evolve(mission, state=State.STATE_RUNNING).moved("succeed")
+    yield Outcome(OK, ((Op.END, succeeded),), ACTIVE, (*assumes, how["a"]))
+    for code, letter in ((FAILED_PRECONDITION, "b"), (INTERNAL, "c")):
+        yield Outcome(code, assumes=(*assumes, how[letter]), rules=_cited(LAST_GOAL[code]))
+    for edit, queue in _cancelled(robot, mission):
+        yield Outcome(OK, edit, ACTIVE, (*assumes, how["d"], *queue))
+    if "f" in how.readings:
+        again = evolve(mission, goal=0)
+        yield Outcome(OK, () if again == mission else become(again), ACTIVE, (*assumes, how["f"]))
+
+
+def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
+    mission, command = robot.active, call.request.command
+    if mission is None or call.target is not Target.ACTIVE or command is None:
+        return
+    promised = (f"bear.mission/UpdateMission/{command.name.removeprefix('COMMAND_').lower()}",)
+    for edit, assumes in _COMMANDS[command](robot, mission):
+        yield Outcome(OK, edit, NOBODY, assumes, promised)
+
+
+def _pause(_: Situation, mission: Mission) -> Iterator[Way]:
+    if mission.state is State.STATE_PAUSED:
+        yield (), (AM_29["b"],)
+    else:
+        yield become(evolve(mission, state=State.STATE_PAUSED)), ()
+
+
+def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
+    if mission.state is State.STATE_RUNNING:
+        yield (), (AM_29["b"],)
+        return
+    running = evolve(mission, state=State.STATE_RUNNING)
+    if mission.kind in AUTOMATIC:
+        yield from reselected(robot.world, running, resumed=True)
+    elif mission.goal:
+        yield become(running), (AM_64["a", "c"],)
+        yield become(evolve(running, goal=0)), (AM_64["b"],)
+    else:
+        yield become(running), ()
+
+
+def reselected(world: World, mission: Mission, *, resumed: bool = False) -> Iterator[Way]:
+    """AM-45, AM-64: a NavigateAuto mission keeps its goal, or selects again on the way or when it is resumed."""
+    best = free_goal(mission.goals, world)
+    if best in (mission.goal, NOT_CHOSEN) or mission.goal == NOT_CHOSEN:
+        yield become(mission), ()
+        return
+    again = become(evolve(mission, goal=best))
+    yield become(mission), (AM_45_WHEN["h", "i"], AM_64["a", "b"]) if resumed else (AM_45_WHEN["h", "i"],)
+    yield again, (AM_45_WHEN["j"],)
+    if resumed:
+        yield again, (AM_45_WHEN["h", "i"], AM_64["c"])
+
+
+def _finish(_: Situation, mission: Mission) -> Iterator[Way]:
+    yield end(mission, "finish"), (AM_30["a"],)
+    yield ((), (AM_30["b"],)) if mission.finishing else (become(evolve(mission, finishing=True)), (AM_30["b"],))
+
+
+_COMMANDS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
+    Command.COMMAND_CANCEL: _cancelled,
+    Command.COMMAND_PAUSE: _pause,
+    Command.COMMAND_RESUME: _resume,
+    Command.COMMAND_FINISH: _finish,
+}
+
+
+def _subscribe(_: Situation, __: Call) -> Iterator[Outcome]:
+    yield Outcome(OK, (), "stream")
+
+
+_EFFECTS: Mapping[str, Callable[[Situation, Call], Iterator[Outcome]]] = {
+    "CreateMission": _create,
+    "CreateMissionBatch": _create,
+    "CreateMissionWorkflow": _create_workflow,
+    "AppendMission": _append,
+    "AppendMissionBatch": _append,
+    "ChargeRobot": _charge,
+    "ClearMissionStatus": _clear,
+    "SkipGoal": _skip,
+    "UpdateMission": _update,
+    "SubscribeMissionStatus": _subscribe,
+}
+
+
+def target(robot: Robot, ref: int | None) -> Target:
+    """Where the mission with a position in the list stands."""
+    if ref is None:
+        return Target.UNKNOWN
+    if ref < len(robot.done):
+        return Target.ENDED
+    return Target.ACTIVE if robot.active is not None and ref == len(robot.done) else Target.QUEUED
+
+
+def call_of(robot: Robot, request: Request, refs: tuple[int | None, ...]) -> Call:
+    """A request as the robot that gets it sees it."""
+    return Call(request, target(robot, refs[0]) if refs else None)

@@ -1,0 +1,167 @@
+"""What a robot of the Mission page does by itself, and what a tester can make it do."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Hashable, Iterable, Iterator
+
+from attrs import evolve
+
+from missionfsm.bear.mission.effects import Way, become, end, failed, reselected
+from missionfsm.bear.mission.readings import AM_45_NONE, AM_53_THEN
+from missionfsm.bear.mission.state import (
+    AUTOMATIC,
+    NOT_CHOSEN,
+    PATROLS,
+    Edit,
+    Fault,
+    Kind,
+    Mission,
+    Op,
+    Situation,
+    World,
+    free_goal,
+    is_foreign,
+    is_missing,
+)
+from missionfsm.bear.wire.messages import State
+from missionfsm.kernel.values import value
+
+
+@functools.lru_cache(maxsize=100_000)
+def due(world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool) -> tuple[Way, ...]:
+    """What must have happened once things have settled: a mission starts, a doomed one fails, a goal is selected.
+
+    Args:
+        head: the first waiting mission.
+        queued: whether others wait behind the active mission.
+    """
+    if active is not None:
+        return tuple(_due_of_active(world, active, queued=queued))
+    if head is None or halted or world.blocked:
+        return ()
+    return tuple(_started(world, head))
+
+
+def _started(world: World, head: Mission) -> Iterator[Way]:
+    """AM-45: a NavigateAuto mission selects its goal; where none is free it waits, fails or takes the first."""
+    running = head.moved("start")
+    if head.kind not in AUTOMATIC or head.doomed or head.goal != NOT_CHOSEN:
+        yield ((Op.START, running),), ()
+        return
+    chosen = free_goal(head.goals, world)
+    if chosen != NOT_CHOSEN:
+        yield ((Op.START, evolve(running, goal=chosen)),), ()
+        return
+    yield ((Op.START, running),), (AM_45_NONE["a", "c"],)
+    yield ((Op.START, evolve(running, doomed=True)),), (AM_45_NONE["b"],)
+    yield ((Op.START, evolve(running, goal=0)),), (AM_45_NONE["d"],)
+
+
+def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
+    if active.doomed:
+        yield from _failing(world, active, queued=queued)
+    elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
+        chosen = free_goal(active.goals, world)
+        if chosen != NOT_CHOSEN:
+            yield become(evolve(active, goal=chosen)), ()
+
+
+def by_itself(
+    world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool
+) -> Iterator[Way]:
+    """What a robot may do at any time: a hopeless mission fails, and so does one that it is unable to start (AM-53).
+
+    Args:
+        head: the first waiting mission.
+        queued: whether others wait behind that one, or behind the active mission.
+    """
+    if active is not None and active.hopeless:
+        yield from _failing(world, active, queued=queued)
+    elif active is None and head is not None and world.blocked and not halted:
+        running = head.moved("start")
+        for edit, assumes in _failing(world, running, queued=queued):
+            yield ((Op.START, running), *edit), (AM_53_THEN["f"], *assumes)
+
+
+def _failing(world: World, mission: Mission, *, queued: bool) -> Iterator[Way]:
+    return failed(Situation(world, mission, queued, True, False, False, None), mission)  # noqa: FBT003
+
+
+@value(cache_hash=True)
+class Happening:
+    """Something that the environment does: the name of a drive and what it takes."""
+
+    name: str
+    what: Hashable = None
+
+
+def goal_reached(robot: Situation) -> Iterable[Way]:
+    """The running mission is done with its current goal."""
+    mission = robot.active
+    if mission is None or mission.state is not State.STATE_RUNNING or mission.kind is Kind.CHARGE:
+        return
+    if mission.kind is Kind.RETURN:  # it goes to one place
+        yield end(mission, "succeed"), ()
+        return
+    if mission.goal == NOT_CHOSEN or _cannot_arrive(robot.world, mission):
+        return
+    last = mission.goal + 1 >= len(mission.goals)
+    if mission.kind in AUTOMATIC or mission.finishing or (last and mission.kind not in PATROLS):
+        yield end(mission, "succeed"), ()
+    else:
+        again = evolve(mission, goal=0 if last else mission.goal + 1)
+        yield (become(again) if again != mission else ()), ()
+
+
+def mission_succeeded(robot: Situation) -> Iterable[Way]:
+    """The running mission ends well."""
+    mission = robot.active
+    if mission is None or mission.state is not State.STATE_RUNNING or _cannot_arrive(robot.world, mission):
+        return
+    yield end(mission, "succeed"), ()
+
+
+def _cannot_arrive(world: World, mission: Mission) -> bool:
+    """Whether a mission is bound to fail when it is started, or fails on the way and is at a goal that is not there."""
+    if not (mission.doomed or mission.hopeless):
+        return False
+    goals = mission.goals if mission.doomed else mission.goals[mission.goal : mission.goal + 1]
+    return is_foreign(world, mission.kind) or is_missing(world, goals)
+
+
+def mission_failed(robot: Situation) -> Iterable[Way]:
+    """The running or paused mission ends in failure."""
+    if robot.active is not None:
+        yield from failed(robot, robot.active)
+
+
+def world_changes(robot: Situation, changed: tuple[tuple[str, Hashable], ...]) -> Iterable[Way]:
+    """The world becomes another; a NavigateAuto mission on its way may select again (AM-45)."""
+    world = evolve(robot.world, **dict(changed))  # type: ignore[arg-type]  # fields of a world
+    edit: Edit = ((Op.WORLD, world),)
+    active = robot.active
+    if active is not None and active.kind in AUTOMATIC and active.state is State.STATE_RUNNING:
+        for more, assumes in reselected(world, active):
+            yield (edit if more == become(active) else edit + more), assumes
+    else:
+        yield edit, ()
+
+
+def fault_armed(_: Situation, fault: Fault) -> Iterable[Way]:
+    """The next call that succeeds and documents the status answers with it."""
+    yield ((Op.ARM, fault),), ()
+
+
+@functools.lru_cache(maxsize=100_000)
+def happens(robot: Situation, happening: Happening) -> tuple[Way, ...]:
+    """The ways in which something that the environment does comes about; none where it does not apply."""
+    return tuple(
+        {
+            "goalReached": lambda: goal_reached(robot),
+            "missionSucceeded": lambda: mission_succeeded(robot),
+            "missionFailed": lambda: mission_failed(robot),
+            "world": lambda: world_changes(robot, happening.what),  # type: ignore[arg-type]
+            "fault": lambda: fault_armed(robot, happening.what),  # type: ignore[arg-type]
+        }[happening.name]()
+    )

@@ -1,0 +1,80 @@
+"""What of the mission API is drawn besides the lifecycle: the robot's queue, and what each call does to it."""
+
+from __future__ import annotations
+
+from missionfsm.bear.mission.compiled import forget_ended
+from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.inputs import Request
+from missionfsm.bear.mission.state import Robot
+from missionfsm.kernel.alphabet import ANY_NAME, Prompt
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.picture import Refs, Sketch
+
+_MOST = 4
+"""Listed missions: enough for two to wait behind one, after another has ended."""
+
+_GOALS: JSON = {"goals": [{"destinationId": "table-1"}, {"destinationId": "table-2"}]}
+_MISSION: JSON = {"mission": {"serviMission": {"deliveryMission": _GOALS}}}
+_PROMPTS = (
+    Prompt("CreateMission", _MISSION),
+    Prompt("CreateMissionBatch", {"missions": [_MISSION, _MISSION]}),
+    Prompt("CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"delivery": _GOALS}}}),
+    Prompt("AppendMission", _MISSION),
+    Prompt("AppendMissionBatch", {"missions": [_MISSION, _MISSION]}),
+    Prompt("ChargeRobot", {}),
+    *(
+        Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": f"COMMAND_{command}"}})
+        for command in ("PAUSE", "RESUME", "CANCEL", "FINISH")
+    ),
+    Prompt("SkipGoal", {}),
+    Prompt("ClearMissionStatus", {}),
+    Prompt("SubscribeMissionStatus", {}),
+)
+_DRIVES: tuple[JSON, ...] = ({"event": "goalReached"}, {"event": "missionSucceeded"}, {"event": "missionFailed"})
+_HAPPENS = {
+    "goalReached": "the goal is reached",
+    "missionSucceeded": "the mission succeeds",
+    "missionFailed": "the mission fails",
+}
+
+
+def _node(robot: Robot) -> str:
+    """What the active mission is at, and whether others wait."""
+    if robot.active is not None:
+        return robot.active.state.name.removeprefix("STATE_") + (", others wait" if robot.pending else "")
+    if robot.pending:
+        return f"{'halted' if robot.halted else 'none is active'}, missions wait"
+    return "all have ended" if robot.done else "no mission"
+
+
+def _label(robot: Robot, what: Request | Happening, refs: Refs) -> str | None:
+    if isinstance(what, Happening):
+        return _HAPPENS[what.name]
+    if what.command is None:
+        return what.operation
+    command = what.command.name.removeprefix("COMMAND_")
+    active = len(robot.done) if robot.active is not None else None
+    if refs == (active,) and active is not None:
+        return f"{what.operation} {command}"
+    return f"{what.operation} of {_whose(robot, refs[0])}"
+
+
+def _whose(robot: Robot, ref: int | None) -> str:
+    if ref is None:
+        return "no such mission"
+    return "an ended mission" if ref < len(robot.done) else "a waiting mission"
+
+
+SKETCHES = (
+    Sketch(
+        "queue",
+        "a robot's missions",
+        node=_node,
+        label=_label,
+        within=lambda robot: len(robot.listed) <= _MOST,
+        simple=lambda robot, _: forget_ended(robot),
+        prompts=_PROMPTS,
+        drives=_DRIVES,
+        contrasts=("AM-09=b", "AM-09=c", "AM-10=b", "AM-11=b"),
+    ),
+)

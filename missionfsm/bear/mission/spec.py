@@ -1,0 +1,327 @@
+"""The Mission page as a `Spec`: the rules and effects of the other modules, put together."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+
+from attrs import evolve
+
+from missionfsm.bear.mission.compiled import Shortcut, forget_ended
+from missionfsm.bear.mission.effects import (
+    ACTIVE,
+    ADDED,
+    GONE,
+    TRANSPORT,
+    Outcome,
+    call_of,
+    failing,
+    outcomes,
+    target,
+)
+from missionfsm.bear.mission.events import Happening, by_itself, due, happens
+from missionfsm.bear.mission.inputs import Request
+from missionfsm.bear.mission.operations import OPERATIONS
+from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
+from missionfsm.bear.mission.state import (
+    AUTOMATIC,
+    ENDED,
+    GOALLESS,
+    LIFECYCLE,
+    MISSION,
+    NOT_CHOSEN,
+    PATROLS,
+    SYSTEM,
+    Edit,
+    Kind,
+    Mission,
+    Op,
+    Robot,
+    apply,
+    renumber,
+    situation,
+)
+from missionfsm.bear.mission.stream import OWED, SEQUENCE, TOPIC, listing, matches
+from missionfsm.bear.mission.stream import RULES as STATUS_RULES
+from missionfsm.bear.wire.messages import State
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
+
+_BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
+
+_MOVES = {
+    trigger: promise(
+        trigger.replace(" ", "-"), f"A mission moves by {trigger}.", cite=MISSION["MissionState", "State enum"]
+    ).of(SYSTEM, "lifecycle")
+    for trigger in ("start", "succeed", "fail")
+}
+"""The moves of the lifecycle that no call makes."""
+
+_NEXT_GOAL = promise(
+    "goals-are-taken-up-in-order", "A mission goes from goal to goal in order.", cite=MISSION["MissionState"]
+).of(SYSTEM, "lifecycle")
+RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
+
+
+def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tuple[Emission, ...], tuple[int, ...]]:
+    """What an edit does to a robot, to its names and to those who watch, and the names that vanish."""
+    if not edit:
+        return robot, None, (), ()
+    after = apply(edit, robot)
+    names, gone = renumber(edit, robot)
+    before, shown = listing(robot), listing(after)
+    if after.pending and not (robot.active or robot.pending or robot.world.blocked):
+        shown = evolve(shown, created=True)
+    emits: tuple[Emission, ...] = ()
+    if not shown.looks_like(before):
+        # Where a goal was selected that the index may have shown already, nobody can tell.
+        emits = (*_ending(robot, edit), Emission(TOPIC, shown, names, optional=shown.may_look_like(before)))
+    return after, names, emits, gone
+
+
+def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
+    """AM-09, AM-10: a mission may be seen to have ended before those that wait are cancelled or vanish with it."""
+    kept = tuple((op, what) for op, what in edit if op not in (Op.CANCEL_QUEUE, Op.DROP_QUEUE))
+    if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
+        yield Emission(TOPIC, listing(apply(kept, robot)), renumber(kept, robot)[0], optional=True)
+
+
+def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
+    after, names, emits, _ = _edited(robot, edit)
+    return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
+
+
+_answer = functools.cache(Answer)
+
+
+def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
+    after, names, emits, refs = _edited(robot, outcome.edit)
+    if outcome.whose == ADDED:
+        before = len(robot.listed)
+        refs = tuple(sorted(name for name in names or () if name >= before))
+        if request.operation in _BATCHES:
+            emits = (*_growing(robot, outcome.edit), *emits)
+    elif outcome.whose == ACTIVE:
+        refs = (len(robot.done),)
+    elif outcome.whose != GONE:
+        refs = ()
+    answer = _answer(outcome.code, unordered=outcome.whose == GONE)
+    return Step(
+        after,
+        names=names,
+        emits=emits,
+        rules=outcome.rules,
+        assumes=outcome.assumes,
+        answer=answer,
+        refs=refs,
+    )
+
+
+def _growing(robot: Robot, edit: Edit) -> Iterator[Emission]:
+    """AM-54: what a subscriber may see of a batch before it is complete."""
+    added = next(what for op, what in edit if op is Op.ADD)
+    for size in range(1, len(added)):
+        part = tuple((op, what[:size]) if op is Op.ADD else (op, what) for op, what in edit)
+        yield Emission(TOPIC, listing(apply(part, robot)), renumber(part, robot)[0], only=AM_54["b"])
+
+
+def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
+    """A subscription: the latest state is owed at once, unless (AM-36) there never was one."""
+    stream = len(robot.listed)
+    first = Emission(TOPIC, listing(robot), tuple(range(stream)))
+    ways: list[tuple[tuple[Emission, ...], tuple[Assumption, ...]]] = [((first,), ())]
+    if robot.fresh:
+        ways = [((first,), (AM_36["a", "b"],)), ((), (AM_36["c"],))]
+    for owed, assumes in ways:
+        yield Step(
+            robot,
+            opens=(Opening(TOPIC, stream, owed),),
+            rules=outcome.rules,
+            assumes=(*outcome.assumes, *assumes),
+            answer=Answer(OK),
+            refs=(stream,),
+        )
+
+
+def _outcomes(
+    operation: Operation, robot: Robot, request: Request, refs: tuple[int | None, ...], assumed: int
+) -> tuple[Step, ...]:
+    found: list[Step] = []
+    for outcome in outcomes(operation, situation(robot), call_of(robot, request, refs)):
+        if not meet(assumed, outcome.assumes):
+            continue
+        if outcome.whose == "stream":
+            found += _opened(robot, outcome)
+        else:
+            found.append(_answered(robot, request, outcome))
+    return tuple(found)
+
+
+def _urgent(robot: Robot) -> tuple[Step, ...]:
+    head = robot.pending[0] if robot.pending else None
+    ways = due(robot.world, robot.active, head, halted=robot.halted, queued=head is not None)
+    starts = robot.active is None
+    rules = (_MOVES["start"].id,) if starts else ()
+    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in ways)
+
+
+def _spontaneous(robot: Robot) -> tuple[Step, ...]:
+    head = robot.pending[0] if robot.pending else None
+    queued = len(robot.pending) > (robot.active is None)
+    ways = by_itself(robot.world, robot.active, head, halted=robot.halted, queued=queued)
+    return tuple(_step(robot, edit, assumes, (_MOVES["fail"].id,)) for edit, assumes in ways)
+
+
+_JUSTIFIED = {
+    "goalReached": (_NEXT_GOAL.id,),
+    "missionSucceeded": (_MOVES["succeed"].id,),
+    "missionFailed": (_MOVES["fail"].id,),
+}
+
+
+def _drive(robot: Robot, happening: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    rules = _JUSTIFIED.get(happening.name, ())
+    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in happens(situation(robot), happening))
+
+
+def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
+    if relation in ("first", "larger", "zero"):
+        return ()
+    return Mismatch(SEQUENCE.id, f"the sequence number is {relation}")
+
+
+@functools.cache
+def _delivery(_: object) -> Delivery:
+    # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
+    ends = {INTERNAL: (), **dict.fromkeys(TRANSPORT, (AM_61["b"],))}
+    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends=ends, unowed=(OWED.id,))
+
+
+# What holds of every robot, and what some robot can come to.
+
+
+def _has_state(mission: Mission, *states: State) -> bool:
+    return mission.state in states
+
+
+INVARIANTS = (
+    Invariant(
+        "ended-missions-come-first",
+        "Listed missions stand in the order ended, active, waiting.",
+        lambda robot: (
+            all(_has_state(one, *ENDED) for one in robot.done)
+            and (robot.active is None or _has_state(robot.active, State.STATE_RUNNING, State.STATE_PAUSED))
+            and all(_has_state(one, State.STATE_DEFAULT) for one in robot.pending)
+        ),
+    ),
+    Invariant(
+        "the-goal-index-is-a-goal",
+        "The current goal of an active mission is one of its goals, or none has been selected.",
+        lambda robot: (
+            robot.active is None
+            or robot.active.kind in GOALLESS
+            or NOT_CHOSEN <= robot.active.goal < len(robot.active.goals)
+        ),
+    ),
+    Invariant(
+        "only-waiting-missions-halt",
+        "A queue without missions is not halted.",
+        lambda robot: bool(robot.pending) or not robot.halted,
+    ),
+    Invariant(
+        "a-used-robot-is-not-fresh",
+        "A robot that lists a mission was used.",
+        lambda robot: not (robot.fresh and robot.listed),
+    ),
+)
+POSSIBILITIES = (
+    *(
+        Invariant(f"a-mission-is-{state.name.lower()}", f"Some mission is in {state.name}.", holds)
+        for state, holds in (
+            (state, lambda robot, state=state: any(one.state is state for one in robot.listed))
+            for state in LIFECYCLE.states
+        )
+    ),
+    Invariant("a-queue-forms", "Missions wait behind another.", lambda robot: bool(robot.active and robot.pending)),
+    Invariant(
+        "a-goal-is-left-behind",
+        "A mission is past its first goal.",
+        lambda robot: bool(robot.active and robot.active.goal > 0),
+    ),
+    Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.listed),
+)
+
+
+def _describe(value: object) -> str:
+    from missionfsm.bear.mission.describe import describe  # noqa: PLC0415 - words are for people and seldom needed
+
+    return describe(value)
+
+
+def _shape(robot: Robot) -> tuple[object, ...]:
+    """What a search tells robots apart by: what they are at, not where they are to go."""
+    active = robot.active
+    at = active and (
+        active.kind in PATROLS,
+        active.kind in AUTOMATIC,
+        active.kind is Kind.CHARGE,
+        active.state,
+        min(active.goal, 1),
+        len(active.goals) - active.goal,
+        active.finishing,
+    )
+    return (at, min(len(robot.pending), 2), bool(robot.done), robot.halted, robot.fresh, robot.fault, robot.world)
+
+
+def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int = ANYTHING) -> Spec:
+    """The system, with other operations if some rule is to be tried without or with another condition.
+
+    Calls have no outcomes that contradict what is assumed.
+    """
+    return Spec(
+        system=SYSTEM,
+        title="one robot's missions",
+        initial=Robot,
+        operations=operations,
+        outcomes=lambda robot, request, refs: _outcomes(operations[request.operation], robot, request, refs, assumed),
+        failing=failing,
+        drives={
+            one.name: one
+            for one in (
+                *(Drive(name, _drive, (Happening(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
+                # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
+                Drive("world", _drive),
+                Drive("fault", _drive),
+            )
+        },
+        urgent=_urgent,
+        spontaneous=_spontaneous,
+        matches=matches,
+        delivery=_delivery,
+        sequence=_sequence,
+        names=lambda robot: len(robot.listed),
+        request_operation=lambda request: request.operation,
+        ambiguities=AMBIGUITIES,
+        describe=_describe,
+        rules=RULES,
+        charts=(LIFECYCLE,),
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        abstraction=Abstraction(
+            situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+            shape=_shape,
+            phase=lambda robot: robot.active and robot.active.state,
+            place=target,
+            forget_ended=forget_ended,
+            shortcut=Shortcut,
+        ),
+        decided=lambda decided: specification(operations, decided),
+        rebuilt=specification,
+        unopened=(OWED.id,),
+    )
+
+
+SPEC = specification()
+__all__ = ["SPEC"]

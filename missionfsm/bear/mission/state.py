@@ -1,0 +1,308 @@
+"""The robot of the Mission page as a state: its world, its listed missions, and the edits that steps make to them.
+
+The missions of a robot stand in one order: those that have ended, then the active one, then those that wait. Nothing
+that the documents allow ever breaks that order, so it is the shape of the state rather than an invariant over it.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from attrs import evolve
+
+from missionfsm.bear.wire.messages import Goal, State
+from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.rules import Document
+from missionfsm.kernel.values import value
+
+MISSION = Document("Mission", "Mission (robot API)")
+SYSTEM = "bear.mission"
+
+
+class Family(enum.Enum):
+    """What kind of robot it is."""
+
+    BASE = "base"
+    SERVI = "servi"
+    CARTI = "carti"
+
+
+class Kind(enum.Enum):
+    """What kind of mission it is, workflows included."""
+
+    BASE_NAVIGATE = "base navigate"
+    BASE_NAVIGATE_AUTO = "base navigate-auto"
+    SERVI_DELIVERY = "servi delivery"
+    SERVI_DELIVERY_PATROL = "servi delivery patrol"
+    SERVI_BUSSING = "servi bussing"
+    SERVI_BUSSING_PATROL = "servi bussing patrol"
+    SERVI_NAVIGATE = "servi navigate"
+    SERVI_NAVIGATE_AUTO = "servi navigate-auto"
+    SERVI_BIRTHDAY = "servi birthday"
+    SERVI_HOSTING = "servi hosting"
+    SERVI_HOSTING_PATROL = "servi hosting patrol"
+    CARTI_TRAVERSE = "carti traverse"
+    CARTI_TRAVERSE_PATROL = "carti traverse patrol"
+    CARTI_NAVIGATE = "carti navigate"
+    CARTI_NAVIGATE_AUTO = "carti navigate-auto"
+    CHARGE = "charge"
+    RETURN = "return"
+
+
+PATROLS = frozenset(
+    {Kind.SERVI_DELIVERY_PATROL, Kind.SERVI_BUSSING_PATROL, Kind.SERVI_HOSTING_PATROL, Kind.CARTI_TRAVERSE_PATROL}
+)
+AUTOMATIC = frozenset({Kind.BASE_NAVIGATE_AUTO, Kind.SERVI_NAVIGATE_AUTO, Kind.CARTI_NAVIGATE_AUTO})
+GOALLESS = frozenset({Kind.CHARGE, Kind.RETURN})
+FAMILY: Mapping[Kind, Family | None] = {
+    kind: next((family for family in (Family.SERVI, Family.CARTI) if kind.value.startswith(family.value)), None)
+    for kind in Kind
+}
+"""The family that a kind of mission is for; None where it is for all."""
+
+RETURN_POINT = Goal(destination_id="")
+"""The goal that a workflow may add by itself (AM-27): which one it is, nobody is told."""
+
+LIFECYCLE: Chart[State] = Chart(
+    "mission",
+    State.STATE_DEFAULT,
+    (
+        ("start", State.STATE_DEFAULT, State.STATE_RUNNING),
+        ("cancel", State.STATE_RUNNING, State.STATE_CANCELED),
+        ("cancel", State.STATE_PAUSED, State.STATE_CANCELED),
+        ("pause", State.STATE_RUNNING, State.STATE_PAUSED),
+        ("resume", State.STATE_PAUSED, State.STATE_RUNNING),
+        ("finish", State.STATE_RUNNING, State.STATE_SUCCEEDED),
+        ("finish", State.STATE_PAUSED, State.STATE_SUCCEEDED),
+        ("succeed", State.STATE_RUNNING, State.STATE_SUCCEEDED),
+        ("fail", State.STATE_RUNNING, State.STATE_FAILED),
+        ("fail", State.STATE_PAUSED, State.STATE_FAILED),
+        ("cancel with the queue", State.STATE_DEFAULT, State.STATE_CANCELED),
+    ),
+    {"cancel with the queue": "only where AM-09 or AM-10 is read as c"},
+)
+"""The lifecycle of one mission; waiting is reported as STATE_DEFAULT (AM-08)."""
+
+ENDED = frozenset(LIFECYCLE.final)
+NOT_CHOSEN = -1
+"""The goal of a NavigateAuto mission that has not selected one."""
+
+
+@value(cache_hash=True)
+class Mission:
+    """One listed mission.
+
+    Attributes:
+        goal: index of the current goal; `NOT_CHOSEN` for a NavigateAuto mission that has not selected one.
+        finishing: it was told to finish and will, at its current goal (AM-30 read as b).
+        doomed: it was accepted although it cannot be done, and fails once it is started (AM-41 c, AM-43 b, AM-45 b).
+        hopeless: it was accepted although it cannot be done, and fails on the way (AM-41 d, AM-43 d).
+    """
+
+    kind: Kind
+    goals: tuple[Goal, ...] = ()
+    state: State = State.STATE_DEFAULT
+    goal: int = 0
+    finishing: bool = False
+    doomed: bool = False
+    hopeless: bool = False
+
+    def moved(self, trigger: str) -> Mission:
+        """The mission after a move of its lifecycle. Raises ValueError where that is not a move."""
+        after = LIFECYCLE.after(trigger, self.state)
+        if after is None:
+            message = f"a mission in {self.state.name} cannot {trigger}"
+            raise ValueError(message)
+        goes_on = after not in ENDED
+        return evolve(
+            self,
+            state=after,
+            finishing=False,
+            doomed=self.doomed and goes_on,
+            hopeless=self.hopeless and goes_on,
+        )
+
+    @property
+    def visible(self) -> Mission:
+        """What a subscriber can tell of it."""
+        if self.finishing or self.doomed or self.hopeless:
+            return evolve(self, finishing=False, doomed=False, hopeless=False)
+        return self
+
+
+@value(cache_hash=True)
+class World:
+    """What the robot is and where it stands; the fields are those of the adapter protocol.
+
+    Attributes:
+        destinations: display names on the robot's map.
+        occupied: those that another robot holds or claims.
+        blocked: whether the robot is unable to start a mission.
+    """
+
+    family: Family = Family.SERVI
+    contact_dock: bool = True
+    charging_location: bool = True
+    destinations: tuple[str, ...] = ("table-1", "table-2", "table-3")
+    occupied: tuple[str, ...] = ()
+    blocked: bool = False
+
+
+@value
+class Fault:
+    """The next call that would succeed and documents `status` answers with it; `applied`: and takes effect."""
+
+    status: str
+    applied: bool
+
+
+@value(cache_hash=True)
+class Robot:
+    """A robot: its world and its listed missions in order.
+
+    Attributes:
+        done: missions that have ended, in the order in which they were assigned.
+        active: the mission that is running or paused.
+        pending: missions that wait.
+        halted: the waiting missions are not going to start by themselves (AM-09, AM-10 read as b).
+        fresh: no mission was ever assigned.
+        fault: an armed fault.
+    """
+
+    world: World
+    done: tuple[Mission, ...] = ()
+    active: Mission | None = None
+    pending: tuple[Mission, ...] = ()
+    halted: bool = False
+    fresh: bool = True
+    fault: Fault | None = None
+
+    @property
+    def listed(self) -> tuple[Mission, ...]:
+        """All listed missions, first to last assigned."""
+        return (*self.done, *((self.active,) if self.active else ()), *self.pending)
+
+
+@value(cache_hash=True)
+class Situation:
+    """All of a robot that decides what a call is answered; the ended and the waiting missions only count."""
+
+    world: World
+    active: Mission | None
+    queued: bool
+    ended: bool
+    halted: bool
+    fresh: bool
+    fault: Fault | None
+
+
+def situation(robot: Robot) -> Situation:
+    """What of a robot decides its answers."""
+    return Situation(
+        robot.world, robot.active, bool(robot.pending), bool(robot.done), robot.halted, robot.fresh, robot.fault
+    )
+
+
+class Op(enum.Enum):
+    """The smallest changes of a robot, each with what it takes."""
+
+    END = "the active mission ends as this one"
+    BECOME = "the active mission becomes this one"
+    START = "the first waiting mission becomes active as this one"
+    ADD = "these missions are appended"
+    PUT_FIRST = "these missions are put before those that wait"
+    CANCEL_QUEUE = "all waiting missions are cancelled"
+    DROP_QUEUE = "all waiting missions vanish"
+    FORGET_ENDED = "the ended missions vanish"
+    CLEAR = "all missions vanish"
+    HALT = "whether the queue is halted"
+    ARM = "the armed fault"
+    WORLD = "the world"
+
+
+Edit = tuple[tuple[Op, Any], ...]
+"""A change of a robot, said without the missions that it leaves alone."""
+
+T = TypeVar("T")
+
+
+def apply(edit: Edit, robot: Robot) -> Robot:
+    """The robot after an edit; the same object where it is empty."""
+    if not edit:
+        return robot
+    done, active, pending = robot.done, robot.active, robot.pending
+    halted, fresh, fault, world = robot.halted, robot.fresh, robot.fault, robot.world
+    for op, what in edit:
+        if op is Op.END:
+            done, active = (*done, what), None
+        elif op is Op.BECOME:
+            active = what
+        elif op is Op.START:
+            active, pending = what, pending[1:]
+        elif op is Op.ADD:
+            pending, fresh = pending + what, False
+        elif op is Op.PUT_FIRST:
+            pending, fresh = what + pending, False
+        elif op is Op.CANCEL_QUEUE:
+            done, pending = (*done, *(one.moved("cancel with the queue") for one in pending)), ()
+        elif op is Op.DROP_QUEUE:
+            pending = ()
+        elif op is Op.FORGET_ENDED:
+            done = ()
+        elif op is Op.CLEAR:
+            done, active, pending = (), None, ()
+        elif op is Op.HALT:
+            halted = what
+        elif op is Op.ARM:
+            fault = what
+        elif op is Op.WORLD:
+            world = what
+    return Robot(world, done, active, pending, halted and bool(pending), fresh, fault)
+
+
+def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Which names an edit keeps, in the order of the missions after it, and which belong to missions that vanish.
+
+    Names are referred to as in `missionfsm.kernel.spec.Step`: 0… are those before, the added ones follow.
+    """
+    ended, here = len(robot.done), len(robot.done) + (robot.active is not None)
+    done, active = list(range(ended)), list(range(ended, here))
+    total = new = here + len(robot.pending)
+    pending = list(range(here, total))
+    gone: list[int] = []
+    for op, what in edit:
+        if op is Op.END:
+            done, active = done + active, []
+        elif op is Op.START:
+            active, pending = pending[:1], pending[1:]
+        elif op in (Op.ADD, Op.PUT_FIRST):
+            added = list(range(new, new + len(what)))
+            new += len(what)
+            pending = pending + added if op is Op.ADD else added + pending
+        elif op is Op.CANCEL_QUEUE:
+            done, pending = done + pending, []
+        elif op is Op.DROP_QUEUE:
+            gone, pending = gone + pending, []
+        elif op is Op.FORGET_ENDED:
+            gone, done = gone + done, []
+        elif op is Op.CLEAR:
+            gone, done, active, pending = gone + done + active + pending, [], [], []
+    return (*done, *active, *pending), tuple(gone)
+
+
+def is_missing(world: World, goals: tuple[Goal, ...]) -> bool:
+    """Whether one of the goals is a destination that the map has not."""
+    return any(goal.destination_id and goal.destination_id not in world.destinations for goal in goals)
+
+
+def is_foreign(world: World, kind: Kind) -> bool:
+    """Whether a mission is for another family than the robot's."""
+    return FAMILY[kind] not in (None, world.family)
+
+
+def free_goal(goals: tuple[Goal, ...], world: World, after: int = -1) -> int:
+    """The lowest index above `after` of a goal that no other robot holds or claims; `NOT_CHOSEN` if there is none."""
+    free = (index for index, goal in enumerate(goals) if index > after and goal.destination_id not in world.occupied)
+    return next(free, NOT_CHOSEN)

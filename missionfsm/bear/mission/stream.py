@@ -1,0 +1,405 @@
+"""The status stream of the Mission page: what a message shows, and what it may look like."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+
+from attrs import evolve
+
+from missionfsm.bear.mission.readings import (
+    AM_08,
+    AM_14_ENDED,
+    AM_14_GAP,
+    AM_14_PAUSED,
+    AM_26,
+    AM_35,
+    AM_36,
+    AM_50_MEMBER,
+    AM_50_SHAPE,
+    AM_51,
+    AM_63,
+)
+from missionfsm.bear.mission.state import (
+    ENDED,
+    FAMILY,
+    GOALLESS,
+    MISSION,
+    NOT_CHOSEN,
+    RETURN_POINT,
+    SYSTEM,
+    Family,
+    Kind,
+    Mission,
+    Robot,
+)
+from missionfsm.bear.wire.messages import (
+    BaseStatus,
+    BaseType,
+    CartiType,
+    FamilyStatus,
+    Goal,
+    MissionState,
+    MissionStates,
+    MissionType,
+    ServiType,
+    State,
+)
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.rules import Rule, promise
+from missionfsm.kernel.spec import Match, Mismatch
+from missionfsm.kernel.values import value
+
+TOPIC = "mission status"
+
+
+@value(cache_hash=True)
+class Listing:
+    """What a status message shows: the listed missions in order, which of them is active, and on what robot.
+
+    `fresh`: no mission was ever assigned. `held`: the first mission waits since it cannot start, which nobody sees.
+    `created`: the first mission that waits has just been created and has nothing to wait for.
+    """
+
+    missions: tuple[Mission, ...]
+    active: int | None
+    family: Family
+    fresh: bool = False
+    held: bool = False
+    created: bool = False
+
+    def looks_like(self, other: Listing) -> bool:
+        """Whether a subscriber could not tell it from the other."""
+        return (self.missions, self.active, self.fresh) == (other.missions, other.active, other.fresh)
+
+    def may_look_like(self, other: Listing) -> bool:
+        """Whether a subscriber need not be able to tell: a goal that is not selected may be shown as the first."""
+        mine, others = _selected(self.missions), _selected(other.missions)
+        return (mine, self.active, self.fresh) == (others, other.active, other.fresh)
+
+
+def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
+    return tuple(evolve(one, goal=0) if one.goal == NOT_CHOSEN else one for one in missions)
+
+
+@functools.lru_cache(maxsize=64)
+def listing(robot: Robot) -> Listing:
+    """What a subscriber of the robot is shown."""
+    return Listing(
+        tuple(mission.visible for mission in robot.listed),
+        len(robot.done) if robot.active else None,
+        robot.world.family,
+        robot.fresh,
+        not robot.done and robot.active is None and bool(robot.pending) and (robot.halted or robot.world.blocked),
+    )
+
+
+@value(cache_hash=True)
+class Seen:
+    """A status message without its mission ids and metadata; `named` tells which missions have an id.
+
+    `bare` tells of each mission whether its feedback came as a bare enum instead of a message.
+    """
+
+    states: MissionStates
+    named: tuple[bool, ...]
+    bare: tuple[bool, ...]
+
+
+def _promise(name: str, says: str, *place: str) -> Rule:
+    return promise(name, says, cite=MISSION[("SubscribeMissionStatus", *place)]).of(SYSTEM, "SubscribeMissionStatus")
+
+
+WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "Response")
+SEQUENCE = _promise(
+    "sequence-numbers-grow", "A sequence number is larger than the one before, or 0; never negative.", "EventMetadata"
+)
+ALL_LISTED = _promise(
+    "all-missions-are-listed", "Every mission of the robot is listed once, and no other.", "MissionStates"
+)
+CURRENT = _promise(
+    "the-current-mission-index-is-the-active-mission",
+    "current_mission_index is that of the active mission, -1 if none is active.",
+    "MissionStates",
+)
+STATE = _promise("the-state-is-reported", "A mission is reported in the state that it is in.", "State enum")
+GOALS = _promise(
+    "the-goals-are-those-requested", "A mission lists its goals in the order of the request.", "MissionState"
+)
+GOAL_INDEX = _promise(
+    "the-current-goal-index-is-the-active-goal", "current_goal_index is that of the active goal.", "MissionState"
+)
+FEEDBACK = _promise("the-feedback-fits-the-mission", "Feedback is of the mission's kind.", "MissionFeedback")
+TYPE = _promise("the-type-is-that-requested", "A mission has the type that was asked for.", "MissionType")
+OWED = _promise(
+    "updates-follow-the-state", "Every state that lasts is shown, in order, and none that was never reached."
+)
+RULES = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE, OWED)
+
+_SHOWN = tuple(rule.id for rule in RULES)
+
+TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
+    Kind.BASE_NAVIGATE: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),),
+    Kind.BASE_NAVIGATE_AUTO: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),),
+    Kind.SERVI_DELIVERY: (
+        MissionType(servi_type=ServiType.SERVI_TYPE_SERVING),
+        MissionType(servi_type=ServiType.SERVI_TYPE_UNKNOWN),
+    ),
+    Kind.SERVI_DELIVERY_PATROL: (
+        MissionType(servi_type=ServiType.SERVI_TYPE_SERVING_PATROL),
+        MissionType(servi_type=ServiType.SERVI_TYPE_UNKNOWN),
+    ),
+    Kind.SERVI_BUSSING: (MissionType(servi_type=ServiType.SERVI_TYPE_BUSSING),),
+    Kind.SERVI_BUSSING_PATROL: (MissionType(servi_type=ServiType.SERVI_TYPE_BUSSING_PATROL),),
+    Kind.SERVI_NAVIGATE: (MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE),),
+    Kind.SERVI_NAVIGATE_AUTO: (MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE_AUTO),),
+    Kind.CARTI_TRAVERSE: (MissionType(carti_type=CartiType.CARTI_TYPE_TRAVERSE),),
+    Kind.CARTI_TRAVERSE_PATROL: (MissionType(carti_type=CartiType.CARTI_TYPE_TRAVERSE_PATROL),),
+    Kind.CARTI_NAVIGATE: (MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE),),
+    Kind.CARTI_NAVIGATE_AUTO: (MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE_AUTO),),
+}
+"""The types that a kind may report, the expected one first. AM-26: a delivery is a serving mission."""
+
+FAMILY_TYPES: Mapping[tuple[Kind, Family], MissionType] = {
+    (Kind.BASE_NAVIGATE, Family.SERVI): TYPES[Kind.SERVI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.SERVI): TYPES[Kind.SERVI_NAVIGATE_AUTO][0],
+    (Kind.BASE_NAVIGATE, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE][0],
+    (Kind.BASE_NAVIGATE_AUTO, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE_AUTO][0],
+}
+UNNAMED: Mapping[Kind, Ambiguity] = {
+    Kind.SERVI_BIRTHDAY: AM_26[0],
+    Kind.SERVI_HOSTING: AM_26[1],
+    Kind.SERVI_HOSTING_PATROL: AM_26[2],
+}
+"""Workflows whose types no enum names (AM-26)."""
+
+Assumed = tuple[Assumption, ...]
+
+
+class _WrongError(Exception):
+    """The message cannot show the view."""
+
+    def __init__(self, rule: Rule, says: str) -> None:
+        self.mismatch = Mismatch(rule.id, says)
+
+
+def matches(view: Listing, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch:
+    """The ways in which a message shows a listing, or the first thing that is wrong with it."""
+    if isinstance(content, Garbled):
+        return Mismatch(WELL_FORMED.id, content.says)
+    try:
+        if not view.missions and content.states.missions:
+            assumes: Assumed = _placeholder(view, content)
+        else:
+            assumes = _listed(view, content)
+    except _WrongError as wrong:
+        return wrong.mismatch
+    # Readings that contradict each other in one message leave no explanation; the belief would find out as well.
+    return (Match(assumes, tuple((index, index) for index in range(len(view.missions))), _SHOWN),)
+
+
+def _placeholder(view: Listing, content: Seen) -> Assumed:
+    """AM-35, AM-36: an empty list may be shown as one mission in STATE_DEFAULT without an id."""
+    only = content.states.missions[0]
+    if len(content.states.missions) > 1 or content.named[0] or only.state != State.STATE_DEFAULT or only.goals:
+        raise _WrongError(ALL_LISTED, f"{len(content.states.missions)} missions are listed; the robot has none")
+    index = content.states.current_mission_index
+    if index not in (-1, 0):
+        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected -1 or 0")
+    if only.current_goal_index not in (-1, 0):
+        raise _WrongError(GOAL_INDEX, f"mission 0 has current_goal_index {only.current_goal_index} and no goals")
+    if any(status for _, status in _given(only)):
+        raise _WrongError(FEEDBACK, "mission 0 waits and has feedback")
+    return (AM_36["b"] if view.fresh else AM_35["c"],)
+
+
+def _listed(view: Listing, content: Seen) -> Assumed:
+    shown = content.states.missions
+    if len(shown) != len(view.missions):
+        raise _WrongError(ALL_LISTED, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
+    if not all(content.named):
+        raise _WrongError(ALL_LISTED, f"mission {content.named.index(False)} has no id")
+    assumes = list(_current(view, content.states.current_mission_index))
+    if not view.missions:
+        assumes.append(AM_36["a", "c"] if view.fresh else AM_35["a"])
+    for index, (mission, message) in enumerate(zip(view.missions, shown, strict=True)):
+        where = f"mission {index}"
+        assumes += _state(view, index, message, where, pointed=content.states.current_mission_index == index)
+        _goals(mission, message, where)
+        _goal_index(mission, message, where)
+        assumes += _feedback(view, mission, message, where, bare=content.bare[index])
+        assumes += _type(view, mission, message, where)
+    assumes += _first_start(view)
+    return tuple(dict.fromkeys(assumes))
+
+
+def _first_start(view: Listing) -> Assumed:
+    """AM-63: a mission that was created and is seen waiting did not run at once."""
+    waiting = view.active is None and view.missions and not view.held
+    first = all(one.state is State.STATE_DEFAULT for one in view.missions)
+    return (AM_63["b"],) if waiting and (first or view.created) else ()
+
+
+def current_index(view: Listing) -> Mapping[int, Assumed]:
+    """The values that current_mission_index may have, and what each assumes (AM-14)."""
+    if view.active is not None:
+        if view.missions[view.active].state is State.STATE_PAUSED:
+            return {view.active: (AM_14_PAUSED["f"],), -1: (AM_14_PAUSED["g"],)}
+        return {view.active: ()}
+    ended = sum(mission.state in ENDED for mission in view.missions)
+    if ended == len(view.missions):
+        return {-1: (AM_14_ENDED["a"],), ended - 1: (AM_14_ENDED["b"],)} if ended else {-1: ()}
+    if not ended:
+        return {-1: (AM_14_GAP["c", "d"],), 0: (AM_14_GAP["e"],)}
+    return {-1: (AM_14_GAP["c"],), ended - 1: (AM_14_GAP["d"],), ended: (AM_14_GAP["e"],)}
+
+
+def _current(view: Listing, index: int) -> Assumed:
+    allowed = current_index(view)
+    if index not in allowed:
+        values = " or ".join(str(value) for value in allowed)
+        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected {values}")
+    return allowed[index]
+
+
+def _state(view: Listing, index: int, message: MissionState, where: str, *, pointed: bool) -> Assumed:
+    state = view.missions[index].state
+    if state is not State.STATE_DEFAULT:
+        if message.state != state:
+            raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected {state.name}")
+        return ()
+    letters = waiting_as(pointed=pointed).get(message.state)
+    if letters is None:
+        raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected STATE_DEFAULT since it waits")
+    return (AM_08[letters],)
+
+
+def waiting_as(*, pointed: bool) -> Mapping[State | int, tuple[str, ...]]:
+    """The states that a waiting mission may report, and what each assumes (AM-08).
+
+    One that the index points at would be taken for a mission that was paused.
+    """
+    if pointed:
+        return {State.STATE_DEFAULT: ("a", "c"), State.STATE_UNKNOWN: ("b",)}
+    return {State.STATE_DEFAULT: ("a",), State.STATE_UNKNOWN: ("b",), State.STATE_PAUSED: ("c",)}
+
+
+def _name(state: State | int) -> str:
+    return state.name if isinstance(state, State) else f"state {state}"
+
+
+def _goals(mission: Mission, message: MissionState, where: str) -> None:
+    if mission.kind in GOALLESS:
+        if len(message.goals) > 1:
+            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected its own place at most")
+        return
+    wanted = mission.goals
+    if wanted and wanted[-1] == RETURN_POINT:
+        if len(message.goals) != len(wanted):
+            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected {len(wanted)}")
+        wanted = (*wanted[:-1], message.goals[-1])
+    if not _same_goals(wanted, message.goals):
+        raise _WrongError(GOALS, f"{where} has the goals {_told(message.goals)}, expected {_told(wanted)}")
+
+
+FLOAT_STEP = 1e-6
+"""Poses travel as 32-bit floats: what comes back is as close to what was asked as that."""
+
+
+def _same_goals(wanted: tuple[Goal, ...], shown: tuple[Goal, ...]) -> bool:
+    if wanted == shown:
+        return True
+    return len(wanted) == len(shown) and all(map(_same_goal, wanted, shown))
+
+
+def _same_goal(wanted: Goal, shown: Goal) -> bool:
+    if wanted.pose is None or shown.pose is None:
+        return wanted == shown
+    pairs = (
+        (wanted.pose.x_meters, shown.pose.x_meters),
+        (wanted.pose.y_meters, shown.pose.y_meters),
+        (wanted.pose.heading_radians, shown.pose.heading_radians),
+    )
+    return all(abs(one - other) <= FLOAT_STEP * max(1.0, abs(one)) for one, other in pairs)
+
+
+def _told(goals: tuple[Goal, ...]) -> str:
+    return "[" + ", ".join(goal.destination_id or "a pose" for goal in goals) + "]"
+
+
+def _goal_index(mission: Mission, message: MissionState, where: str) -> None:
+    index, last = message.current_goal_index, max(len(message.goals), len(mission.goals))
+    active = mission.state in (State.STATE_RUNNING, State.STATE_PAUSED)
+    if active and mission.kind not in GOALLESS and mission.goal != NOT_CHOSEN:
+        if index != mission.goal:
+            raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, expected {mission.goal}")
+    elif not -1 <= index <= last:
+        raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, outside of its goals")
+
+
+MEMBERS: Mapping[Family | None, str] = {
+    None: "base_feedback",
+    Family.BASE: "base_feedback",
+    Family.SERVI: "servi_feedback",
+    Family.CARTI: "carti_feedback",
+}
+
+
+def _feedback(view: Listing, mission: Mission, message: MissionState, where: str, *, bare: bool) -> Assumed:
+    given = _given(message)
+    if not given:
+        return ()
+    name, status = given[0]
+    if not isinstance(status, BaseStatus | FamilyStatus):
+        raise _WrongError(FEEDBACK, f"{where} has {name} {status}, which is not documented")
+    if mission.state is State.STATE_DEFAULT and status:
+        raise _WrongError(FEEDBACK, f"{where} waits and has feedback")
+    assumes: list[Assumption] = []
+    own, robots = MEMBERS[FAMILY[mission.kind]], MEMBERS[view.family]
+    if mission.kind not in GOALLESS and own != robots and name in (own, robots):
+        assumes.append(AM_50_MEMBER["c" if name == own else "d"])
+    elif name not in (own, robots):
+        raise _WrongError(FEEDBACK, f"{where} has {name}, expected {own}")
+    if name != "base_feedback":
+        assumes.append(AM_50_SHAPE["b" if bare else "a"])
+    return tuple(assumes)
+
+
+def _given(message: MissionState) -> list[tuple[str, int]]:
+    """The members of a mission's feedback that are there, each with its status."""
+    feedback = message.mission_feedback
+    members = ((name, getattr(feedback, name)) for name in dict.fromkeys(MEMBERS.values())) if feedback else ()
+    return [(name, member.status) for name, member in members if member is not None]
+
+
+def _type(view: Listing, mission: Mission, message: MissionState, where: str) -> Assumed:
+    shown = message.mission_type or MissionType()
+    if mission.kind in GOALLESS:
+        return ()
+    if mission.kind in UNNAMED:
+        if shown.base_type is not None or shown.carti_type is not None:
+            raise _WrongError(TYPE, f"{where} has a type of another family")
+        number = shown.servi_type or ServiType.SERVI_TYPE_UNKNOWN
+        documented = isinstance(number, ServiType)
+        return (UNNAMED[mission.kind]["a" if not number else "c" if documented else "b"],)
+    expected = TYPES[mission.kind]
+    if shown in expected:
+        return (AM_51["a"],) if (mission.kind, view.family) in FAMILY_TYPES else ()
+    if shown == FAMILY_TYPES.get((mission.kind, view.family)):
+        return (AM_51["b"],)
+    if mission.kind in (Kind.SERVI_DELIVERY, Kind.SERVI_DELIVERY_PATROL) and shown == MissionType():
+        return ()
+    raise _WrongError(TYPE, f"{where} has {_type_name(shown)}, expected {_type_name(expected[0])}")
+
+
+def _type_name(shown: MissionType) -> str:
+    for one in (shown.base_type, shown.servi_type, shown.carti_type):
+        if one is not None:
+            return one.name if hasattr(one, "name") else f"type {one}"
+    return "no type"
+
+
+def without_ids(states: MissionStates) -> MissionStates:
+    """The message with its mission ids taken out."""
+    return evolve(states, missions=tuple(evolve(one, mission_id="") for one in states.missions))

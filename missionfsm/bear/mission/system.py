@@ -1,0 +1,218 @@
+"""The system ``bear.mission``: its specification, its JSON, and what is worth trying on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from missionfsm.bear.mission.codec import CODEC
+from missionfsm.bear.mission.mutations import BENDS, REACHING, TWISTS
+from missionfsm.bear.mission.pictures import SKETCHES
+from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
+from missionfsm.bear.mission.scripts import SCRIPTS
+from missionfsm.bear.mission.spec import SPEC
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.system import System
+
+
+def _tables(count: int) -> tuple[str, ...]:
+    return tuple(TABLES[index % len(TABLES)] for index in range(count))
+
+
+def _missions(family: str, goals: int) -> Iterator[JSON]:
+    """The missions that a robot of the family can run."""
+    some = _tables(goals)
+    yield base({"destinationId": TABLES[0]})
+    yield base({"pose": {"xMeters": 4.25, "yMeters": 7.75, "headingRadians": 1.5}})
+    yield auto(*some)
+    if family == "servi":
+        yield of_family("servi", "deliveryMission", *some)
+        yield of_family("servi", "deliveryPatrolMission", *some)
+        yield of_family("servi", "bussingMission", *reversed(some))
+        yield of_family("servi", "bussingPatrolMission", TABLES[1])
+        yield of_family("servi", "navigateAutoMission", *some)
+        yield {"serviMission": {"navigateMission": {"goal": {"destinationId": TABLES[1]}}}}
+    if family == "carti":
+        yield of_family("carti", "traverseMission", *some)
+        yield of_family("carti", "traversePatrolMission", *some)
+        yield of_family("carti", "navigateAutoMission", *some)
+        yield {"cartiMission": {"navigateMission": {"goal": {"destinationId": TABLES[2]}}}}
+
+
+_DEFECTIVE: tuple[JSON, ...] = (
+    None,
+    {},
+    {"baseMission": {}},
+    base({}),
+    base({"destinationId": ""}),
+    base({"destinationId": "nowhere"}),
+    base({"pose": {"xMeters": "NaN"}}),
+    base({"destinationId": 7}),
+    {"baseMission": {"navigateMission": {}}},
+    auto(),
+    {**base({"destinationId": TABLES[0]}), "serviMission": {"deliveryMission": {"goals": goals_at(TABLES[0])}}},
+    {"baseMission": {"navigateMission": "now"}},
+    base({"destinationId": TABLES[0], "pose": {"xMeters": 1.0}}),
+    of_family("servi", "deliveryMission"),
+    of_family("carti", "traverseMission", "nowhere"),
+)
+"""Missions that no robot should accept, whatever its family."""
+
+_FOREIGN: dict[str, tuple[JSON, ...]] = {
+    "base": (of_family("servi", "deliveryMission", TABLES[0]), of_family("carti", "traverseMission", TABLES[0])),
+    "servi": (of_family("carti", "traverseMission", TABLES[0]),),
+    "carti": (of_family("servi", "bussingMission", TABLES[0]),),
+}
+_TWICE = auto(TABLES[0], TABLES[0])
+
+_WORKFLOWS: dict[str, tuple[str, ...]] = {
+    "base": (),
+    "servi": ("delivery", "deliveryPatrol", "bussing", "bussingPatrol", "hosting", "hostingPatrol"),
+    "carti": ("traverse", "traversePatrol"),
+}
+
+
+def _workflows(family: str, goals: int) -> Iterator[JSON]:
+    for name in _WORKFLOWS[family]:
+        yield {f"{family}Workflow": {name: {"goals": goals_at(*_tables(goals))}}}
+    if family == "servi":
+        yield {"serviWorkflow": {"birthday": {"goal": {"destinationId": TABLES[0]}}}}
+
+
+_DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
+    None,
+    {},
+    {"serviWorkflow": {}},
+    {"serviWorkflow": {"delivery": {"goals": []}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at("nowhere")}}},
+    {"serviWorkflow": {"birthday": {}}},
+    {"cartiWorkflow": {"traverse": {"goals": [{}]}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at(TABLES[0])}}, "cartiWorkflow": {}},
+    {"serviWorkflow": []},
+    {"serviWorkflow": {"bussing": {"goals": goals_at(TABLES[0], TABLES[0])}}},
+    {"cartiWorkflow": {"traverse": {"goals": goals_at(TABLES[0])}}},
+    {"serviWorkflow": {"hosting": {"goals": goals_at(TABLES[0])}}},
+)
+
+
+def _updates() -> Iterator[Prompt]:
+    for command in COMMANDS:
+        yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
+    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
+    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
+    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_DANCE"}})
+    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": 9}})
+    yield Prompt("UpdateMission", {"missionCommand": {"command": "COMMAND_CANCEL"}})
+    yield Prompt("UpdateMission", {})
+    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_PAUSE"}, "x": 1})
+
+
+def _wrapped(mission: JSON) -> JSON:
+    return {} if mission is None else {"mission": mission}
+
+
+def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
+    good = tuple(_missions(family, bounds.goals))
+    bad = (*_DEFECTIVE, *_FOREIGN[family], _TWICE)
+    for method in ("CreateMission", "AppendMission"):
+        yield from (Prompt(method, _wrapped(mission)) for mission in (*good, *bad))
+        yield Prompt(method, {"mission": good[0], "urgency": "high"})
+        yield Prompt(method, [])
+    for method in ("CreateMissionBatch", "AppendMissionBatch"):
+        for size in range(1, bounds.batch + 1):
+            for first in range(0, len(good), 2):
+                batch = [_wrapped(good[(first + index) % len(good)]) for index in range(size)]
+                yield Prompt(method, {"missions": batch})
+        yield from (Prompt(method, {"missions": [_wrapped(good[0]), _wrapped(mission)]}) for mission in bad)
+        yield Prompt(method, {"missions": [_wrapped(bad[5]), _wrapped(good[0])]})
+        yield Prompt(method, {"missions": []})
+        yield Prompt(method, {})
+        yield Prompt(method, {"missions": [good[0]]})
+    for workflow in (*_workflows(family, bounds.goals), *_DEFECTIVE_WORKFLOWS):
+        yield Prompt("CreateMissionWorkflow", {} if workflow is None else {"missionWorkflow": workflow})
+    yield Prompt("CreateMissionWorkflow", {"missionWorkflow": _DEFECTIVE_WORKFLOWS[-1], "urgency": "high"})
+    yield from _updates()
+    for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
+        yield Prompt(method, {})
+        yield Prompt(method, {"x": 1})
+        yield Prompt(method, "all")
+
+
+def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
+    goals = _tables(bounds.goals)
+    kind = {"base": auto, "servi": None, "carti": None}[family]
+    several = (
+        kind(*goals)
+        if kind
+        else of_family(family, "deliveryMission" if family == "servi" else "traverseMission", *goals)
+    )
+    patrol = (
+        [of_family(family, "deliveryPatrolMission" if family == "servi" else "traversePatrolMission", *goals)]
+        if family != "base"
+        else []
+    )
+    for mission in (base({"destinationId": TABLES[0]}), several, *patrol):
+        yield Prompt("CreateMission", {"mission": mission})
+        yield Prompt("AppendMission", {"mission": mission})
+    if bounds.batch > 1:
+        batch = [
+            {"mission": several},
+            *({"mission": base({"destinationId": TABLES[0]})} for _ in range(bounds.batch - 1)),
+        ]
+        yield Prompt("CreateMissionBatch", {"missions": batch})
+        yield Prompt("AppendMissionBatch", {"missions": batch})
+    if family != "base":
+        name = "delivery" if family == "servi" else "traverse"
+        yield Prompt(
+            "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": goals_at(*goals)}}}}
+        )
+    for command in COMMANDS:
+        yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
+    for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
+        yield Prompt(method, {})
+
+
+_DRIVES: tuple[JSON, ...] = (
+    {"event": "goalReached"},
+    {"event": "missionSucceeded"},
+    {"event": "missionFailed"},
+    {"event": "world", "blocked": True},
+    {"event": "world", "blocked": False},
+    {"event": "world", "occupied": ["table-1"]},
+    {"event": "world", "occupied": ["table-1", "table-2", "table-3"]},
+    {"event": "world", "occupied": []},
+    {"event": "world", "chargingLocation": False},
+    {"event": "world", "contactDock": False},
+    {"event": "world", "contactDock": True, "chargingLocation": True},
+    {"event": "fault", "status": "INTERNAL", "applied": False},
+    {"event": "fault", "status": "INTERNAL", "applied": True},
+    {"event": "fault", "status": "DEADLINE_EXCEEDED", "applied": False},
+    {"event": "fault", "status": "DEADLINE_EXCEEDED", "applied": True},
+)
+_WORLDS: tuple[JSON, ...] = (
+    {"family": "servi"},
+    {"family": "base"},
+    {"family": "carti"},
+    {"family": "servi", "occupied": ["table-1"]},
+    {"family": "base", "occupied": ["table-1", "table-2", "table-3"]},
+    {"family": "carti", "contactDock": False},
+    {"family": "servi", "chargingLocation": False},
+    {"family": "servi", "blocked": True},
+)
+
+
+def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
+    """What is worth trying on a robot in a world."""
+    family = (world or {}).get("family", "servi")
+    return Alphabet(
+        prompts=tuple(_prompts(family, bounds)),
+        plain=tuple(_plain(family, bounds)),
+        drives=_DRIVES,
+        plain_drives=_DRIVES[:3],
+        worlds=_WORLDS,
+        wrong_names=("no-such-mission",),
+        scripts=SCRIPTS,
+    )
+
+
+SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES)

@@ -1,0 +1,61 @@
+"""The values of the status API in words, for people: short, and never a whole state where a difference will do."""
+
+from __future__ import annotations
+
+from missionfsm.bear.status.state import GET, Fleet, Happening, Request
+from missionfsm.bear.status.stream import Promised, Seen, View, brief_value
+from missionfsm.bear.wire.protojson import camel
+from missionfsm.kernel.text import brief
+
+
+def describe(value: object) -> str:
+    """A request, a state, a view, a message or an event in a few words."""
+    if isinstance(value, Request):
+        return _request(value)
+    if isinstance(value, Fleet):
+        fault = ", a fault armed" if value.fault else ""
+        return f"{len(value.robots)} robots at {len(value.locations)} locations{fault}"
+    if isinstance(value, View):
+        return f"{value.robot}: {_shown(value)}"
+    if isinstance(value, Seen):
+        return f"{value.robot}: {brief_value(value.value)}"
+    if isinstance(value, Promised):
+        return str(value)
+    if isinstance(value, Happening):
+        return _happening(value)
+    return str(value)
+
+
+def _shown(value: View) -> str:
+    if value.unheard:
+        return "any state"
+    return "UNKNOWN values" if value.blank else brief_value(value.value)
+
+
+def _request(request: Request) -> str:
+    if request.malformed:
+        return f"{request.operation}(malformed: {request.malformed})"
+    if request.operation == GET:
+        return f"{GET}({brief(request.ids[0]) if request.ids else ''})"
+    parts = []
+    if request.by_ids:
+        ids = ", ".join(map(brief, request.ids))
+        parts.append(f"robots {ids or 'none'}{', one of them twice' if request.repeated else ''}")
+    if request.location is not None:
+        parts.append(f"location {brief(request.location)}")
+    if request.unknown_field:
+        parts.append("an unknown field")
+    return f"{request.operation}({'; '.join(parts)})"
+
+
+def _happening(happening: Happening) -> str:
+    if happening.name == "report":
+        return f"{happening.robot} reports {camel(happening.part)} {brief_value(happening.value)}"
+    if happening.name == "move":
+        return f"{happening.robot} moves to {happening.value}"
+    if happening.name == "fault":
+        return f"fault {happening.value}"
+    return f"{happening.robot} restarts"
+
+
+__all__ = ["describe"]

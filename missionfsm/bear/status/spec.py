@@ -1,0 +1,189 @@
+"""The Robot Status page as a `Spec`: the rules and effects of the other modules, put together."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+
+from missionfsm.bear.status.effects import armed, failing, moved, outcomes, reported, restarted
+from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
+from missionfsm.bear.status.readings import AMBIGUITIES, AS_01, AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_34
+from missionfsm.bear.status.rules import OPERATIONS
+from missionfsm.bear.status.state import (
+    CHARTS,
+    FORGET,
+    MAPS,
+    STATE_PARTS,
+    SYSTEM,
+    Endpoint,
+    Fleet,
+    Happening,
+    initial,
+)
+from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
+from missionfsm.bear.status.values import faults
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE, Operation
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Spec
+
+
+def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
+    """How a number may compare with its predecessor: larger, or 0; anything but negative after a restart."""
+    if relation in ("first", "larger", "zero", "renumbered"):
+        return ()
+    return Mismatch(SEQUENCE.id, f"the sequence number is {_COMPARED.get(relation, relation)}")
+
+
+_COMPARED = {"equal": "the one before again", "smaller": "smaller than the one before"}
+
+
+@functools.cache
+def _delivery(topic: Topic) -> Delivery:
+    # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends (AS-26).
+    ends: dict[str, tuple[Assumption, ...]] = {INTERNAL: (), UNAVAILABLE: (AS_34["b"],)}
+    if topic.partly:
+        ends[PERMISSION_DENIED] = (AS_01["c"],)
+    return Delivery(
+        skips=AS_13_SKIP["c"],
+        repeats=AS_12_HYBRID["a", "b"] if topic.endpoint is Endpoint.ROBOT else AS_12_EVENT["b"],
+        echoes=AS_08["c"] if topic.endpoint in MAPS else None,
+        ends=ends,
+        unowed=(UPDATES.id,),
+    )
+
+
+def _renumbered(event: Happening) -> tuple[str, ...]:
+    return (event.robot,)
+
+
+# What holds of every fleet, and what some fleet can come to.
+
+INVARIANTS = (
+    Invariant(
+        "one-type-of-robot-at-a-time",
+        "No robot reports the states of two types.",
+        lambda fleet: all(one.state.servi_state is None or one.state.carti_state is None for one in fleet.robots),
+    ),
+    Invariant(
+        "what-is-reported-is-known",
+        "What a robot reports is what is known of it.",
+        lambda fleet: all(
+            one.state.connection in (None, one.topic(Endpoint.ONLINE))
+            and one.state.battery in (None, one.topic(Endpoint.BATTERY))
+            and one.state.error_codes in (None, one.topic(Endpoint.ERRORS))
+            and one.state.navigation_state in (None, one.topic(Endpoint.NAVIGATION))
+            for one in fleet.robots
+        ),
+    ),
+    Invariant(
+        "values-are-in-their-ranges",
+        "What is known of a robot breaks no rule about values.",
+        lambda fleet: all(
+            fault.robots or fault.rule.endswith(("reserved-reasons-are-not-used", "a-stuck-state-is-known"))
+            for one in fleet.robots
+            for value in (one.state, one.wifi)
+            for fault in faults(value)
+        ),
+    ),
+)
+POSSIBILITIES = (
+    *(
+        Invariant(f"a-robot-is-{state.name.lower()}", f"Some robot is in {state.name}.", holds)
+        for state, holds in (
+            (state, lambda fleet, state=state: any(one.connection is state for one in fleet.robots))
+            for state in (ConnectionState.STATE_CONNECTED, ConnectionState.STATE_DISCONNECTED)
+        )
+    ),
+    *(
+        Invariant(f"a-battery-is-{mode.name.lower()}", f"Some battery is in {mode.name}.", holds)
+        for mode, holds in (
+            (
+                mode,
+                lambda fleet, mode=mode: any(
+                    one.state.battery is not None and one.state.battery.state is mode for one in fleet.robots
+                ),
+            )
+            for mode in BatteryMode
+            if mode
+        )
+    ),
+    Invariant(
+        "a-robot-is-stuck",
+        "Some robot is stuck.",
+        lambda fleet: any(
+            one.state.navigation_state is not None
+            and one.state.navigation_state.stuck_state is not None
+            and one.state.navigation_state.stuck_state.state is Stuck.STATE_STUCK
+            for one in fleet.robots
+        ),
+    ),
+    Invariant(
+        "a-robot-has-no-network",
+        "Some robot is on no network.",
+        lambda fleet: any(one.wifi is None for one in fleet.robots),
+    ),
+    Invariant("a-fault-is-armed", "The next answer is a failure.", lambda fleet: fleet.fault),
+)
+
+
+def _describe(value: object) -> str:
+    from missionfsm.bear.status.describe import describe  # noqa: PLC0415 - words are for people and seldom needed
+
+    return describe(value)
+
+
+def _names(_: Fleet) -> int:
+    return 0
+
+
+def _shape(fleet: Fleet) -> tuple[object, ...]:
+    """Fleets that differ in values alone are of one shape: what is reported, who is offline, what is armed."""
+    reported = tuple(
+        (one.connection, *(part for part in STATE_PARTS if one.part(part) is not None)) for one in fleet.robots
+    )
+    return (reported, fleet.fault, fleet.unheard, fleet.moves)
+
+
+def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
+    """The page as a specification, perhaps with other rules of refusal."""
+    return Spec(
+        system=SYSTEM,
+        title="the status of an account's fleet",
+        initial=initial,
+        operations=operations,
+        outcomes=functools.partial(outcomes, operations=operations),
+        failing=failing,
+        drives={
+            one.name: one
+            for one in (
+                Drive("report", reported, (FORGET,), impossible=(SELECTED.id,)),
+                # Numbers that start over are recognised by their 0; nothing else tells of a restart that nobody drove.
+                Drive("restart", restarted, renumbers=_renumbered, impossible=(SELECTED.id,)),
+                Drive("move", moved, impossible=(SELECTED.id,)),
+                # Failures that nobody arms are outcomes of their own.
+                Drive("fault", armed),
+            )
+        },
+        urgent=lambda _: (),
+        matches=matches,
+        delivery=_delivery,
+        sequence=sequence,
+        names=_names,
+        request_operation=lambda request: request.operation,
+        ambiguities=AMBIGUITIES,
+        concerns=concerns,
+        describe=_describe,
+        rules=RULES,
+        charts=CHARTS,
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        answers=answers,
+        abstraction=Abstraction(shape=_shape),
+        rebuilt=specification,
+        unopened=(UPDATES.id,),
+    )
+
+
+SPEC = specification()
+
+__all__ = ["SPEC"]

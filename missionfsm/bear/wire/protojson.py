@@ -1,0 +1,241 @@
+"""Protobuf messages as attrs values, in and out of protobuf JSON.
+
+What every kind of input means is decided here, once:
+
+- a name may come in lowerCamelCase or in snake_case; null is the same as absent; absent means the field's default;
+- an enum may come by name or by number; a name that does not exist is malformed, a number that does not is kept;
+- a 64-bit integer may come as a number or as text; a float also as "NaN", "Infinity" or "-Infinity";
+- a value of another type, a number out of the range of its field, two members of one oneof are malformed;
+- a field that the message does not have is ignored, and `unknown_fields` finds it for those who refuse it.
+"""
+
+from __future__ import annotations
+
+import enum
+import functools
+import math
+import re
+from collections.abc import Callable
+from typing import Any, NewType, TypeVar, get_args
+
+import attrs
+import cattrs
+
+from missionfsm.kernel.text import brief
+
+Int64 = NewType("Int64", int)
+"""A 64-bit integer field; `int` is a 32-bit one."""
+
+T = TypeVar("T")
+
+
+class MalformedError(ValueError):
+    """A JSON text is not the message that it should be: says where and what."""
+
+    def __init__(self, says: str, path: str = "") -> None:
+        self.says = says
+        self.path = path
+        super().__init__(f"{path or 'the message'}: {says}")
+
+    def inside(self, step: str) -> MalformedError:
+        """The same error, seen from one level further out."""
+        return MalformedError(self.says, step + ("" if self.path.startswith("[") or not self.path else ".") + self.path)
+
+
+def member(group: str) -> Any:  # noqa: ANN401 - as attrs.field
+    """A field that belongs to a oneof: at most one of the group may be set."""
+    return attrs.field(default=None, metadata={"oneof": group})
+
+
+def camel(name: str) -> str:
+    """``current_goal_index`` to ``currentGoalIndex``."""
+    head, *rest = name.split("_")
+    return head + "".join(word.capitalize() for word in rest)
+
+
+def key_of(message: dict[str, Any], name: str) -> str:
+    """The key under which a message has a field, given its ``snake_case`` name; null is the same as absent."""
+    usual = camel(name)
+    return name if message.get(usual) is None and message.get(name) is not None else usual
+
+
+def _integer(bits: int, value: object) -> int:
+    if isinstance(value, str) and re.fullmatch(r"-?[0-9]{1,20}", value):
+        value = int(value)
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise MalformedError(f"{brief(value)} is not an integer")
+    if not -(1 << bits - 1) <= value < 1 << bits - 1:
+        raise MalformedError(f"{brief(value)} does not fit into {bits} bits")
+    return value
+
+
+_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?|NaN|-?Infinity", re.ASCII)
+LARGEST = 3.4028235677973366e38
+"""Where what rounds to a 32-bit float ends."""
+
+
+def _float(value: object, _: object = None) -> float:
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value)
+        if math.isinf(value):
+            return value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise MalformedError(f"{brief(value)} is not a number")
+    if LARGEST < abs(value) != math.inf:
+        raise MalformedError(f"{brief(value)} does not fit into 32 bits")
+    return float(value)
+
+
+def _text(value: object, _: object = None) -> str:
+    if not isinstance(value, str):
+        raise MalformedError(f"{brief(value)} is not a text")
+    return value
+
+
+def _enum(value: object, kind: type[enum.IntEnum]) -> int:
+    if isinstance(value, str):
+        try:
+            return kind[value]
+        except KeyError:
+            raise MalformedError(f"{kind.__name__} has no {brief(value)}") from None
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise MalformedError(f"{brief(value)} is not a {kind.__name__}")
+    return kind(value) if value in kind._value2member_map_ else value
+
+
+@functools.cache
+def _fields(kind: type) -> dict[str, attrs.Attribute[Any]]:
+    """The fields of a message class by either of their JSON names."""
+    attrs.resolve_types(kind)
+    found: dict[str, attrs.Attribute[Any]] = {}
+    for attribute in attrs.fields(kind):
+        found[camel(attribute.name)] = attribute
+        found[attribute.name] = attribute
+    return found
+
+
+def _message_hook(kind: type[T]) -> Callable[[object, object], T]:
+    fields = _fields(kind)  # type: ignore[arg-type]  # a class can be hashed
+    hooks: dict[str, Callable[..., Any]] = {}
+
+    def structure(value: object, _: object = None) -> T:
+        if not isinstance(value, dict):
+            raise MalformedError(f"{brief(value)} is not an object")
+        given: dict[str, Any] = {}
+        groups: dict[str, str] = {}
+        for name, content in value.items():
+            attribute = fields.get(name)
+            if attribute is None or content is None:
+                continue
+            group = attribute.metadata.get("oneof")
+            if group and groups.setdefault(group, name) != name:
+                raise MalformedError(f"{groups[group]} and {name} are set; only one may be")
+            if attribute.name in given:
+                raise MalformedError(f"{name} is set twice")
+            hook = hooks.get(attribute.name)
+            if hook is None:
+                hook = hooks[attribute.name] = CONVERTER.get_structure_hook(_plain(attribute.type))
+            try:
+                given[attribute.name] = hook(content, _plain(attribute.type))
+            except MalformedError as error:
+                raise error.inside(name) from None
+        return kind(**given)
+
+    return structure
+
+
+def _plain(declared: Any) -> Any:  # noqa: ANN401 - a type
+    """The type that a present value has: an optional field's without the None."""
+    inner = [one for one in get_args(declared) if one is not type(None)]
+    return inner[0] if type(None) in get_args(declared) else declared
+
+
+def _is_tuple(declared: Any) -> bool:  # noqa: ANN401 - a type
+    return getattr(declared, "__origin__", None) is tuple
+
+
+def _tuple_hook(declared: Any) -> Callable[[object, object], tuple[Any, ...]]:  # noqa: ANN401 - a type
+    inner = get_args(declared)[0]
+    hook = CONVERTER.get_structure_hook(inner)
+
+    def structure(value: object, _: object = None) -> tuple[Any, ...]:
+        if not isinstance(value, list):
+            raise MalformedError(f"{brief(value)} is not a list")
+        found = []
+        for index, item in enumerate(value):
+            try:
+                found.append(hook(item, inner))
+            except MalformedError as error:
+                raise error.inside(f"[{index}]") from None
+        return tuple(found)
+
+    return structure
+
+
+def _converter() -> cattrs.Converter:
+    converter = cattrs.Converter(detailed_validation=False)
+    converter.register_structure_hook(int, lambda value, _: _integer(32, value))
+    converter.register_structure_hook_func(lambda kind: kind is Int64, lambda value, _: _integer(64, value))
+    converter.register_structure_hook(float, _float)
+    converter.register_structure_hook(str, _text)
+    converter.register_structure_hook(enum.IntEnum, _enum)
+    converter.register_structure_hook_factory(attrs.has, _message_hook)
+    converter.register_structure_hook_factory(_is_tuple, _tuple_hook)
+    converter.register_unstructure_hook_factory(attrs.has, _writer)
+    converter.register_unstructure_hook(enum.IntEnum, lambda value: value.name)
+    converter.register_unstructure_hook(float, _write_float)
+    return converter
+
+
+def _write_float(value: float) -> float | str:
+    if math.isnan(value):
+        return "NaN"
+    return value if math.isfinite(value) else ("Infinity" if value > 0 else "-Infinity")
+
+
+def _writer(kind: type) -> Callable[[Any], dict[str, Any]]:
+    names = [(attribute.name, camel(attribute.name)) for attribute in attrs.fields(kind)]
+
+    def unstructure(value: Any) -> dict[str, Any]:  # noqa: ANN401 - a message
+        present = ((json, getattr(value, name)) for name, json in names)
+        return {json: _write(content) for json, content in present if content is not None}
+
+    return unstructure
+
+
+def _write(content: Any) -> Any:  # noqa: ANN401 - any field
+    return [_write(one) for one in content] if isinstance(content, tuple) else CONVERTER.unstructure(content)
+
+
+CONVERTER = _converter()
+
+
+def read(kind: type[T], value: object) -> T:
+    """The message that a JSON value is. Raises MalformedError, which says where and what."""
+    return CONVERTER.structure(value, kind)
+
+
+def write(message: object) -> Any:  # noqa: ANN401 - JSON
+    """The JSON value of a message: every field that is not None, zeros included, enums by name."""
+    return CONVERTER.unstructure(message)
+
+
+def unknown_fields(kind: type, value: object) -> tuple[str, ...]:
+    """The paths of fields that the message does not have."""
+    if not isinstance(value, dict):
+        return ()
+    found: list[str] = []
+    fields = _fields(kind)
+    for name, content in value.items():
+        attribute = fields.get(name)
+        if attribute is None:
+            found.append(str(name))
+            continue
+        declared = _plain(attribute.type)
+        inner = get_args(declared)[0] if _is_tuple(declared) else declared
+        if attrs.has(inner):
+            items = content if isinstance(content, list) else [content]
+            found += (f"{name}.{path}" for item in items for path in unknown_fields(inner, item))
+    return tuple(found)

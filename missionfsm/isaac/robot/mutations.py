@@ -1,0 +1,106 @@
+"""How a robot may break its promises: one wrong thing at a time, to test the oracle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from attrs import evolve
+
+from missionfsm.isaac.robot import rules
+from missionfsm.isaac.robot.spec import Codelet, Report
+from missionfsm.isaac.shared.mutations import changed, line_bends, swapped
+from missionfsm.kernel.spec import Emission, Step
+from missionfsm.kernel.system import Bend, Break, breaks
+
+Twist = Callable[[Codelet, Step], Step | None]
+
+BENDS = (
+    Bend(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
+    *line_bends(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
+)
+
+
+def _never_run(_: Codelet, step: Step) -> Step:
+    """The mission that arrives is not run."""
+    idle = evolve(step.after, running=False, named=False)
+    return evolve(step, after=idle, names=(), emits=tuple(one for one in step.emits if _about_old(one)))
+
+
+def _about_old(emission: Emission) -> bool:
+    return 0 in (emission.refs or ())
+
+
+def _final(emission: Emission) -> bool:
+    return isinstance(emission.view, Report) and emission.view.status != "running"
+
+
+def _silent(_: Codelet, step: Step) -> Step:
+    return evolve(step, emits=())
+
+
+def _without_final(_: Codelet, step: Step) -> Step:
+    return evolve(step, emits=tuple(one for one in step.emits if not _final(one)))
+
+
+def _final_twice(_: Codelet, step: Step) -> Step:
+    return evolve(step, emits=(*step.emits, *filter(_final, step.emits)))
+
+
+def _final_first(_: Codelet, step: Step) -> Step:
+    """What comes after the last final status comes before it."""
+    finals = tuple(filter(_final, step.emits))
+    return evolve(step, emits=(*(one for one in step.emits if not _final(one)), *finals))
+
+
+def _said_as(status: str) -> Twist:
+    """Final statuses are another one."""
+
+    def twist(_: Codelet, step: Step) -> Step:
+        emits = tuple(evolve(one, view=evolve(one.view, status=status)) if _final(one) else one for one in step.emits)
+        return evolve(step, emits=emits)
+
+    return twist
+
+
+def _running_after(_: Codelet, step: Step) -> Step:
+    """RUNNING comes once more after the final status."""
+    final = next(filter(_final, step.emits))
+    return evolve(step, emits=(*step.emits, evolve(final, view=evolve(final.view, status="running"))))
+
+
+def _ends_what_runs(before: Codelet, step: Step) -> Step:
+    """What means nothing fails the mission that runs."""
+    if not before.running or step.after is not before:
+        return step
+    report = Emission("line", Report("failure", before.named), (0,) if before.named else (), certain=True)
+    idle = evolve(before, running=False, named=False, used=True)
+    return evolve(step, after=idle, names=(), emits=(report,))
+
+
+TWISTS = (
+    *breaks(rules.STARTS, is_not_run=_never_run),
+    *breaks(rules.LISTENS, is_not_run=_never_run),
+    *breaks(
+        rules.PREEMPTS,
+        is_not_run=_never_run,
+        drops_the_old_one_silently=_without_final,
+        says_that_the_old_one_succeeded=_said_as("success"),
+        reports_the_old_one_last=_final_first,
+    ),
+    *breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
+    *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
+    *breaks(rules.RUNNING, is_never_reported=_silent),
+    Break(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
+    *breaks(
+        rules.SUCCESS,
+        is_not_reported=_without_final,
+        is_reported_twice=_final_twice,
+        is_reported_as_a_failure=_said_as("failure"),
+    ),
+    *breaks(
+        rules.FAILURE,
+        is_not_reported=_without_final,
+        is_reported_twice=_final_twice,
+        is_reported_as_a_success=_said_as("success"),
+    ),
+)

@@ -1,0 +1,48 @@
+"""What of the robot's side is drawn besides the lifecycle of the codelet: what it reports, and when."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.robot.spec import UNUSABLE, Arrives, Codelet, Passes, Report, Stops
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.picture import Refs, Sketch
+
+_MISSION = '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"%s"}}}'
+_DRIVES: tuple[JSON, ...] = (
+    {"event": "line", "line": _MISSION % "{}"},
+    {"event": "line", "line": _MISSION % "no json"},
+    {"event": "behaviorSucceeded"},
+    {"event": "behaviorFailed"},
+    {"event": "advance", "seconds": 5},
+)
+
+
+def _node(codelet: Codelet) -> str:
+    if codelet.running:
+        return "a mission runs"
+    return "waits for the next mission" if codelet.used else "waits for a first mission"
+
+
+def _label(_: Codelet, event: Arrives | Stops | Passes, __: Refs) -> str:
+    if isinstance(event, Arrives):
+        return "an unusable mission arrives" if event.mission == UNUSABLE else "a mission arrives"
+    if isinstance(event, Passes):
+        return "time passes"
+    return {"behaviorSucceeded": "the tree reports success", "behaviorFailed": "the tree reports failure"}[event.name]
+
+
+def _shows(report: Report) -> str:
+    return report.status.upper()
+
+
+SKETCHES = (
+    Sketch(
+        "reports",
+        "what a robot reports of its missions",
+        node=_node,
+        label=_label,
+        within=lambda _: True,
+        shows=_shows,
+        drives=_DRIVES,
+        contrasts=("AI-33.unusable=b",),
+    ),
+)

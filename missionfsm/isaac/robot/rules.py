@@ -1,0 +1,120 @@
+"""What the page promises of the mission codelet and of the lines that it sends. ``MissionSubmission``."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
+from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.rules import Citation, Rule, promise
+
+SYSTEM = "isaac.robot"
+CODELET = PAGE["Mission Codelet"]
+CLIENT = PAGE["JsonTcpClient Codelet"]
+
+
+def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
+    return promise(name, says, cite=cite, argues=argues).of(SYSTEM, topic)
+
+
+STARTS = _promise(
+    "codelet", "a-mission-starts-the-behavior-tree", "A MissionProto that arrives starts a mission.", CODELET
+)
+LISTENS = _promise(
+    "codelet",
+    "a-mission-can-follow-another",
+    "When a mission has ended, the codelet listens for the next one.",
+    PAGE["Mission Codelet", "step 5"],
+)
+PREEMPTS = _promise(
+    "codelet",
+    "a-new-mission-preempts",
+    "A MissionProto that arrives during a mission stops that mission, which is reported as FAILURE, and then runs.",
+    PAGE["Mission Codelet", "preemption"],
+    "AI-32: the FAILURE of the old mission comes before anything about the new one.",
+)
+UNUSABLE = _promise(
+    "codelet",
+    "an-unusable-configuration-fails-the-mission",
+    "A mission whose configuration cannot be used is reported as FAILURE at once.",
+    PAGE["Mission Codelet", "step 1"],
+    "Known of the shipped codelet; the page says only that the configuration is used (AI-33.unusable).",
+)
+IGNORES = _promise(
+    "codelet",
+    "what-is-no-mission-has-no-effect",
+    "A line that is no MissionProto on the mission channel changes nothing.",
+    CODELET,
+    "AI-26 e: a line that cannot be read is skipped.",
+)
+RUNNING = _promise(
+    "status",
+    "running-while-the-tree-runs",
+    "RUNNING is reported while the behavior tree runs, periodically, and never else.",
+    PAGE["Mission Codelet", "step 3"],
+    "AI-31: no period is documented; at the latest it comes within the bound that the tester keeps to.",
+)
+SUCCESS = _promise(
+    "status",
+    "one-success-at-the-end",
+    "When the behavior tree reports success, one final SUCCESS is sent.",
+    PAGE["Mission Codelet", "step 4"],
+)
+FAILURE = _promise(
+    "status",
+    "one-failure-at-the-end",
+    "When the behavior tree reports failure, or is preempted, one final FAILURE is sent.",
+    PAGE["Mission Codelet", "step 4"],
+)
+ABOUT = _promise(
+    "status",
+    "a-status-is-about-its-mission",
+    "A status that names a mission names the one that it is about.",
+    CODELET,
+)
+CHANNEL = _promise(
+    "status",
+    "statuses-go-to-the-status-channel",
+    'A MissionStatusProto is sent on the status channel, "mission_status" unless something else is said.',
+    PAGE["Sample Usage", "status_channel"],
+)
+ENVELOPE = _promise(
+    "line",
+    "a-line-is-one-message",
+    "Every line is one JSON object with a header and a payload, of a type that is documented.",
+    CLIENT,
+)
+INTEGERS = _promise(
+    "line",
+    "64-bit-integers-are-strings",
+    "Every 64-bit integer of a message is a string.",
+    CLIENT,
+    "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
+)
+RULES = (
+    STARTS,
+    LISTENS,
+    PREEMPTS,
+    UNUSABLE,
+    IGNORES,
+    RUNNING,
+    SUCCESS,
+    FAILURE,
+    ABOUT,
+    CHANNEL,
+    ENVELOPE,
+    INTEGERS,
+)
+
+LIFECYCLE: Chart[str] = Chart(
+    "codelet",
+    "IDLE",
+    (
+        ("a mission arrives", "IDLE", "RUNNING"),
+        ("a mission arrives", "RUNNING", "RUNNING"),
+        ("an unusable mission arrives", "IDLE", "IDLE"),
+        ("an unusable mission arrives", "RUNNING", "IDLE"),
+        ("the tree reports success", "RUNNING", "IDLE"),
+        ("the tree reports failure", "RUNNING", "IDLE"),
+    ),
+    {"an unusable mission arrives": "AI-33.unusable"},
+)
+"""Whether a behavior tree runs."""

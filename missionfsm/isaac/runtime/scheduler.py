@@ -1,0 +1,332 @@
+"""The queues of the mission server: what waits for what, what is sent next, what is due when.
+
+The inner half of :mod:`missionfsm.isaac.runtime.server`, which owns the connections and says what the two halves
+promise together. Mutable and pure.
+"""
+
+import heapq
+import math
+from collections import deque
+from collections.abc import Callable
+from typing import Final
+
+from missionfsm.isaac.runtime.deadlines import Deadlines
+from missionfsm.isaac.runtime.missions import Effect, Send, Status, StatusChanged
+from missionfsm.isaac.runtime.profile import Profile
+from missionfsm.isaac.runtime.records import ConnectionRecord, LaneRecord, MissionRecord, RobotRecord
+from missionfsm.isaac.wire.messages import MissionProto, Uuid
+
+_DAY: Final = 86400
+
+
+class Scheduler:
+    """Missions and robots. `close` is called where a connection has to go, with the reason."""
+
+    def __init__(self, profile: Profile, close: Callable[[ConnectionRecord, str], None]) -> None:
+        self.profile = profile
+        self.now = -math.inf
+        self.missions: dict[Uuid, MissionRecord] = {}
+        self.robots: dict[str, RobotRecord] = {}
+        self.unfinished = 0
+        self.effects: list[Effect] = []
+        self.deadlines: Deadlines[MissionRecord | ConnectionRecord | None] = Deadlines(self._holds)
+        self._close = close
+        self._dirty: dict[LaneRecord, None] = {}
+        self._maybe_idle: dict[str, None] = {}
+        self._pass_at: float | None = None
+        self._submitted = 0
+
+    def begin(self, now: float) -> None:
+        """An event happens at `now`; what was due by then comes first."""
+        self.effects = []
+        self.now = max(self.now, now)
+        self._run()
+
+    def end(self) -> tuple[Effect, ...]:
+        """The event has been told; what follows from it, and all its effects."""
+        self._run()
+        for key in self._maybe_idle:
+            robot = self.robots.get(key)
+            if robot is not None and robot.connection is None and not robot.unfinished:
+                del self.robots[key]
+        self._maybe_idle.clear()
+        effects, self.effects = tuple(self.effects), []
+        return effects
+
+    def _run(self) -> None:
+        """Do what is due, and send what can be sent, until neither is left."""
+        while True:
+            while (entry := self.deadlines.pop(self.now)) is not None:
+                self._due(entry[1], entry[2])
+            if not self._dirty:
+                return
+            if self.profile.scheduling_period > 0:
+                self._plan_pass()
+                return
+            self._pass()
+
+    def _plan_pass(self) -> None:
+        if self._pass_at is None:
+            period = self.profile.scheduling_period
+            at = (math.floor(self.now / period) + 1) * period
+            self._pass_at = at if at > self.now else self.now + period
+            self.deadlines.push(self._pass_at, "pass", None)
+
+    def _pass(self) -> None:
+        lanes = tuple(self._dirty)
+        self._dirty.clear()
+        for lane in lanes:
+            self._dispatch(lane)
+
+    def _holds(self, due: float, kind: str, target: MissionRecord | ConnectionRecord | None) -> bool:
+        if isinstance(target, MissionRecord):
+            return target.due.get(kind) == due
+        if isinstance(target, ConnectionRecord):
+            return target.open and target.robot is None
+        return self._pass_at == due
+
+    def _due(self, kind: str, target: MissionRecord | ConnectionRecord | None) -> None:
+        if target is None:
+            self._pass_at = None
+            self._pass()
+        elif isinstance(target, ConnectionRecord):
+            self._close(target, "it did not say its name in time")
+        elif kind == "silence" and target.heard + self.profile.silence_timeout > self.now:
+            self.arm(target, "silence", target.heard + self.profile.silence_timeout)
+        else:
+            self._abort(target)
+
+    # dependencies
+
+    def depend(self, mission: MissionRecord, upstream: MissionRecord) -> None:
+        """Note that `mission`, which is being made, cannot go before `upstream` has succeeded."""
+        started = upstream.status is Status.STARTED and self.profile.started_upstream_fails
+        if upstream.status is Status.SUCCESS:
+            return
+        if started or (upstream.ended and self._cancels(upstream.status)):
+            mission.doomed = True
+            return
+        mission.waiting += 1  # for ever, where a failure does not cancel (AI-03 b, c)
+        if not upstream.ended:
+            upstream.downstream.append(mission)
+
+    def _cancels(self, status: Status) -> bool:
+        if self.profile.ai_03 == "b":
+            return status is Status.FAILED
+        return self.profile.ai_03 == "a" or status is not Status.FAILED_UPSTREAM
+
+    def not_submitted(self, mission: MissionRecord) -> list[MissionRecord]:
+        """The mission and all upstreams that were not submitted, upstreams first."""
+        order: dict[Uuid, MissionRecord] = {}
+        stack = [(mission, False)]
+        while stack:
+            one, expanded = stack.pop()
+            if expanded:
+                order.setdefault(one.uuid, one)
+            elif one.number < 0 and one.uuid not in order:
+                stack.append((one, True))
+                stack.extend((self.missions[uuid], False) for uuid in reversed(one.request.upstream))
+        return list(order.values())
+
+    def finish(self, mission: MissionRecord, status: Status) -> None:
+        """End a mission, and all that its end decides."""
+        work: deque[tuple[MissionRecord, Status]] = deque([(mission, status)])
+        while work:
+            one, end = work.popleft()
+            if one.ended:
+                continue
+            self._end(one, end)
+            downstream, one.downstream = one.downstream, []
+            succeeded = end is Status.SUCCESS
+            if not succeeded and not self._cancels(end):
+                continue
+            for other in downstream:
+                if succeeded or self.profile.ai_36 == "b":
+                    other.waiting -= 1
+                other.doomed = other.doomed or not succeeded
+                if other.number < 0 or other.ended:
+                    continue
+                if other.doomed and (other.waiting == 0 or self.profile.ai_36 == "a"):
+                    work.append((other, Status.FAILED_UPSTREAM))
+                elif other.waiting == 0:
+                    self._ready(other)
+
+    def _end(self, mission: MissionRecord, status: Status) -> None:
+        self.change(mission, status)
+        mission.ended = True
+        mission.due.clear()
+        robot = self.robots[mission.key]
+        del robot.unfinished[mission.uuid]
+        self.unfinished -= 1
+        self._maybe_idle[robot.key] = None
+        lane = self._lane(robot, mission)
+        if mission.in_flight:
+            mission.in_flight = False
+            del lane.sent[mission.uuid]
+        self._touch(lane)
+
+    def change(self, mission: MissionRecord, status: Status) -> None:
+        """Give a mission another status; it is said only where it is another."""
+        if mission.status is not status:
+            self.effects.append(StatusChanged(mission.uuid, mission.status, status))
+            mission.status = status
+
+    # queues
+
+    def admit(self, mission: MissionRecord) -> None:
+        """Take a created mission into its robot's queue."""
+        mission.number = self._submitted
+        self._submitted += 1
+        self.unfinished += 1
+        robot = self.robot(mission.request.robot or "")
+        robot.unfinished[mission.uuid] = mission
+        if mission.doomed and (mission.waiting == 0 or self.profile.ai_36 == "a"):
+            self.finish(mission, Status.FAILED_UPSTREAM)
+            return
+        if self.profile.ai_04 == "a":
+            self.change(mission, Status.QUEUED)
+        request = mission.request
+        if self.profile.ai_05 == "b" or (self.profile.ai_05 == "d" and robot.connection is not None):
+            self._arm_timeout(mission, "start", request.start_timeout)
+        if self.profile.ai_06 == "c":
+            self._arm_timeout(mission, "run", request.timeout)
+        if self.profile.ai_12 == "b":
+            self._lane(robot, mission).line.append(mission)
+        if mission.waiting == 0:
+            self._ready(mission)
+
+    def _ready(self, mission: MissionRecord) -> None:
+        self.change(mission, Status.QUEUED)
+        if self.profile.ai_05 == "c":
+            self._arm_timeout(mission, "start", mission.request.start_timeout)
+        lane = self._lane(self.robots[mission.key], mission)
+        if self.profile.ai_12 == "a":
+            order = mission.number if self.profile.ai_13 == "a" else -mission.number
+            heapq.heappush(lane.ready, (order, mission))
+        self._touch(lane)
+
+    def _touch(self, lane: LaneRecord) -> None:
+        if lane.robot.connection is not None:
+            self._dirty[lane] = None
+
+    def _lane(self, robot: RobotRecord, mission: MissionRecord) -> LaneRecord:
+        key = mission.request.channel if self.profile.ai_11 == "c" else ""
+        lane = robot.lanes.get(key)
+        if lane is None:
+            robot.lanes[key] = lane = LaneRecord(robot)
+        return lane
+
+    def _dispatch(self, lane: LaneRecord) -> None:
+        while lane.robot.connection is not None and (not lane.sent or self.profile.ai_11 == "b"):
+            mission = self._take(lane)
+            if mission is None:
+                return
+            self._send(lane, lane.robot.connection, mission)
+
+    def _take(self, lane: LaneRecord) -> MissionRecord | None:
+        if self.profile.ai_12 == "a":
+            while lane.ready:
+                mission = heapq.heappop(lane.ready)[1]
+                if not mission.ended:
+                    return mission
+            return None
+        while lane.line and lane.line[0].ended:
+            lane.line.popleft()
+        return lane.line.popleft() if lane.line and lane.line[0].waiting == 0 else None
+
+    def _send(self, lane: LaneRecord, connection: ConnectionRecord, mission: MissionRecord) -> None:
+        profile, request = self.profile, mission.request
+        at_once = request.start_timeout == 0 and profile.ai_24 == "a" and profile.ai_05 == "a"
+        if at_once and profile.ai_07 != "c":
+            # Nothing can be acknowledged before no time has passed; a robot is not set going for that.
+            self.finish(mission, Status.FAILED_TIMEDOUT)
+            return
+        mission.in_flight = mission.was_sent = True
+        lane.sent[mission.uuid] = mission
+        self.effects.append(Send(connection.id, request.channel, MissionProto(mission.uuid, request.config)))
+        self.change(mission, Status.STARTED)
+        if profile.ai_05 == "a":
+            self._arm_timeout(mission, "start", request.start_timeout)
+        if profile.ai_06 == "b":
+            self._arm_timeout(mission, "run", request.timeout)
+        if profile.ai_07 == "c":
+            self.acknowledge(mission)
+
+    # timeouts
+
+    def _arm_timeout(self, mission: MissionRecord, kind: str, seconds: float) -> None:
+        if self.profile.whole_second_timeouts and math.isfinite(seconds):
+            seconds = math.ceil(seconds) if math.ceil(seconds) < _DAY else math.inf
+        if math.isfinite(seconds) and not (seconds == 0 and self.profile.ai_24 == "b"):
+            self.arm(mission, kind, self.now + seconds)
+
+    def arm(self, mission: MissionRecord, kind: str, due: float) -> None:
+        """Let a clock of the mission run out at `due`, whatever was said before."""
+        mission.due[kind] = due
+        self.deadlines.push(due, kind, mission)
+
+    def acknowledge(self, mission: MissionRecord) -> None:
+        """The robot has the mission: no start timeout any more, and the run timeout counts."""
+        mission.acknowledged = True
+        mission.due.pop("start", None)
+        if self.profile.ai_06 == "a":
+            self._arm_timeout(mission, "run", mission.request.timeout)
+
+    def _abort(self, mission: MissionRecord) -> None:
+        connection = self.robots[mission.key].connection if mission.in_flight else None
+        self.finish(mission, Status.FAILED_TIMEDOUT)
+        if connection is not None and self.profile.ai_08 == "c":
+            self._close(connection, f"mission {mission.uuid} was aborted")
+
+    # robots that come and go
+
+    def found(self, robot: RobotRecord) -> None:
+        """The robot has a connection now."""
+        if self.profile.ai_05 == "d":
+            for mission in robot.unfinished.values():
+                if not mission.in_flight:
+                    self._arm_timeout(mission, "start", mission.request.start_timeout)
+        for lane in robot.lanes.values():
+            self._touch(lane)
+
+    def lost(self, robot: RobotRecord) -> None:
+        """The robot has no connection any more."""
+        self._maybe_idle[robot.key] = None
+        if self.profile.ai_05 == "d":
+            for mission in robot.unfinished.values():
+                if not mission.in_flight:
+                    mission.due.pop("start", None)
+        if self.profile.ai_15 == "a":
+            return
+        for lane in tuple(robot.lanes.values()):
+            for mission in reversed(tuple(lane.sent.values())):
+                if self.profile.ai_15 == "c":
+                    self.finish(mission, Status.FAILED_DISCONNECTED)
+                else:
+                    self._send_again_later(lane, mission)
+
+    def _send_again_later(self, lane: LaneRecord, mission: MissionRecord) -> None:
+        del lane.sent[mission.uuid]
+        mission.in_flight = mission.acknowledged = False
+        if self.profile.ai_05 != "b":
+            mission.due.pop("start", None)
+        if self.profile.ai_06 != "c":
+            mission.due.pop("run", None)
+        mission.due.pop("silence", None)
+        if self.profile.ai_12 == "b":
+            lane.line.appendleft(mission)
+        self._ready(mission)
+
+    def key(self, name: str) -> str:
+        """What makes a robot's name the same name (AI-37)."""
+        if self.profile.ai_37 == "b":
+            return name.strip()
+        return name.casefold() if self.profile.ai_37 == "c" else name
+
+    def robot(self, name: str) -> RobotRecord:
+        """The robot of this name, new where nothing is known of it."""
+        key = self.key(name)
+        robot = self.robots.get(key)
+        if robot is None:
+            self.robots[key] = robot = RobotRecord(key, name)
+        return robot

@@ -1,0 +1,298 @@
+"""The mission server: missions, dependencies, robots, timeouts. MissionSubmission › MissionServer Class.
+
+:class:`MissionServerCore` is mutable and pure: no socket, no clock, no randomness. What happens comes in through
+methods, with the time (seconds on any clock that does not run backwards) and fresh identifiers as arguments; what is to
+be done comes out as a tuple of effects, in order. The same calls give the same effects, always. Where the document
+leaves a choice, the :class:`~missionfsm.isaac.runtime.profile.Profile` makes it.
+
+The cost of an event does not depend on how many missions wait: a mission counts the upstreams it still waits for, each
+robot keeps what is ready in a queue of its own, deadlines lie in a heap whose stale entries are dropped lazily. Only
+what an event really changes is touched (a failure cancels all that depends on it).
+
+Always kept: a mission is not sent before all its upstreams have succeeded, nor twice, save by AI-15 b.
+"""
+
+from collections.abc import Iterator
+from typing import Final
+
+from missionfsm.isaac.runtime.missions import (
+    DEFAULT_STATUS_CHANNEL,
+    Close,
+    Effect,
+    Ignored,
+    MissionRequest,
+    Refused,
+    RobotOffline,
+    RobotOnline,
+    RobotView,
+    Status,
+)
+from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
+from missionfsm.isaac.runtime.records import ConnectionRecord, MissionRecord, RobotRecord
+from missionfsm.isaac.runtime.scheduler import Scheduler
+from missionfsm.isaac.wire.framing import WireError
+from missionfsm.isaac.wire.messages import (
+    Header,
+    Message,
+    MissionProto,
+    MissionStatusProto,
+    TextProto,
+    Uuid,
+    WireStatus,
+)
+
+_ENDS: Final = {WireStatus.SUCCESS: Status.SUCCESS, WireStatus.FAILURE: Status.FAILED}
+_EARLY: Final = 64  # messages kept of a connection without a name, under AI-18 b
+
+
+class MissionServerCore:
+    """See the module. Mutable but pure; not thread-safe."""
+
+    def __init__(self, profile: Profile = DOCUMENTED, *, name_channel: str = "name") -> None:
+        self.profile = profile
+        self.name_channel = name_channel
+        self._scheduler = Scheduler(profile, self._close)
+        self._connections: dict[int, ConnectionRecord] = {}
+        self._arrived = 0
+
+    # what can be asked
+
+    @property
+    def unfinished(self) -> int:
+        """How many submitted missions have not ended."""
+        return self._scheduler.unfinished
+
+    def status(self, mission: Uuid) -> Status | None:
+        """Where a mission stands; None for one that was never created here."""
+        found = self._scheduler.missions.get(mission)
+        return None if found is None else found.status
+
+    def submitted(self, mission: Uuid) -> bool:
+        """Whether a mission was submitted, by name or (AI-22 c) as somebody's upstream."""
+        found = self._scheduler.missions.get(mission)
+        return found is not None and found.number >= 0
+
+    def statuses(self) -> Iterator[tuple[Uuid, Status]]:
+        """All missions in the order in which they were created."""
+        return ((uuid, mission.status) for uuid, mission in self._scheduler.missions.items())
+
+    def robots(self) -> tuple[RobotView, ...]:
+        """Every robot that is connected or has missions to do."""
+        return tuple(
+            RobotView(
+                robot.name,
+                None if robot.connection is None else robot.connection.id,
+                len(robot.unfinished),
+                tuple(uuid for lane in robot.lanes.values() for uuid in lane.sent),
+            )
+            for robot in self._scheduler.robots.values()
+        )
+
+    def next_deadline(self) -> float | None:
+        """When `advance` has something to do next, if nothing else happens; None for never."""
+        return self._scheduler.deadlines.first()
+
+    # what can happen
+
+    def create(self, request: MissionRequest, uuid: Uuid) -> Refused | None:
+        """Make a mission known, as CREATED, under a fresh identifier. Its upstreams have to be known already.
+
+        So no cycle can be made. Nothing is sent before `submit`.
+        """
+        if uuid in self._scheduler.missions:
+            return Refused(f"mission {uuid} exists already")
+        key = self._scheduler.key(request.robot or "")
+        if not key and self.profile.ai_19 == "c":
+            return Refused("the mission has no robot")
+        for number, upstream in enumerate(request.upstream):
+            if upstream not in self._scheduler.missions:
+                return Refused(f"upstream[{number}]: there is no mission {upstream} yet")
+        follows = self.profile.status_channel_follows_channel
+        fallback = f"{request.channel}_status" if follows else DEFAULT_STATUS_CHANNEL
+        status_channel = fallback if request.status_channel is None else request.status_channel
+        mission = MissionRecord(uuid, request, key, status_channel)
+        for upstream in dict.fromkeys(request.upstream):
+            self._scheduler.depend(mission, self._scheduler.missions[upstream])
+        self._scheduler.missions[uuid] = mission
+        return None
+
+    def submit(self, uuid: Uuid, now: float) -> Refused | tuple[Effect, ...]:
+        """A created mission is to be run. MissionSubmission › MissionServer Class."""
+        mission = self._scheduler.missions.get(uuid)
+        if mission is None:
+            return Refused(f"there is no mission {uuid}")
+        if mission.number >= 0 and self.profile.ai_22_twice == "e":
+            return Refused(f"mission {uuid} was submitted before")
+        if self.profile.ai_22_upstream == "b":
+            for number, upstream in enumerate(mission.request.upstream):
+                if self._scheduler.missions[upstream].number < 0:
+                    return Refused(f"upstream[{number}]: mission {upstream} was not submitted")
+        self._scheduler.begin(now)
+        if mission.number < 0:
+            for one in self._scheduler.not_submitted(mission) if self.profile.ai_22_upstream == "c" else (mission,):
+                self._scheduler.admit(one)
+        return self._scheduler.end()
+
+    def connected(self, connection: int, now: float) -> tuple[Effect, ...]:
+        """Somebody has connected. `connection` is a number never used before; ValueError if it is in use."""
+        if connection in self._connections:
+            msg = f"connection {connection} is open already"
+            raise ValueError(msg)
+        self._scheduler.begin(now)
+        self._arrived += 1
+        self._connections[connection] = made = ConnectionRecord(connection, self._arrived)
+        if self.profile.ai_18_silent == "d":
+            self._scheduler.deadlines.push(self._scheduler.now + self.profile.name_timeout, "name", made)
+        return self._scheduler.end()
+
+    def disconnected(self, connection: int, now: float) -> tuple[Effect, ...]:
+        """A connection has dropped. One that is unknown, or was closed from here, is no matter."""
+        self._scheduler.begin(now)
+        gone = self._connections.pop(connection, None)
+        if gone is not None:
+            gone.open = False
+            self._unbind(gone)
+        return self._scheduler.end()
+
+    def received(self, connection: int, message: Message | WireError, now: float) -> tuple[Effect, ...]:
+        """A message has arrived, or something that is none."""
+        self._scheduler.begin(now)
+        source = self._connections.get(connection)
+        if source is not None:
+            self._receive(source, message)
+        return self._scheduler.end()
+
+    def advance(self, now: float) -> tuple[Effect, ...]:
+        """Time has come to `now`. All that is due by then happens now, not earlier: see `elapse` for virtual time."""
+        self._scheduler.begin(now)
+        return self._scheduler.end()
+
+    # connections
+
+    def _close(self, connection: ConnectionRecord, reason: str) -> None:
+        del self._connections[connection.id]
+        connection.open = False
+        self._scheduler.effects.append(Close(connection.id, reason))
+        self._unbind(connection)
+
+    def _unbind(self, connection: ConnectionRecord) -> None:
+        robot, connection.robot = connection.robot, None
+        if robot is None:
+            return
+        robot.connection = None
+        self._scheduler.effects.append(RobotOffline(robot.name, connection.id))
+        self._scheduler.lost(robot)
+
+    def _name(self, connection: ConnectionRecord, text: str) -> None:
+        key = self._scheduler.key(text)
+        if not key:
+            self._ignore(connection, "an empty name is no name")
+            return
+        bound = connection.robot
+        if bound is not None and bound.key == key:
+            return  # said again, as robots do
+        if bound is not None and self.profile.ai_17 == "a":
+            self._ignore(connection, "it has a name already and cannot take another")
+            return
+        robot = self._scheduler.robot(text)
+        other = robot.connection
+        if other is not None and self.profile.ai_16 == "d":
+            self._close(connection, "another connection has that name")
+            return
+        if other is not None and (self.profile.ai_16 == "b" or other.number > connection.number):
+            self._ignore(connection, "another connection has that name")
+            return
+        if other is not None:
+            self._unbind(other)
+        self._unbind(connection)
+        self._bind(connection, robot, text)
+
+    def _bind(self, connection: ConnectionRecord, robot: RobotRecord, name: str) -> None:
+        connection.robot, robot.connection, robot.name = robot, connection, name
+        self._scheduler.effects.append(RobotOnline(name, connection.id))
+        early, connection.early = connection.early, []
+        for message in early:
+            self._receive(connection, message)
+        self._scheduler.found(robot)
+
+    # messages
+
+    def _ignore(self, connection: ConnectionRecord, reason: str) -> None:
+        self._scheduler.effects.append(Ignored(connection.id, reason))
+
+    def _receive(self, source: ConnectionRecord, message: Message | WireError) -> None:
+        if isinstance(message, WireError):
+            closes = self.profile.ai_38 == "d" if message.kind == "type" else self.profile.ai_26_bad == "f"
+            if closes:
+                self._close(source, str(message))
+            else:
+                self._ignore(source, str(message))
+        elif isinstance(message.payload, TextProto):
+            if message.header.channel == self.name_channel:
+                self._name(source, message.payload.text)
+            else:
+                self._ignore(source, "a text on a channel that is not the name channel")
+        elif isinstance(message.payload, MissionProto):
+            self._ignore(source, "a mission from a robot")
+        elif source.robot is not None:
+            self._status(source, source.robot, message.header, message.payload)
+        elif self.profile.ai_18_early == "b" and len(source.early) < _EARLY:
+            source.early.append(message)
+        else:
+            self._ignore(source, "a status before the name")
+
+    def _status(
+        self, source: ConnectionRecord, robot: RobotRecord, header: Header, payload: MissionStatusProto
+    ) -> None:
+        mission = self._meant(robot, header, payload)
+        if mission is None:
+            self._ignore(source, "a status of no mission of this robot")
+        elif mission.key != robot.key or mission.status_channel != header.channel or not mission.was_sent:
+            self._ignore(source, f"a status of mission {mission.uuid}, which is not waited for here")
+        elif not mission.in_flight:
+            self._late(source, mission, payload.mission_status)
+        elif payload.mission_status is WireStatus.RUNNING:
+            mission.heard = self._scheduler.now
+            if mission.status is not Status.RUNNING:
+                self._scheduler.change(mission, Status.RUNNING)
+                if not mission.acknowledged:
+                    self._scheduler.acknowledge(mission)
+                if self.profile.ai_31 == "a":
+                    self._scheduler.arm(mission, "silence", self._scheduler.now + self.profile.silence_timeout)
+        elif self.profile.ai_07 == "b" and not mission.acknowledged:
+            self._ignore(source, f"mission {mission.uuid} ended before it was acknowledged")
+        else:
+            self._scheduler.finish(mission, _ENDS[payload.mission_status])
+
+    def _meant(self, robot: RobotRecord, header: Header, payload: MissionStatusProto) -> MissionRecord | None:
+        uuid = header.uuid if self.profile.ai_10 == "c" else payload.uuid
+        if uuid is not None:
+            return self._scheduler.missions.get(uuid)
+        if self.profile.ai_10 != "a":
+            return None
+        running = (mission for lane in robot.lanes.values() for mission in lane.sent.values())
+        return max(
+            (mission for mission in running if mission.status_channel == header.channel),
+            key=lambda mission: mission.number,
+            default=None,
+        )
+
+    def _late(self, source: ConnectionRecord, mission: MissionRecord, status: WireStatus) -> None:
+        aborted = mission.status is Status.FAILED_TIMEDOUT
+        believed = self.profile.ai_09 == "b" or (self.profile.ai_09 == "c" and aborted)
+        if mission.ended and believed and status is not WireStatus.RUNNING:
+            self._scheduler.change(mission, _ENDS[status])
+        else:
+            self._ignore(source, f"a status of mission {mission.uuid}, which does not run any more")
+
+
+def elapse(core: MissionServerCore, now: float) -> tuple[Effect, ...]:
+    """Let virtual time run to `now`, stopping at every deadline, so that what is due happens when it is due.
+
+    However the way to `now` is cut, the effects are the same.
+    """
+    effects: list[Effect] = []
+    while (due := core.next_deadline()) is not None and due <= now:
+        effects += core.advance(due)
+    effects += core.advance(now)
+    return tuple(effects)

@@ -1,0 +1,53 @@
+"""What of a mission server a search and an exploration tell apart, and how far they go."""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Server, Status
+
+
+def shape(server: Server) -> object:
+    """What a search tells a server apart by: how each robot's missions stand and who is connected, not the times."""
+    robots = dict.fromkeys((*(one.robot for one in server.missions), *(one.name for one in server.links)))
+    return tuple(sorted((_of_robot(server, robot) for robot in robots), key=repr))
+
+
+def _of_robot(server: Server, robot: str | None) -> object:
+    own = [one for one in server.missions if one.robot == robot]
+    under_way = tuple(
+        (one.status.value, one.run is not None, one.channel, one.link is None) for one in own if one.status in UNDER_WAY
+    )
+    queued = [one for one in own if one.status is Status.QUEUED]
+    ready = min(2, sum(one.ready for one in queued))
+    waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
+    doomed = any(one.doomed for one in queued)
+    ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
+    links = tuple(one.serves for one in server.links if one.name == robot)
+    return under_way, ready, waiting, doomed, ended, links
+
+
+def idle_shape(server: Server) -> object:
+    """The same for what has no effect: whether something is under way, and whether a robot is there."""
+    return any(one.status in UNDER_WAY for one in server.missions), any(one.serves for one in server.links)
+
+
+def size(server: Server) -> int:
+    """How many missions have not ended; or connections, or half of all missions, if that is more."""
+    open_ones = sum(one.status not in ENDED for one in server.missions)
+    return max(open_ones, (len(server.missions) + 1) // 2, len(server.links))
+
+
+def extent(server: Server) -> int:
+    """How many missions there are; a second connection counts as a third mission."""
+    return max(len(server.missions), 2 * len(server.links) - 1)
+
+
+def outline(server: Server) -> Server:
+    """The server with all readings open again, clocks that may strike at any time, and no status kept for a name."""
+    missions = tuple(
+        evolve(one, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks)) if one.clocks else one
+        for one in server.missions
+    )
+    links = tuple(evolve(one, early=()) if one.early else one for one in server.links)
+    return Server(server.name_channel, missions, links, tolerance=server.tolerance)

@@ -1,0 +1,337 @@
+"""The JSON of ``isaac.server``: submissions, statuses, lines in both directions, and the drives of the protocol."""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+from typing import Any
+
+from missionfsm.isaac.robot.codec import in_microseconds, seconds, text_line
+from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.connections import BAD, FOREIGN, NAME, NOISE, STATUS, Heard
+from missionfsm.isaac.server.readings import AI_25_HEADER, AI_28_CONFIG
+from missionfsm.isaac.server.rules import Submission
+from missionfsm.isaac.server.spec import SPEC, Connects, Drops, Passes, Statuses
+from missionfsm.isaac.server.state import Sends, World
+from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, to_json, uuid_name
+from missionfsm.isaac.wire import strictjson
+from missionfsm.isaac.wire.framing import WireError, decode_line, encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
+from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.history import Answer, Name
+from missionfsm.kernel.readings import meet
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.text import brief
+
+_KEYS = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
+_BUFFERS = "type"
+_MOST_DIGITS = 19
+
+
+def _refuse(says: str) -> UnreadableError:
+    return UnreadableError(says)
+
+
+def world(given: JSON) -> World:
+    """The name channel of a world, and by how many seconds the times of a history may be off."""
+    given = given or {}
+    if not isinstance(given, dict) or not set(given) <= {"nameChannel", "tolerance"}:
+        raise _refuse(f"world: isaac.server has nameChannel and tolerance only, not {brief(given)}")
+    channel, tolerance = given.get("nameChannel", "name"), given.get("tolerance", 0)
+    if not isinstance(channel, str) or not channel:
+        raise _refuse(f"world.nameChannel: {brief(channel)} is not the name of a channel")
+    return World(channel, seconds(tolerance, "world.tolerance"))
+
+
+def write_world(given: World) -> JSON:
+    """The parameters of a world."""
+    exact: JSON = {"nameChannel": given.name_channel}
+    return {**exact, "tolerance": given.tolerance / MICROSECONDS} if given.tolerance else exact
+
+
+# Calls.
+
+
+def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+    """The handles that a submission names as upstreams, and what is left with a 0 in the place of each."""
+    mission = params.get("mission") if isinstance(params, dict) else None
+    upstream = mission.get("upstream") if isinstance(mission, dict) else None
+    if method != "submit" or not isinstance(upstream, list):
+        return (), params
+    handles = tuple(("mission", one) for one in upstream if _is_handle(one))
+    bare = [0 if _is_handle(one) else one for one in upstream]
+    return handles, {**params, "mission": {**mission, "upstream": bare}}  # type: ignore[dict-item]
+
+
+def _is_handle(value: JSON) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def request(method: str, params: JSON) -> Submission | Statuses:
+    """The request of a call, whatever its handles are."""
+    if method == "statuses":
+        return Statuses()
+    if method != "submit":
+        raise _refuse(f"{brief(method)} is not a method of isaac.server; those are submit, statuses")
+    mission = params.get("mission") if isinstance(params, dict) else None
+    if not isinstance(mission, dict):
+        return Submission(defects=(rules.MALFORMED,))
+    return _Reader(mission).submission()
+
+
+class _Reader:
+    """Reads one submission and collects what is wrong with it."""
+
+    def __init__(self, mission: dict[str, Any]) -> None:
+        self.mission = mission
+        self.defects: set[str] = set()
+
+    def submission(self) -> Submission:
+        if not set(self.mission) <= set(_KEYS):
+            self.defects.add(rules.KEY)
+        robot = self._text("robot")
+        if robot == "":
+            self.defects.add(rules.NO_NAME)
+        channel, status_channel = self._channel("channel"), self._channel("status_channel")
+        start, run = self._time("start_timeout", 5.0), self._time("timeout", math.inf)
+        upstream = self._upstream()
+        config = self._config()
+        defects = tuple(one for one in rules.DEFECTS if one in self.defects)
+        channel = "mission" if channel is None else channel
+        return Submission(robot, channel, status_channel, config, start, run, upstream, defects)
+
+    def _text(self, key: str) -> str | None:
+        value = self.mission.get(key)
+        if value is not None and not isinstance(value, str):
+            self.defects.add(rules.MALFORMED)
+            return None
+        return value
+
+    def _channel(self, key: str) -> str | None:
+        if key in self.mission and self.mission[key] is None:
+            self.defects.add(rules.NULL)
+        value = self._text(key)
+        if value == "":
+            self.defects.add(rules.EMPTY)
+        return value
+
+    def _time(self, key: str, default: float) -> int | None:
+        value = self.mission.get(key, default)
+        if value is None:
+            self.defects.add(rules.NULL)
+            value = default
+        if isinstance(value, bool) or not isinstance(value, int | float) or value != value:  # noqa: PLR0124 - NaN
+            self.defects.add(rules.MALFORMED)
+            return None
+        if value < 0:
+            self.defects.add(rules.NEGATIVE)
+        return None if abs(value) == math.inf else in_microseconds(value, f"submit.{key}")
+
+    def _upstream(self) -> int:
+        value = self.mission.get("upstream", [])
+        if value is None:
+            self.defects.add(rules.NULL)
+            return 0
+        if not isinstance(value, list):
+            self.defects.add(rules.MALFORMED)
+            return 0
+        if not all(map(_is_handle, value)):
+            self.defects.add(rules.HANDLE)
+        return len(value)
+
+    def _config(self) -> str:
+        value = self.mission.get("config", {})
+        if value is None:
+            self.defects.add(rules.NULL_CONFIG)
+            value = {}
+        if not isinstance(value, dict):
+            self.defects.add(rules.MALFORMED)
+            return "{}"
+        return canonical(json.dumps(value)) or "{}"
+
+
+_WORDS = {
+    "created": ("CREATED",),
+    "queued": ("QUEUED",),
+    "started": ("STARTED",),
+    "running": ("RUNNING",),
+    "success": ("SUCCESS", "SUCCEEDED", "COMPLETED"),
+    "failed": ("FAILED", "FAILURE"),
+    "canceled": ("FAILED_UPSTREAM", "CANCELED", "CANCELLED"),
+    "aborted": ("ABORTED",),
+    "timed out": ("FAILED_TIMEDOUT", "TIMEDOUT", "TIMED_OUT", "TIMEOUT", "FAILED_TIMEOUT"),
+    "lost": ("FAILED_DISCONNECTED", "DISCONNECTED", "LOST"),
+}
+"""AI-02: the names that are taken for one and the same; the first is the shipped server's."""
+
+_BY_NAME = {name: word for word, names in _WORDS.items() for name in names}
+
+
+def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
+    """What a result says. Missions are shown in the order of their handles, which is that of their submission."""
+    if method == "submit":
+        handle = result.get("mission") if isinstance(result, dict) else None
+        if not _is_handle(handle):
+            return Answer(OK, Garbled(f"mission: {brief(handle)} is no handle")), ()
+        return Answer(OK), (("mission", handle),)
+    missions = result.get("missions") if isinstance(result, dict) else None
+    if not isinstance(missions, dict) or not all(map(_is_number, missions)):
+        return Answer(OK, Garbled(f"missions: {brief(missions)} is no object from handles to statuses")), ()
+    shown = sorted(((int(key), value) for key, value in missions.items()), key=operator.itemgetter(0))
+    names = tuple(("mission", handle) for handle, _ in shown)
+    words = tuple(_word(value) for _, value in shown)
+    if None in words:
+        unknown = shown[words.index(None)][1]
+        return Answer(OK, Garbled(f"{brief(unknown)} is not the name of a status")), names
+    return Answer(OK, words), names
+
+
+def _is_number(key: str) -> bool:
+    """Whether the key of an object is a handle."""
+    return key.isascii() and key.isdecimal() and len(key) <= _MOST_DIGITS
+
+
+def _word(status: JSON) -> str | None:
+    """What is meant by the name of a status, in upper or lower case; None for what is no such name."""
+    return _BY_NAME.get(status.upper()) if isinstance(status, str) and status.isascii() else None
+
+
+def write_answer(method: str, told: Answer, names: tuple[Name, ...]) -> JSON:
+    """The result of a call that succeeded, with the shipped server's names."""
+    if method == "submit":
+        return {"mission": names[0][1]}  # type: ignore[index]
+    words: Any = told.shape
+    return {"missions": {str(name[1]): _WORDS[word][0] for name, word in zip(names, words, strict=True)}}  # type: ignore[index]
+
+
+def write_request(asked: Submission | Statuses, names: tuple[Name, ...]) -> JSON:
+    """The params of a well-formed request."""
+    if isinstance(asked, Statuses):
+        return {}
+    mission: dict[str, JSON] = {"channel": asked.channel, "config": json.loads(asked.config)}
+    mission["upstream"] = [name[1] for name in names]  # type: ignore[index]
+    texts = (("robot", asked.robot), ("status_channel", asked.status_channel))
+    times = (("start_timeout", asked.start), ("timeout", asked.run))
+    mission |= {key: text for key, text in texts if text is not None}
+    mission |= {key: time / MICROSECONDS for key, time in times if time is not None}
+    return {"mission": mission}
+
+
+# Drives.
+
+
+def _connection(given: JSON) -> Name:
+    number = given.get("connection")
+    if isinstance(number, bool) or not isinstance(number, int):
+        raise _refuse(f"drive.connection: {brief(number)} is not the number of a connection")
+    return ("connection", number)
+
+
+def drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
+    """The event of a drive and its names: the connection, then the missions that a line names."""
+    event = given.get("event") if isinstance(given, dict) else None
+    if event == "connect":
+        return Connects(), ((_connection(given),) if "connection" in given else ())
+    if event == "disconnect":
+        return Drops(), (_connection(given),)
+    if event == "advance":
+        return Passes(seconds(given.get("seconds"))), ()
+    if event == "line":
+        heard, names = hear(text_line(given))
+        return heard, (_connection(given), *names)
+    raise _refuse(f"drive.event: {brief(event)} is not a drive of isaac.server")
+
+
+def happened(given: JSON) -> tuple[Any, tuple[Name, ...]]:
+    """The event of a drive that happened and its names: a robot that has connected has a connection."""
+    event, names = drive(given)
+    return event, names or ((_connection(given),) if isinstance(event, Connects) else ())
+
+
+def hear(line: str) -> tuple[Heard, tuple[Name, ...]]:
+    """What a robot's line is to a server."""
+    if not line.strip():
+        return Heard(NOISE), ()
+    data = line.encode(errors="surrogatepass")
+    message = decode_line(data)[0]
+    if isinstance(message, WireError):
+        return Heard(FOREIGN if message.kind == _BUFFERS else BAD), ()
+    numeric = isinstance(decode_line(data, numbers=False)[0], WireError)
+    payload, channel = message.payload, message.header.channel
+    if isinstance(payload, TextProto):
+        return Heard(NAME, payload.text, channel, numeric=numeric), ()
+    if not isinstance(payload, MissionStatusProto):
+        return Heard(NOISE, channel=channel, numeric=numeric), ()
+    names = tuple(uuid_name(one) for one in (payload.uuid, message.header.uuid) if one is not None)
+    named, header = payload.uuid is not None, message.header.uuid is not None
+    return Heard(STATUS, payload.mission_status.value, channel, named, header, numeric), names
+
+
+def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - an event of the system
+    """The JSON of an event; of a line the essence."""
+    if isinstance(event, Passes):
+        return {"event": "advance", "seconds": event.time / MICROSECONDS}
+    number = {"connection": names[0][1]} if names else {}  # type: ignore[index]
+    if not isinstance(event, Heard):
+        return {"event": event.name, **number}
+    payload: JSON = {"text": event.what} if event.kind == NAME else {"missionStatus": event.what}
+    uuids = [{"lower": str(Uuid.of(one[1]).lower), "upper": str(Uuid.of(one[1]).upper)} for one in names[1:]]  # type: ignore[index]
+    header: JSON = {"channel": event.channel}
+    if event.header:
+        header["uuid"] = uuids[-1]
+    if event.named:
+        payload["uuid"] = uuids[0]
+    body = {"header": header, "payload": payload}
+    line = (
+        strictjson.compact(body)
+        if event.kind in (NAME, STATUS)
+        else {NOISE: "", BAD: "no message"}.get(event.kind, "{}")
+    )
+    return {"event": "line", **number, "line": line}
+
+
+def write_happened(event: Any, names: tuple[Name, ...]) -> dict[str, JSON]:  # noqa: ANN401 - an event of the system
+    """What connecting tells: the connection's number."""
+    return {"connection": names[0][1]} if isinstance(event, Connects) else {}  # type: ignore[index]
+
+
+# Lines that the server sends.
+
+
+def strip(line: JSON) -> tuple[Part, ...]:
+    """The identifier in a line and what is left of it."""
+    names, said = see(line)
+    return ((names, (), to_json(said)),)
+
+
+def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
+    """The line that sends a mission."""
+    time = round(at * 1e9)
+    uuid = Uuid.of(names[0][1])  # type: ignore[index]
+    header = Header(view.channel, time, time, Uuid.of(new_uuid(number)[1]))  # type: ignore[index]
+    bare = bool(meet(choice, (AI_25_HEADER["n"],)))
+    message = json.loads(encode(Message(header, MissionProto(uuid, view.config)), header_uuid_as_numbers=bare))
+    if meet(choice, (AI_28_CONFIG["a"],)):
+        message["payload"]["config"] = json.loads(view.config)
+    return strictjson.compact(message)
+
+
+CODEC = Codec(
+    methods=tuple(SPEC.operations),
+    streams=(),
+    world=world,
+    split=split,
+    request=request,
+    answer=answer,
+    strip=strip,
+    content=from_json,
+    drive=drive,
+    write_request=write_request,
+    write_answer=write_answer,
+    write_message=write_message,
+    write_world=write_world,
+    write_drive=write_drive,
+    write_happened=write_happened,
+    happened=happened,
+)

@@ -1,0 +1,331 @@
+"""What connections bring: names, statuses, lines that mean nothing. ``MissionSubmission › Robot Identification``."""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.deciding import split, ways
+from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started
+from missionfsm.isaac.server.readings import (
+    AI_07,
+    AI_09,
+    AI_10,
+    AI_14_STATUS,
+    AI_16,
+    AI_16_BACK,
+    AI_16_UNDER_WAY,
+    AI_17,
+    AI_18_EARLY,
+    AI_25_TAKEN,
+    AI_26,
+    AI_37,
+    AI_38,
+)
+from missionfsm.isaac.server.state import (
+    ENDED,
+    START,
+    UNDER_WAY,
+    Link,
+    Mission,
+    Move,
+    Report,
+    Server,
+    Status,
+)
+from missionfsm.kernel.values import value
+
+STATUS_CHANNEL = "mission_status"
+NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
+
+
+@value(cache_hash=True)
+class Heard:
+    """A line that a robot sends.
+
+    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`
+    type.
+
+    Attributes:
+        what: the name's text, or the status.
+        named: whether the payload names a mission; its name is the event's second.
+        header: whether the header has an identifier; its name is the event's last.
+        numeric: whether 64-bit integers in it are numbers.
+    """
+
+    kind: str
+    what: str = ""
+    channel: str = ""
+    named: bool = False
+    header: bool = False
+    numeric: bool = False
+    name: str = "line"
+
+
+def connects(move: Move) -> Move:
+    """Somebody connects."""
+    slots = {one.slot for one in move.state.links}
+    free = next(slot for slot in range(len(slots) + 1) if slot not in slots)
+    return move.to(evolve(move.state, links=(*move.state.links, Link(free))))
+
+
+def drops(move: Move, link: Link) -> Moves:
+    """A connection drops."""
+    waiting = any(one.robot == link.name and one.status is Status.QUEUED for one in move.state.missions)
+    because = (rules.DROPPED.id,) if link.serves and waiting else ()
+    for after in closed(move.to(move.state, *because), link):
+        yield from _succeeded(after, link)
+
+
+def _succeeded(move: Move, gone: Link) -> Moves:
+    """Another connection that said the same name takes over, at once or when it says it again (AI-16.back)."""
+    heirs = [one for one in move.state.links if one.name == gone.name and gone.name is not None]
+    if not gone.serves or not heirs:
+        yield move
+        return
+    at_once, later = split(move, AI_16_BACK, "p")
+    if at_once is not None:
+        yield from _served(at_once, heirs[-1])
+    if later is not None:
+        yield later
+
+
+def hears(move: Move, link: Link, heard: Heard, named: int | None, header: int | None) -> Moves:
+    """A line arrives on a connection; `named` and `header` as in `Report`."""
+    if heard.numeric:
+        taken, refused = split(move, AI_25_TAKEN, "a")
+        if refused is not None:
+            yield from _unreadable(refused, link)
+        if taken is None:
+            return
+        move = taken
+    if heard.kind == NAME and heard.channel == move.state.name_channel:
+        yield from _says_name(move, link, heard.what)
+    elif heard.kind == STATUS:
+        yield from _reports(move, link, Report(heard.what, heard.channel, named, header))
+    elif heard.kind == BAD:
+        yield from _unreadable(move, link)
+    elif heard.kind == FOREIGN:
+        skipped, closing = split(move, AI_38, "a")
+        if skipped is not None:
+            yield _nothing(skipped)
+        if closing is not None:
+            yield from drops(closing, link)
+    else:
+        yield _nothing(move)
+
+
+def _nothing(move: Move) -> Move:
+    return move.to(move.state, rules.OTHER.id)
+
+
+def _unreadable(move: Move, link: Link) -> Moves:
+    skipped, closing = split(move, AI_26, "e")
+    if skipped is not None:
+        yield _nothing(skipped)
+    if closing is not None:
+        yield from drops(closing, link)
+
+
+# Names.
+
+
+def _says_name(move: Move, link: Link, text: str) -> Moves:
+    if not text:
+        yield _nothing(move)
+        return
+    if text == text.strip():
+        yield from _named(move, link, text)
+        return
+    for letter, way in ways(move, AI_37, "a", "b"):
+        key = text if letter == "a" else text.strip()
+        yield from _named(way, link, key) if key else (_nothing(way),)
+
+
+def _named(move: Move, link: Link, key: str) -> Moves:
+    move = move.to(move.state, rules.NAMED.id)
+    if link.serves:
+        if link.name == key:
+            yield move
+            return
+        ignored, bound = split(move, AI_17, "a")
+        if ignored is not None:
+            yield ignored
+        if bound is not None:
+            for after in lost(bound, link):
+                for free in _succeeded(after.link(link.slot, name=None, serves=False), link):
+                    yield from _claims(free, link, key)
+    elif link.name is None or link.name == key:
+        yield from _claims(move, link, key)
+    else:
+        # It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q).
+        keeps, without = split(move, AI_16_BACK, "p")
+        if without is not None:
+            yield from _claims(without, link, key)
+        if keeps is not None:
+            ignored, bound = split(keeps, AI_17, "a")
+            if ignored is not None:
+                yield ignored
+            if bound is not None:
+                yield from _claims(bound, link, key)
+
+
+def _claims(move: Move, link: Link, key: str) -> Moves:
+    """A connection that serves no robot says a name."""
+    holder = move.state.serving(key)
+    move = move.link(link.slot, name=key)
+    if holder is None:
+        yield from _served(move, link)
+        return
+    slots = [one.slot for one in move.state.links]
+    newer = slots.index(link.slot) > slots.index(holder.slot)
+    for letter, way in ways(move, AI_16, "a", "b", "d"):
+        if letter == "a" and newer:
+            yield from _takes_over(way, link, holder)
+        elif letter == "d":
+            yield from closed(way, Link(link.slot))
+        else:
+            yield way
+
+
+def _takes_over(move: Move, link: Link, holder: Link) -> Moves:
+    displaced = move.link(holder.slot, serves=False)
+    under_way = any(one.status in UNDER_WAY and one.link == holder.slot for one in move.state.missions)
+    kept = any(one.status in UNDER_WAY and one.link is None and one.robot == holder.name for one in move.state.missions)
+    if not under_way and not kept:
+        yield from _served(displaced, link)
+        return
+    stays, as_lost = split(displaced, AI_16_UNDER_WAY, "k")
+    if stays is not None:
+        yield from _served(stays, link)
+    if as_lost is not None:
+        for after in lost(as_lost, holder):
+            yield from _served(after, link)
+
+
+def _served(move: Move, link: Link) -> Moves:
+    """A connection becomes the robot; what it said too early and was kept is taken up."""
+    found = move.state.link(link.slot)
+    assert found is not None, "the connection is open"  # noqa: S101 - callers have it from the state
+    move = move.link(link.slot, serves=True, early=())
+    for index, mission in enumerate(move.state.missions):
+        if mission.robot == found.name and mission.status is Status.QUEUED:
+            move = started(move, index, START, "connect")
+    moves = [move]
+    for report in found.early:
+        moves = [after for one in moves for after in _believed(one, link.slot, report)]
+    yield from moves
+
+
+# Statuses.
+
+
+def _reports(move: Move, link: Link, report: Report) -> Moves:
+    if (
+        not link.serves
+        and (link.name is None or "q" in move.state.letters(AI_16_BACK))
+        and _could_matter(move.state, report)
+    ):
+        ignored, kept = split(move, AI_18_EARLY, "a")
+        if kept is not None:
+            early = (*link.early, report) if report not in link.early else link.early
+            yield kept.link(link.slot, early=early)
+        if ignored is None:
+            return
+        move = ignored
+    yield from _believed(move, link.slot, report)
+
+
+def _could_matter(state: Server, report: Report) -> bool:
+    meant = {report.named, report.header} - {None, -1}
+    if not meant:
+        return any(one.status in UNDER_WAY for one in state.missions)
+    return any(state.missions[index].sent for index in meant if index is not None)
+
+
+def _believed(move: Move, slot: int, report: Report) -> Moves:
+    """What a status does, for each way in which it may be matched to a mission (AI-10)."""
+    link = move.state.link(slot)
+    assert link is not None, "the connection is open"  # noqa: S101 - callers have it from the state
+    targets: dict[tuple[int, ...], str] = {}
+    current = _current(move.state, link, report)
+    by_payload = current if report.named is None else (report.named,)
+    for letter, found in (
+        ("a", by_payload),
+        ("b", () if report.named is None else by_payload),
+        ("c", () if report.header is None else (report.header,)),
+    ):
+        meant = tuple(index for index in found if index >= 0 and _may_report(move.state, link, index))
+        targets[meant] = targets.get(meant, "") + letter
+    for meant, letters in targets.items():
+        way, _ = split(move, AI_10, letters)
+        if way is None:
+            continue
+        if not meant:
+            yield _nothing(way)
+        for index in meant:
+            yield from _on_channel(way, index, report)
+
+
+def _current(state: Server, link: Link, report: Report) -> tuple[int, ...]:
+    """The missions under way that a status on a channel may be about if it names none."""
+    return tuple(
+        index
+        for index, one in enumerate(state.missions)
+        if one.status in UNDER_WAY
+        and _may_report(state, link, index)
+        and report.channel in (one.status_channel or STATUS_CHANNEL, one.status_channel or f"{one.channel}_status")
+    )
+
+
+def _may_report(state: Server, link: Link, index: int) -> bool:
+    """Whether a connection is listened to about a mission: that of its robot, or the one that it was sent on."""
+    mission = state.missions[index]
+    if not mission.sent:
+        return False
+    elsewhere = mission.link is not None and mission.link != link.slot and state.link(mission.link) is not None
+    if link.serves and mission.robot == link.name:
+        return not elsewhere or mission.status in ENDED
+    return mission.link == link.slot and mission.robot == link.name
+
+
+def _on_channel(move: Move, index: int, report: Report) -> Moves:
+    mission = move.state.missions[index]
+    documented = mission.status_channel or STATUS_CHANNEL
+    shipped = mission.status_channel or f"{mission.channel}_status"
+    if documented == shipped:
+        yield from _happens(move, index, report) if report.channel == documented else (_nothing(move),)
+        return
+    for letter, way in ways(move, AI_14_STATUS, "a", "b"):
+        wanted = documented if letter == "a" else shipped
+        yield from _happens(way, index, report) if report.channel == wanted else (_nothing(way),)
+
+
+def _happens(move: Move, index: int, report: Report) -> Moves:
+    """What a status does to the mission that it is about."""
+    mission = move.state.missions[index]
+    if mission.status not in UNDER_WAY:
+        yield from _late(move, index, mission, report)
+    elif report.status == "running":
+        yield acknowledged(move.to(move.state, rules.RUNNING.id), index)
+    else:
+        heard, deaf = (move, None) if mission.status is Status.RUNNING else split(move, AI_07, "ac")
+        if heard is not None:
+            trigger = "report success" if report.status == "success" else "report failure"
+            yield ends(heard, index, trigger, rules.FINAL.id)
+        if deaf is not None:
+            yield _nothing(deaf)
+
+
+def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:
+    """A status of a mission that has ended, or that is queued again."""
+    final = {"success": Status.SUCCESS, "failure": Status.FAILED}.get(report.status)
+    move = move.to(move.state, rules.LATE.id)
+    if final is None or mission.status not in ENDED or mission.status is final:
+        yield move
+        return
+    ignored, believed = split(move, AI_09, "ac" if mission.status is not Status.ABORTED else "a")
+    if ignored is not None:
+        yield ignored
+    if believed is not None:
+        yield believed.mission(index, status=final)

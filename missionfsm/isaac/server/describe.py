@@ -1,0 +1,64 @@
+"""The values of the mission server in words, for people."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.server.connections import Heard
+from missionfsm.isaac.server.rules import Submission
+from missionfsm.isaac.server.spec import Connects, Drops, Passes, Statuses
+from missionfsm.isaac.server.state import Link, Mission, Sends, Server
+from missionfsm.isaac.shared.line import MICROSECONDS, Said
+from missionfsm.kernel.codec import Garbled
+
+
+def describe(value: object) -> str:
+    """A state, an event, a request, a view or a line in a few words."""
+    if isinstance(value, Server):
+        missions = ", ".join(map(_mission, value.missions)) or "no mission"
+        return f"{missions}; {', '.join(map(_link, value.links)) or 'no connection'}"
+    if isinstance(value, Submission):
+        return _submission(value)
+    if isinstance(value, Heard):
+        return _heard(value)
+    if isinstance(value, Sends):
+        return f"a mission on {value.channel} with {value.config}"
+    if isinstance(value, Said):
+        return f"a {value.kind} on {value.channel}" + (f" with {value.what}" if value.what else "")
+    if isinstance(value, Garbled):
+        return f"a malformed line: {value.says}"
+    if isinstance(value, Passes):
+        return f"{value.time / MICROSECONDS:g} s pass"
+    if isinstance(value, tuple):
+        return ", ".join(map(str, value)) or "no mission"
+    return {Connects: "a robot connects", Drops: "a connection drops", Statuses: "statuses()"}.get(
+        type(value), str(value)
+    )
+
+
+def _mission(mission: Mission) -> str:
+    return f"{mission.status.value} for {mission.robot}" + (" (waits)" if mission.waits else "")
+
+
+def _link(link: Link) -> str:
+    return "an unnamed connection" if link.name is None else f"{link.name}'s connection"
+
+
+def _submission(asked: Submission) -> str:
+    if asked.defects:
+        return f"submit(a mission of which {'; '.join(asked.defects)})"
+    parts = [f"robot {asked.robot}", f"channel {asked.channel}"]
+    if asked.upstream:
+        parts.append(f"{asked.upstream} upstream")
+    for name, time in (("start_timeout", asked.start), ("timeout", asked.run)):
+        if time is not None and not (name == "start_timeout" and time == 5 * MICROSECONDS):
+            parts.append(f"{name} {time / MICROSECONDS:g}")
+    return f"submit({', '.join(parts)})"
+
+
+def _heard(heard: Heard) -> str:
+    if heard.kind == "name":
+        return f"a robot says its name, {heard.what!r}"
+    if heard.kind == "status":
+        about = "of a mission" if heard.named else "of no mission in particular"
+        return f"a robot reports {heard.what.upper()} {about} on {heard.channel}"
+    kinds = {"noise": "a message for nobody", "bad": "a line that is no message", "foreign": "a message with buffers"}
+    return f"a robot sends {kinds[heard.kind]}"

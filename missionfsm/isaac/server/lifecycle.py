@@ -1,0 +1,406 @@
+"""What happens to missions at the server: clocks, ends and their consequences, and what is sent next.
+
+Every function takes a `Move` and gives the moves that it can lead to, each with the readings that it decided recorded
+in its state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from attrs import evolve
+
+from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.deciding import counts, split, ways
+from missionfsm.isaac.server.readings import (
+    AI_03,
+    AI_05,
+    AI_06,
+    AI_07,
+    AI_08,
+    AI_11,
+    AI_12,
+    AI_13,
+    AI_15,
+    AI_19,
+    AI_24,
+    AI_31,
+    AI_36,
+    AI_39,
+)
+from missionfsm.isaac.server.state import (
+    FAILURES,
+    LIFECYCLE,
+    LOOK,
+    RUN,
+    SILENCE,
+    SILENT,
+    START,
+    UNDER_WAY,
+    Clock,
+    Link,
+    Mission,
+    Move,
+    Sends,
+    Server,
+    Status,
+)
+
+Moves = Iterator[Move]
+
+
+def slack(state: Server) -> int:
+    """How much later than it is due something is noticed at the latest, in microseconds."""
+    return state.tolerance + (LOOK if state.letters(AI_39) == "b" else 0)
+
+
+def looks(move: Move) -> Move:
+    """AI-39 b has been decided: clocks that run may strike later than was thought."""
+    missions = tuple(
+        evolve(
+            one, clocks=tuple(evolve(clock, hi=None if clock.hi is None else clock.hi + LOOK) for clock in one.clocks)
+        )
+        if one.clocks
+        else one
+        for one in move.state.missions
+    )
+    return move.to(evolve(move.state, missions=missions))
+
+
+def started(move: Move, index: int, kind: str, since: str) -> Move:
+    """A clock of a mission starts anew now, if the mission has that timeout and some reading that is left wants it."""
+    mission = move.state.missions[index]
+    time = {START: mission.start, RUN: mission.run, SILENT: SILENCE}[kind]
+    if time is None or not counts(move.state, kind, since):
+        return move
+    rest = tuple(one for one in mission.clocks if (one.kind, one.since) != (kind, since))
+    low, high = move.at
+    hi = None if kind == SILENT else time + high + slack(move.state)
+    lo = max(0, time + low - move.state.tolerance)
+    clocks = sorted((*rest, Clock(kind, since, lo, hi)), key=lambda one: (one.kind, one.since))
+    return move.mission(index, clocks=tuple(clocks))
+
+
+def stopped(move: Move, index: int, *kinds: tuple[str, str]) -> Move:
+    """Clocks of a mission, each a kind and a beginning, run no more."""
+    mission = move.state.missions[index]
+    left = tuple(one for one in mission.clocks if (one.kind, one.since) not in kinds)
+    return move if len(left) == len(mission.clocks) else move.mission(index, clocks=left)
+
+
+_START_CLOCKS = tuple((START, since) for since in ("send", "submit", "ready", "connect"))
+
+
+def becomes(move: Move, index: int, trigger: str) -> Move:
+    """A mission moves on its chart."""
+    after = LIFECYCLE.after(trigger, move.state.missions[index].status)
+    assert after is not None, f"{trigger} is no move"  # noqa: S101 - callers look first
+    return move.mission(index, status=after)
+
+
+# Ends, and what follows from them.
+
+
+def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
+    """A mission ends; those that wait for it wait no longer, or are doomed."""
+    move = becomes(move, index, trigger).mission(index, clocks=())
+    status = move.state.missions[index].status
+    for other, mission in enumerate(move.state.missions):
+        if index in mission.waits:
+            doomed = mission.doomed
+            if status in FAILURES:
+                doomed = tuple(sorted({*doomed, status}, key=lambda one: one.value))
+            move = move.mission(other, waits=tuple(one for one in mission.waits if one != index), doomed=doomed)
+            if move.state.missions[other].ready:
+                move = started(move, other, START, "ready")
+    return move.to(move.state, *because)
+
+
+def cancellations(move: Move) -> Moves:
+    """A doomed mission is cancelled, or is found to wait (AI-03, AI-36); nothing where no mission is due."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.status is not Status.QUEUED or not mission.doomed:
+            continue
+        reported = Status.FAILED in mission.doomed
+        direct = any(one is not Status.CANCELED for one in mission.doomed)
+        yes, no = split(move, AI_03, "a" + ("b" if reported else "") + ("c" if direct else ""))
+        if yes is not None:
+            now, later = split(yes, AI_36, "a") if mission.waits else (yes, None)
+            if now is not None:
+                yield ends(now, index, "cancel", rules.CANCELED.id)
+            if later is not None and later is not move:
+                yield later
+        if no is not None and no is not move:
+            yield no
+
+
+# What is sent next.
+
+
+def dispatches(move: Move) -> Moves:
+    """Every way to send a mission now to a robot that is there; where that is left to later, the decision alone."""
+    for link in move.state.links:
+        if link.serves and link.name is not None:
+            yield from dispatches_to(move, link)
+
+
+def dispatches_to(move: Move, link: Link) -> Moves:
+    """Every way to send a mission on a connection now."""
+    if any(one.robot is None and one.ready for one in move.state.missions):
+        anybody, nobody = split(move, AI_19, "b")
+        if anybody is not None and nobody is not None:
+            yield anybody
+            yield nobody
+            return
+    choices = list(_choices(move, link))
+    # Where it is decided whether anything may be sent, that it may be is decided although nothing is sent yet.
+    decides = any(index is None and chosen is not move for index, chosen in choices)
+    for index, chosen in choices:
+        if index is None:
+            if chosen is not move:
+                yield chosen
+            continue
+        now, later = split(chosen, AI_39, "a")
+        if now is not None:
+            yield from sends(now, link, index)
+        if later is not None and later.state.letters(AI_39) != chosen.state.letters(AI_39):
+            yield looks(later)
+        elif later is not None and decides and later.state != move.state:
+            yield later
+
+
+def possible(state: Server, link: Link) -> list[tuple[int, Move]]:
+    """What a server that looks now and then (AI-39 b) may send on a connection when it looks."""
+    return [(index, chosen) for index, chosen in _choices(Move(state), link) if index is not None]
+
+
+def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
+    """Missions that may be sent on a connection, each with what that decides; None for deciding to send nothing."""
+    missions = move.state.missions
+    own = [index for index, one in enumerate(missions) if one.robot == link.name]
+    if "b" in move.state.letters(AI_19):
+        own = [index for index, one in enumerate(missions) if one.robot in (link.name, None)]
+    queue = [index for index in own if missions[index].status is Status.QUEUED]
+    if not any(missions[index].ready for index in queue):
+        return
+    busy = {one.channel for one in missions if one.status in UNDER_WAY and one.robot == link.name}
+    if not busy:
+        yield from _from_free(move, queue)
+        return
+    apart = _lanes(missions, [index for index in queue if missions[index].channel not in busy])
+    holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
+    held, several = split(move, AI_11, holding)
+    if several is not None:
+        for letter, way in ways(several, AI_11, "b", "c"):
+            yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
+    if held is not None:
+        yield None, held
+
+
+def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
+    """The missions of a queue, those of each channel by themselves."""
+    lanes: dict[str, list[int]] = {}
+    for index in queue:
+        lanes.setdefault(missions[index].channel, []).append(index)
+    return list(lanes.values())
+
+
+def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
+    """What may be sent of several queues that do not wait for one another."""
+    missions = move.state.missions
+    surely = any(missions[lane[0]].ready for lane in lanes)
+    for lane in lanes:
+        for index, way in _from_lane(move, lane):
+            if index is not None or not surely:
+                yield index, way
+
+
+def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """Nothing is under way: the queue as one, or (AI-11 c) by channels, where that makes a difference."""
+    missions = move.state.missions
+    lanes = _lanes(missions, queue)
+    if len(lanes) == 1:
+        yield from _from_lane(move, queue)
+        return
+    first = queue[0]
+    if missions[first].ready:
+        yield first, move
+    found: dict[int | None, list[Move]] = {}
+    whole, apart = split(move, AI_11, "ab")
+    if whole is not None:
+        for index, way in _from_lane(whole, queue):
+            found.setdefault(index, []).append(way)
+    if apart is not None:
+        for index, way in _from_lanes(apart, lanes):
+            found.setdefault(index, []).append(way)
+    for index, moves in found.items():
+        if index != first:
+            yield from ((index, way) for way in dict.fromkeys(moves))
+
+
+def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """Of missions in the order of submission: the first that is ready, or (AI-13 b) another that is."""
+    missions = move.state.missions
+    ready = [index for index in queue if missions[index].ready]
+    if not ready:
+        return
+    overtakes, holds = (move, None) if ready[0] == queue[0] else split(move, AI_12, "a")
+    if overtakes is not None:
+        yield ready[0], overtakes
+    if len(ready) > 1:
+        any_order, _ = split(move, AI_13, "b")
+        free = None if any_order is None else split(any_order, AI_12, "a")[0]
+        if free is not None:
+            yield from ((index, free) for index in ready[1:])
+    if holds is not None:
+        yield None, holds
+
+
+def sends(move: Move, link: Link, index: int) -> Moves:
+    """A mission is sent on a connection."""
+    mission = move.state.missions[index]
+    if mission.start == 0 and "a" in move.state.letters(AI_05):
+        # Nothing can be acknowledged before no time has passed, so a server may as well not set the robot going.
+        ours, _ = split(move, AI_05, "a")
+        needs = None if ours is None else split(ours, AI_07, "ab")[0]
+        if needs is not None:
+            yield ends(needs, index, "time out", rules.ABORTED.id)
+    if mission.robot is None:
+        chosen, _ = split(move, AI_19, "b")
+        if chosen is None:
+            return
+        move = chosen.mission(index, robot=link.name)
+    move = becomes(move, index, "send").mission(index, link=link.slot, sent=True)
+    move = started(started(move, index, START, "send"), index, RUN, "send")
+    because = [rules.SENT.id, rules.UNNAMED.id]
+    if mission.depends:
+        because.append(rules.UPSTREAM.id)
+    view = Sends(mission.channel, mission.config)
+    yield move.emit(link.slot, index, view).to(move.state, *because)
+
+
+def urgent(move: Move) -> tuple[Move, ...]:
+    """What follows from where things stand, one thing at a time."""
+    due = tuple(cancellations(move))
+    return due or tuple(dispatches(move))
+
+
+# Clocks that strike.
+
+
+def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
+    """Where a clock that is over aborts its mission, and where it means nothing (it runs no more)."""
+    mission = move.state.missions[index]
+    aborting: list[Move] = []
+    meaningless: list[Move] = []
+
+    def ask(here: Move | None, *questions: tuple[object, str]) -> None:
+        """The answers to all questions have to be among the letters; the first that is not makes it meaningless."""
+        for question, letters in questions:
+            if here is None:
+                return
+            here, no = split(here, question, letters)  # type: ignore[arg-type]
+            if no is not None:
+                meaningless.append(no)
+        if here is not None:
+            aborting.append(here)
+
+    if clock.kind == SILENT:
+        ask(move, (AI_31, "a"))
+    elif clock.kind == START:
+        letter = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[clock.since]
+        ask(move, (AI_05, letter), *(((AI_07, "ab"),) if mission.status is Status.STARTED else ()))
+    elif clock.since == "send":
+        by_send, not_by_send = split(move, AI_06, "b")
+        if by_send is not None:
+            aborting.append(by_send)
+        ask(not_by_send, (AI_06, "a"), (AI_07, "c"))
+    elif clock.since == "status":
+        ask(move, (AI_06, "a"), (AI_07, "ab"))
+    else:
+        ask(move, (AI_06, "c"))
+    kind = (clock.kind, clock.since)
+    return (
+        tuple(one for here in aborting for one in aborted(here, index, clock.kind)),
+        tuple(stopped(here, index, kind) for here in meaningless),
+    )
+
+
+def aborted(move: Move, index: int, kind: str) -> Moves:
+    """A mission is aborted; its robot is not told, or (AI-08 c) loses its connection."""
+    because = {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE}[kind].id
+    mission = move.state.missions[index]
+    after = ends(move, index, "time out", because)
+    link = None if mission.link is None else move.state.link(mission.link)
+    if link is None and mission.status in UNDER_WAY:
+        link = move.state.serving(mission.robot)
+    if link is None or mission.status not in UNDER_WAY:
+        yield after
+        return
+    quiet, closing = split(after, AI_08, "a")
+    if quiet is not None:
+        yield quiet
+    if closing is not None:
+        yield from closed(closing, link)
+
+
+# Connections that go.
+
+
+def closed(move: Move, link: Link) -> Moves:
+    """A connection is gone."""
+    links = tuple(one for one in move.state.links if one.slot != link.slot)
+    yield from lost(move.to(evolve(move.state, links=links)), link)
+
+
+def lost(move: Move, link: Link) -> Moves:
+    """A connection is no robot's any more: what was sent on it goes on, is sent again, or has failed (AI-15)."""
+    missions = move.state.missions
+    if link.serves:
+        for index, mission in enumerate(missions):
+            if mission.robot == link.name and mission.status is Status.QUEUED:
+                move = stopped(move, index, (START, "connect"))
+    affected = [index for index, one in enumerate(missions) if one.status in UNDER_WAY and _was_on(one, link)]
+    if not affected:
+        yield move
+        return
+    for letter, way in ways(move, AI_15, "c", "a", "b"):
+        here = way
+        for index in affected:
+            if letter == "a":
+                here = here.mission(index, link=None)
+            elif letter == "c":
+                here = ends(here.mission(index, link=None), index, "lose")
+            else:
+                here = _again(here, index)
+        yield here
+
+
+def _was_on(mission: Mission, link: Link) -> bool:
+    return mission.link == link.slot or (link.serves and mission.link is None and mission.robot == link.name)
+
+
+def _again(move: Move, index: int) -> Move:
+    move = becomes(move, index, "send again later").mission(index, link=None)
+    gone = ((START, "send"), (START, "ready"), (START, "connect"), (RUN, "send"), (RUN, "status"), (SILENT, "status"))
+    return started(stopped(move, index, *gone), index, START, "ready")
+
+
+def acknowledged(move: Move, index: int) -> Move:
+    """RUNNING was reported: the start timeout is over, and the run timeout counts."""
+    first = move.state.missions[index].status is Status.STARTED
+    if first:
+        move = stopped(becomes(move, index, "report running"), index, *_START_CLOCKS)
+        move = started(move, index, RUN, "status")
+    return started(move, index, SILENT, "status")
+
+
+def zero_means(move: Move, *times: int | None) -> Iterator[tuple[str, Move]]:
+    """AI-24: whether a timeout of 0 elapses at once or is none; not asked where no timeout is 0."""
+    if 0 not in times:
+        yield "a", move
+    else:
+        yield from ways(move, AI_24, "a", "b")
+
+
+__all__ = ["Mission", "Moves", "urgent"]

@@ -1,0 +1,140 @@
+"""What of the mission server is drawn besides the lifecycle: dispatch to one robot, and missions that depend."""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from missionfsm.isaac.server.connections import Heard
+from missionfsm.isaac.server.readings import AMBIGUITIES
+from missionfsm.isaac.server.rules import Submission
+from missionfsm.isaac.server.spec import Connects, Drops, Passes, Statuses
+from missionfsm.isaac.server.state import ENDED, Mission, Sends, Server, Status
+from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
+from missionfsm.kernel.alphabet import Prompt, as_text, pick
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.picture import Refs, Sketch
+
+_ROBOTS = ("carter-01", "carter-02")
+_STATUSES = ("running", "success", "failure")
+_TIMES = {"start_timeout": 5, "timeout": 15}
+
+
+def _line(kind: type[TextProto | MissionStatusProto], channel: str, payload: JSON) -> JSON:
+    header = {"channel": channel, "pubtime": "0", "acqtime": "0", "proto": str(signed(TYPE_IDS[kind]))}
+    line = as_text({"header": header, "payload": payload})
+    return {"event": "line", "connection": pick("connection", 0), "line": line}
+
+
+def _names(*robots: str) -> tuple[JSON, ...]:
+    return tuple(_line(TextProto, "name", {"text": robot}) for robot in robots)
+
+
+_REPORTS = tuple(
+    _line(MissionStatusProto, "mission_status", {"uuid": pick("uuid", 1), "missionStatus": status})
+    for status in _STATUSES
+)
+_CONNECT: JSON = {"event": "connect"}
+_DROP: JSON = {"event": "disconnect", "connection": pick("connection", 0)}
+_PASS: JSON = {"event": "advance", "seconds": 6}
+"""More than a mission has to be acknowledged, less than it has to run: no clock strikes at the very end of it."""
+
+
+def _status(mission: Mission) -> str:
+    return mission.status.value
+
+
+def _dispatch_node(server: Server) -> str:
+    there = server.serving(_ROBOTS[0]) is not None
+    if server.missions and server.missions[0].status in ENDED:
+        return _status(server.missions[0])
+    mission = _status(server.missions[0]) if server.missions else "no mission"
+    return f"{mission}, the robot is {'there' if there else 'away'}"
+
+
+def _label(server: Server, what: Submission | Statuses | Connects | Drops | Heard | Passes, refs: Refs) -> str | None:
+    if isinstance(what, Submission):
+        return "submit"
+    if isinstance(what, Passes):
+        return "time passes"
+    if isinstance(what, Connects):
+        return "it connects"
+    if refs[0] is None or refs[0] < 2 * len(server.missions):
+        return None
+    if isinstance(what, Drops):
+        return "its connection drops"
+    if isinstance(what, Heard) and what.kind == "name":
+        return "it says its name"
+    if isinstance(what, Heard) and refs[1] in range(1, 2 * len(server.missions), 2):
+        return f"it reports {what.what.upper()}"
+    return None
+
+
+def _shows(_: Sends) -> str:
+    return "the mission is sent"
+
+
+def _depend_node(server: Server) -> str | None:
+    if len(server.missions) < len(_ROBOTS) or not all(map(server.serving, _ROBOTS)):
+        return None
+    first, second = map(_status, server.missions)
+    return f"first {first}, second {second}"
+
+
+def _depend_within(server: Server) -> bool:
+    """Both robots come and stay, then both missions are submitted, the second while the first is not reported of."""
+    robots = tuple(one.robot for one in server.missions)
+    names = tuple(one.name for one in server.links)
+    coming = all(name in (None, robot) for name, robot in zip(names, _ROBOTS, strict=False))
+    both = all(map(server.serving, _ROBOTS))
+    early = len(robots) == len(_ROBOTS) or all(one.status in (Status.QUEUED, Status.STARTED) for one in server.missions)
+    known = robots == _ROBOTS[: len(robots)] and len(names) <= len(_ROBOTS)
+    return known and coming and early and (both or not robots)
+
+
+def _depend_label(server: Server, what: Submission | Connects | Heard | Passes, refs: Refs) -> str | None:
+    """What robots report of their own missions; what they say of another's is not heeded."""
+    if isinstance(what, Passes):
+        return "time passes"
+    if not isinstance(what, Heard) or what.kind == "name":
+        return None
+    link, mission = ((-1 if ref is None else ref) for ref in refs)
+    robot = link - 2 * len(server.missions)
+    if robot < 0 or mission != 2 * robot + 1:
+        return None
+    return f"the {('first', 'second')[robot]} robot reports {what.what.upper()}"
+
+
+def _simple(server: Server, assumed: int) -> Server:
+    """Everything is decided beforehand that a server decides when it matters, so its clocks are those that count."""
+    return evolve(server, left=tuple(sorted((one.id, "".join(one.possible(assumed))) for one in AMBIGUITIES)))
+
+
+SKETCHES = (
+    Sketch(
+        "dispatch",
+        "one mission for one robot",
+        node=_dispatch_node,
+        label=_label,
+        within=lambda server: len(server.missions) <= 1 and len(server.links) <= 1,
+        simple=_simple,
+        shows=_shows,
+        prompts=(Prompt("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),),
+        drives=(_CONNECT, *_names(_ROBOTS[0]), *_REPORTS, _DROP, _PASS),
+        contrasts=("AI-15=a", "AI-15=b", "AI-05=b"),
+    ),
+    Sketch(
+        "dependency",
+        "a mission that waits for another",
+        node=_depend_node,
+        label=_depend_label,
+        within=_depend_within,
+        simple=_simple,
+        shows=_shows,
+        prompts=(
+            Prompt("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),
+            Prompt("submit", {"mission": {"robot": _ROBOTS[1], **_TIMES, "upstream": [pick("mission", 0)]}}),
+        ),
+        drives=(_CONNECT, *_names(*_ROBOTS), *_REPORTS, _PASS),
+        contrasts=("AI-03=b",),
+    ),
+)

@@ -1,0 +1,329 @@
+"""Conversations worth having with a mission server, whole: each goes where chance seldom does.
+
+After everything that may have consequences there is a pause of more than a second, for servers that look about once a
+second (AI-39 b), and the statuses are asked for.
+"""
+
+from __future__ import annotations
+
+from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
+from missionfsm.kernel.alphabet import Line, as_text, pick, upcoming
+from missionfsm.kernel.codec import JSON
+
+A, B = "carter-01", "carter-02"
+PAUSE = 1.3
+"""Seconds: more than a server takes that looks about once a second, and no part of any timeout."""
+
+MISSION, OTHER, LINK, UUID = 0, 1, 2, 3
+"""The slots: two missions that are named as upstreams, a connection, and the mission that a status is about."""
+
+
+def header(kind: type[TextProto | MissionStatusProto], channel: str, **more: JSON) -> JSON:
+    """A header as robots send it."""
+    times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
+    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
+
+
+def _line(head: JSON, payload: JSON) -> JSON:
+    text = as_text({"header": head, "payload": payload})
+    return {"event": "line", "connection": pick("connection", LINK), "line": text}
+
+
+class _Script:
+    """Writes a script down. Missions, connections and identifiers are numbered from 0 in the order of coming."""
+
+    def __init__(self) -> None:
+        self.lines: list[Line] = []
+
+    def submit(self, robot: str, *upstream: int, **fields: JSON) -> _Script:
+        if upstream:
+            fields["upstream"] = [pick("mission", slot) for slot in range(len(upstream))]
+        picks = tuple(enumerate(upstream))
+        self.lines.append(Line("submit", {"mission": {"robot": robot, **fields}}, picks))
+        return self
+
+    def refused(self, *upstream: JSON) -> _Script:
+        self.lines.append(Line("submit", {"mission": {"robot": A, "upstream": list(upstream)}}, ((MISSION, 0),)))
+        return self
+
+    def look(self) -> _Script:
+        self.lines += [Line("settle"), Line("statuses", {})]
+        return self
+
+    def wait(self, seconds: float = PAUSE) -> _Script:
+        self.lines.append(Line("drive", {"event": "advance", "seconds": seconds}))
+        return self.look()
+
+    def connect(self) -> _Script:
+        self.lines.append(Line("drive", {"event": "connect"}))
+        return self
+
+    def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> _Script:
+        self.lines.append(Line("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),)))
+        return self.look()
+
+    def robot(self, link: int, robot: str) -> _Script:
+        return self.connect().name(link, robot).wait()
+
+    def report(
+        self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
+    ) -> _Script:
+        uuid = {"uuid": pick("uuid", UUID)}
+        head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
+        payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
+        self.lines.append(Line("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
+        return self.wait()
+
+    def raw(self, link: int, text: str) -> _Script:
+        params = {"event": "line", "connection": pick("connection", LINK), "line": text}
+        self.lines.append(Line("drive", params, ((LINK, link),)))
+        return self.look()
+
+    def drop(self, link: int) -> _Script:
+        params = {"event": "disconnect", "connection": pick("connection", LINK)}
+        self.lines.append(Line("drive", params, ((LINK, link),)))
+        return self.wait()
+
+
+_LAPS = {"goals.path": {"FollowPath": {"laps": 2, "tolerance": 0.25}}}
+_GRIP = {"arm": {"Grip": {"force": 17, "on": True}}}
+
+_SCRIPTS = (
+    # A diamond over two robots: nothing starts before its upstreams have succeeded, and then everything does.
+    _Script()
+    .submit(A, timeout=60)
+    .submit(B, 0, timeout=60)
+    .submit(B, 0, 1, timeout=60)
+    .robot(0, A)
+    .robot(1, B)
+    .report(0, 0, "running")
+    .report(0, 0, "success")
+    .report(1, 1, "running")
+    .report(1, 1, "success")
+    .report(1, 2, "running")
+    .report(1, 2, "success"),
+    # One of two upstreams is not enough; then the other fails.
+    _Script()
+    .submit(A)
+    .submit(A)
+    .submit(B, 0, 1)
+    .robot(0, A)
+    .robot(1, B)
+    .report(0, 0, "success")
+    .report(0, 1, "running")
+    .report(0, 1, "failure"),
+    # A failure cancels all that depends on it, and nothing else.
+    _Script()
+    .submit(A)
+    .submit(A, 0)
+    .submit(A, 1)
+    .submit(A)
+    .submit(B)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .report(0, 0, "failure")
+    .submit(A, 0)
+    .look()
+    .wait()
+    .robot(1, B)
+    .report(0, 1, "success")
+    .report(1, 2, "success"),
+    # An upstream that is never acknowledged is aborted, which is a failure; what comes too late means nothing.
+    _Script()
+    .submit(A, start_timeout=3)
+    .submit(B, 0)
+    .submit(B, 1)
+    .robot(0, A)
+    .robot(1, B)
+    .wait(4)
+    .report(0, 0, "success")
+    .submit(B, 0)
+    .wait(),
+    # A mission runs out of time; the robot's last word on it is not about the next one.
+    _Script()
+    .submit(A, timeout=4)
+    .submit(A)
+    .submit(B, 0)
+    .robot(0, A)
+    .robot(1, B)
+    .report(0, 0, "running")
+    .wait(0.5)
+    .report(0, 0, "running")
+    .wait(4)
+    .report(0, 1, "running")
+    .report(0, 0, "failure")
+    .report(0, 1, "success"),
+    # Half of a timeout is not enough.
+    _Script().submit(A, timeout=8).robot(0, A).report(0, 0, "running").wait(5).report(0, 0, "running").wait(5),
+    # How long an acknowledgement takes shows from when timeout counts.
+    _Script()
+    .submit(A, start_timeout=8, timeout=8)
+    .robot(0, A)
+    .wait(5)
+    .report(0, 0, "running")
+    .wait(5)
+    .report(0, 0, "running")
+    .wait(5),
+    # Once acknowledged, a mission may take its time; once ended, it stays so.
+    _Script()
+    .submit(A, start_timeout=2)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .wait(5)
+    .report(0, 0, "running")
+    .report(0, 0, "success")
+    .report(0, 0, "failure")
+    .report(0, 0, "running"),
+    # A robot that reports nothing for long, though it was acknowledged, is still at it.
+    _Script().submit(A).robot(0, A).report(0, 0, "running").wait(60).report(0, 0, "success"),
+    # What was queued waits for its robot; what is done is not sent again.
+    _Script()
+    .submit(A)
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .report(0, 0, "success")
+    .drop(0)
+    .wait(2)
+    .robot(1, A)
+    .report(1, 1, "success")
+    .report(1, 2, "running")
+    .report(1, 2, "success")
+    .drop(1)
+    .robot(2, A),
+    # A robot drops in the middle of its mission.
+    _Script()
+    .submit(A, timeout=20)
+    .submit(A, timeout=20)
+    .submit(B, 0)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .drop(0)
+    .robot(1, A)
+    .report(1, 1, "running")
+    .report(1, 1, "success")
+    .wait(30),
+    # Of two connections with one name one is the robot.
+    _Script().robot(0, A).robot(1, A).submit(A).wait().drop(1).submit(A).wait().name(0, A).wait(),
+    # A mission that comes while its robot is there and free; another waits for its turn.
+    _Script()
+    .robot(0, A)
+    .submit(A, config=_LAPS, channel="arm", status_channel="arm_news")
+    .wait()
+    .submit(A, config=_GRIP)
+    .wait()
+    .report(0, 0, "success")
+    .report(0, 0, "running", "arm_news")
+    .report(0, 0, "success", "arm_news")
+    .report(0, 1, "failure"),
+    # Names: said again, in other letters, on another channel, by nobody; and the statuses of others.
+    _Script()
+    .submit(A)
+    .connect()
+    .wait()
+    .name(0, A, "elsewhere")
+    .wait()
+    .name(0, A.upper())
+    .wait()
+    .robot(1, B)
+    .robot(2, A)
+    .name(2, A)
+    .name(2, A)
+    .report(1, 0, "running")
+    .report(1, 0, "success")
+    .report(2, 0, "running")
+    .name(2, A)
+    .report(2, 0, "success"),
+    # Lines that are no messages are nobody's loss.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .robot(0, A)
+    .robot(1, B)
+    .raw(0, "no json")
+    .report(1, 1, "running")
+    .report(0, 0, "running")
+    .report(0, 0, "success")
+    .report(1, 1, "success"),
+    # Who goes first: one that waits is in front, and of the others there are several.
+    _Script()
+    .submit(B)
+    .submit(A, 0)
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "success")
+    .robot(1, B)
+    .report(1, 1, "success"),
+    # Statuses that name their mission in the payload, in the header, nowhere.
+    _Script()
+    .submit(A)
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running", by="")
+    .report(0, 0, "running", by="header")
+    .report(0, 0, "success", by="payload")
+    .report(0, 1, "success", by="header")
+    .report(0, 1, "success", by=""),
+    # The status channel of a mission that names another channel only.
+    _Script()
+    .submit(A, channel="arm")
+    .robot(0, A)
+    .report(0, 0, "running", "arm_status")
+    .report(0, 0, "success", "mission_status"),
+    # A newer connection takes over in the middle of a mission.
+    _Script()
+    .submit(A, timeout=30)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .robot(1, A)
+    .report(0, 0, "success")
+    .report(1, 0, "success")
+    .drop(1),
+    # An upstream that was sent and not acknowledged when its downstream came.
+    _Script().submit(A).robot(0, A).submit(A, 0).wait().report(0, 0, "success").report(0, 1, "running"),
+    # Timeouts of 0.
+    _Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
+    # One upstream fails while the other runs.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .submit(A, 0, 1)
+    .robot(0, A)
+    .robot(1, B)
+    .report(1, 1, "running")
+    .report(0, 0, "failure")
+    .report(1, 1, "success"),
+    # Names with space around them, a second name, a name whose message has numbers for its times, and odd messages.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .connect()
+    .name(0, f" {A} ")
+    .wait()
+    .connect()
+    .name(1, B, pubtime=17, acqtime=17)
+    .wait()
+    .report(1, 0, "running")
+    .robot(2, A)
+    .raw(2, '{"header":{"channel":"camera","proto":"TensorProto"},"payload":{}}')
+    .report(2, 1, "running")
+    .report(2, 0, "running")
+    .name(2, B)
+    .wait()
+    .report(2, 1, "success"),
+    # Upstreams that do not exist.
+    _Script()
+    .refused(upcoming("mission"))
+    .submit(B)
+    .refused(-1)
+    .refused(upcoming("mission"))
+    .refused(pick("mission", MISSION), 999)
+    .robot(0, A),
+)
+
+SCRIPTS = tuple(tuple(script.lines) for script in _SCRIPTS)
+"""Every script as the tools take it."""

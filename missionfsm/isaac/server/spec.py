@@ -1,0 +1,404 @@
+"""The mission server as a `Spec`: what a correct one may do, under any consistent choice of readings.
+
+The names of a state are, for each mission, its handle and its identifier, and then those of the open connections.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterator, Mapping
+
+from attrs import evolve
+
+from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
+from missionfsm.isaac.server.connections import Heard, connects, drops, hears
+from missionfsm.isaac.server.deciding import assumed, merged, split
+from missionfsm.isaac.server.lifecycle import started, urgent, zero_means
+from missionfsm.isaac.server.readings import (
+    AI_02,
+    AI_04,
+    AI_05,
+    AI_19,
+    AI_22_STARTED,
+    AI_25_HEADER,
+    AI_28_CONFIG,
+    AMBIGUITIES,
+)
+from missionfsm.isaac.server.rules import OPERATIONS, RULES, Ask, Submission
+from missionfsm.isaac.server.state import (
+    ENDED,
+    FAILURES,
+    LIFECYCLE,
+    RUN,
+    START,
+    SYSTEM,
+    UNDER_WAY,
+    Mission,
+    Move,
+    Sends,
+    Server,
+    Status,
+    emissions,
+    topic,
+)
+from missionfsm.isaac.server.time import at_any_time, passes
+from missionfsm.isaac.shared.line import Said
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.rules import OK, Operation, decide
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.values import value
+
+
+@value(cache_hash=True)
+class Passes:
+    """Time passes, in microseconds."""
+
+    time: int
+    name: str = "advance"
+
+
+@value(cache_hash=True)
+class Connects:
+    """A robot connects; the event's name is the connection's."""
+
+    name: str = "connect"
+
+
+@value(cache_hash=True)
+class Drops:
+    """A connection drops; the event's name is the connection's."""
+
+    name: str = "disconnect"
+
+
+@value(cache_hash=True)
+class Statuses:
+    """The statuses of all missions are asked for."""
+
+    operation: str = "statuses"
+
+
+def _step(
+    before: Server,
+    move: Move,
+    *,
+    new: tuple[int, ...] = (),
+    assumes: tuple[Assumption, ...] = (),
+) -> Step:
+    """A move as a step; `new` are references to the names that `after` has beyond `before`."""
+    after = move.state
+    if after is before and not move.sent:
+        return Step(before, rules=move.rules, assumes=assumes)
+    missions, positions = 2 * len(before.missions), {one.slot: at for at, one in enumerate(before.links)}
+    names = [*range(missions), *(one for one in new if one >= 0)]
+    fresh = [one for one in new if one < 0]
+    names += [missions + positions[one.slot] if one.slot in positions else fresh[0] for one in after.links]
+    kept = {one.slot for one in after.links}
+    return Step(
+        after,
+        names=tuple(names),
+        emits=emissions(move),
+        closes=tuple(topic(one.slot) for one in before.links if one.slot not in kept),
+        rules=tuple(dict.fromkeys(move.rules)),
+        assumes=(*assumes, *assumed(before, after)),
+    )
+
+
+# Calls.
+
+
+def _outcomes(
+    operations: Mapping[str, Operation],
+    server: Server,
+    request: Submission | Statuses,
+    refs: tuple[int | None, ...],
+) -> tuple[Step, ...]:
+    if isinstance(request, Statuses):
+        return tuple(_shown(server))
+    return _submitted(operations["submit"], server, request, tuple(_mission_at(server, ref) for ref in refs))
+
+
+def _mission_at(server: Server, ref: int | None) -> int | None:
+    """The index of the mission whose handle stands at a position among the names."""
+    return None if ref is None or ref >= 2 * len(server.missions) or ref % 2 else ref // 2
+
+
+@functools.lru_cache(maxsize=20_000)
+def _submitted(
+    operation: Operation, server: Server, request: Submission, upstream: tuple[int | None, ...]
+) -> tuple[Step, ...]:
+    ask = Ask(request, upstream)
+    found: list[Step] = []
+    for decision in decide(operation.blocking(server, ask)):
+        if decision.code is not None:
+            told = tuple(rule.id for rule in decision.rules)
+            found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=told))
+            continue
+        for move in _taken(server, request, tuple(sorted({one for one in upstream if one is not None}))):
+            handle = 2 * len(server.missions) + len(server.links)
+            step = _step(server, move, new=(handle, handle + 1), assumes=decision.assumes)
+            found.append(evolve(step, answer=Answer(OK), refs=(handle,), kinds=("mission", "uuid")))
+    return tuple(found)
+
+
+def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> Iterator[Move]:
+    """A mission is queued."""
+    told = tuple(rule.id for rule in OPERATIONS["submit"].promises)
+    for letter, move in zero_means(Move(server, rules=told), request.start, request.run):
+        start, run = ((None if letter == "b" and time == 0 else time) for time in (request.start, request.run))
+        here: Move | None = move
+        if request.robot is None:
+            here, _ = split(move, AI_19, "ab")
+        if here is None:
+            continue
+        for doomed, way in _upstreams(here, upstream):
+            waits = tuple(one for one in upstream if way.state.missions[one].status not in ENDED and one not in doomed)
+            failed = {way.state.missions[one].status for one in upstream if way.state.missions[one].status in FAILURES}
+            failed |= {Status.FAILED} if doomed else set()
+            mission = Mission(
+                request.robot,
+                request.channel,
+                request.status_channel,
+                request.config,
+                start,
+                run,
+                waits,
+                tuple(sorted(failed, key=lambda one: one.value)),
+                depends=bool(upstream),
+            )
+            yield _clocked(way.to(evolve(way.state, missions=(*way.state.missions, mission))))
+
+
+def _upstreams(move: Move, upstream: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], Move]]:
+    """AI-22.started: the upstreams that are as good as failed, where that is so read."""
+    unheard = tuple(one for one in upstream if move.state.missions[one].status is Status.STARTED)
+    waited, failed = split(move, AI_22_STARTED, "a") if unheard else (move, None)
+    if waited is not None:
+        yield (), waited
+    if failed is not None:
+        yield unheard, failed
+
+
+def _clocked(move: Move) -> Move:
+    index = len(move.state.missions) - 1
+    mission = move.state.missions[index]
+    move = started(started(move, index, START, "submit"), index, RUN, "submit")
+    if move.state.serving(mission.robot) is not None and "d" in move.state.letters(AI_05):
+        move = started(move, index, START, "connect")
+    return started(move, index, START, "ready") if mission.ready else move
+
+
+# Drives.
+
+
+def _connect(server: Server, _: Connects, __: tuple[int | None, ...]) -> tuple[Step, ...]:
+    move = connects(Move(server))
+    step = _step(server, move, new=(-1,))
+    return (evolve(step, opens=(Opening(topic(move.state.links[-1].slot), -1, kind="connection"),)),)
+
+
+def _link_at(server: Server, ref: int | None) -> int | None:
+    position = -1 if ref is None else ref - 2 * len(server.missions)
+    return position if position >= 0 else None
+
+
+@functools.lru_cache(maxsize=20_000)
+def _line(server: Server, heard: Heard, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+    position = _link_at(server, refs[0] if refs else None)
+    if position is None:
+        return ()
+    named = _meant(server, refs[1]) if heard.named else None
+    header = _meant(server, refs[-1]) if heard.header else None
+    moves = merged(hears(Move(server), server.links[position], heard, named, header))
+    return tuple(_step(server, move) for move in moves)
+
+
+def _meant(server: Server, ref: int | None) -> int:
+    return ref // 2 if ref is not None and ref < 2 * len(server.missions) and ref % 2 else -1
+
+
+def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+    position = _link_at(server, refs[0] if refs else None)
+    if position is None:
+        return ()
+    return tuple(_step(server, move) for move in merged(drops(Move(server), server.links[position])))
+
+
+@functools.lru_cache(maxsize=20_000)
+def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    return tuple(_step(server, _quiet(server, move)) for move in merged(passes(server, event.time)))
+
+
+def _quiet(before: Server, move: Move) -> Move:
+    """The move with what it shows of missions that go on though their robots say nothing."""
+    pairs = zip(before.missions, move.state.missions, strict=True)
+    goes_on = any(one.status is Status.RUNNING is other.status for one, other in pairs)
+    return move.to(move.state, rules.SILENCE.id) if goes_on else move
+
+
+def _urgent(server: Server) -> tuple[Step, ...]:
+    # Decisions alone are kept apart: one that was undone would be due again.
+    return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server))))
+
+
+def _spontaneous(server: Server) -> tuple[Step, ...]:
+    return tuple(_step(server, move) for move in at_any_time(server))
+
+
+# What is seen.
+
+_CANCELED = {"a": "canceled", "b": "failed", "c": "canceled"}
+_ABORTED = {"a": "aborted", "b": "failed", "c": "timed out"}
+"""AI-02: how missions are called that were cancelled and that were aborted."""
+
+
+def _word(mission: Mission, names: str, waiting: str) -> str:
+    """How a mission is shown under AI-02 read as `names` and AI-04 as `waiting`."""
+    if mission.status is Status.CANCELED:
+        return _CANCELED[names]
+    if mission.status is Status.ABORTED:
+        return _ABORTED[names]
+    if mission.status is Status.QUEUED and (mission.waits or mission.doomed):
+        return {"a": "queued", "b": "created"}[waiting]
+    return "lost" if mission.status is Status.LOST else mission.status.value.lower()
+
+
+def _shown(server: Server) -> Iterator[Step]:
+    """The answers to ``statuses``, one for each way in which the readings name what is there."""
+    found: dict[tuple[str, ...], tuple[str, str]] = {}
+    for names, waiting in itertools.product(AI_02.readings, AI_04.readings):
+        shape = tuple(_word(one, names, waiting) for one in server.missions)
+        before = found.get(shape, ("", ""))
+        found[shape] = (before[0] + names * (names not in before[0]), before[1] + waiting * (waiting not in before[1]))
+    handles = tuple(2 * index for index in range(len(server.missions)))
+    told = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
+    for shape, letters in sorted(found.items(), key=lambda one: AI_02.default not in one[1][0]):
+        assumes = tuple(
+            question[tuple(kept)]
+            for question, kept in zip((AI_02, AI_04), letters, strict=True)
+            if len(kept) < len(question.readings)
+        )
+        yield Step(server, answer=Answer(OK, shape), refs=handles, rules=told, assumes=assumes)
+
+
+def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
+    """Whether an answer is one that is allowed; how a mission is called whose robot was lost is nowhere said."""
+    if isinstance(came, Garbled):
+        return Mismatch(OPERATIONS["statuses"].promises[0].id, came.says)
+    if allowed == came:
+        return (Match(),)
+    if not isinstance(allowed, tuple) or not isinstance(came, tuple) or len(came) != len(allowed):
+        return Mismatch(OPERATIONS["statuses"].promises[0].id, "not every mission is shown, or too many are")
+    for one, other in zip(allowed, came, strict=True):
+        if one != other and not (one == "lost" and other in ("failed", "aborted")):
+            return Mismatch(OPERATIONS["statuses"].promises[0].id, f"a mission that is {one} is shown as {other}")
+    return (Match(),)
+
+
+def _matches(view: Sends, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:
+    if isinstance(content, Garbled):
+        return Mismatch(rules.ENVELOPE.id, content.says)
+    if content.kind != "mission":
+        return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
+    wrong = [path for path in content.bare if path != "header.uuid"]
+    if wrong:
+        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number")
+    if content.channel != view.channel:
+        return Mismatch(rules.CHANNEL.id, f"the mission came on channel {content.channel!r}, not {view.channel!r}")
+    if content.what != view.config:
+        return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}")
+    assumes = (AI_28_CONFIG["b" if content.form == "text" else "a"], AI_25_HEADER["n" if content.bare else "s"])
+    told = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
+    return (Match(assumes, ((0, 0),) if content.named else (), told),)
+
+
+# What holds of every server, and what some server can come to.
+
+
+def _one_serves(server: Server) -> bool:
+    served = [one.name for one in server.links if one.serves]
+    return len(served) == len(set(served)) and None not in served
+
+
+INVARIANTS = (
+    Invariant("one-connection-serves-a-robot", "No robot is served on two connections.", _one_serves),
+    Invariant(
+        "what-is-sent-has-no-open-upstream",
+        "A mission that was sent waits for nothing, and no upstream of it has failed.",
+        lambda server: all(not one.waits and not one.doomed for one in server.missions if one.sent),
+    ),
+    Invariant(
+        "what-has-ended-has-no-clock",
+        "No clock runs for a mission that has ended.",
+        lambda server: all(not one.clocks for one in server.missions if one.status in ENDED),
+    ),
+    Invariant(
+        "what-is-under-way-was-sent",
+        "Only a mission that was sent is under way.",
+        lambda server: all(one.sent for one in server.missions if one.status in UNDER_WAY),
+    ),
+)
+
+
+def _some_mission_is(status: Status, server: Server) -> bool:
+    return any(one.status is status for one in server.missions)
+
+
+POSSIBILITIES = tuple(
+    Invariant(
+        f"a-mission-is-{status.name.lower()}",
+        f"Some mission is {status.name}.",
+        functools.partial(_some_mission_is, status),
+    )
+    for status in LIFECYCLE.states
+)
+
+
+def describe(value: object) -> str:
+    """A state, an event, a request, a view or a line in a few words."""
+    from missionfsm.isaac.server.describe import describe as words  # noqa: PLC0415 - words are for people and seldom needed
+
+    return words(value)
+
+
+def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
+    """The mission server with the rules of these operations."""
+    return Spec(
+        system=SYSTEM,
+        title="a mission server",
+        initial=lambda world: Server(world.name_channel, tolerance=world.tolerance),
+        operations=operations,
+        outcomes=functools.partial(_outcomes, operations),
+        drives={
+            one.name: one
+            for one in (
+                Drive("connect", _connect),
+                Drive("line", _line),
+                Drive("disconnect", _disconnect, ends=True),
+                Drive("advance", _advance),
+            )
+        },
+        urgent=_urgent,
+        spontaneous=_spontaneous,
+        matches=_matches,
+        delivery=lambda _: Delivery(),
+        sequence=lambda _: (),
+        names=lambda server: 2 * len(server.missions) + len(server.links),
+        request_operation=lambda request: str(request.operation),
+        ambiguities=AMBIGUITIES,
+        describe=describe,
+        rules=RULES,
+        charts=(LIFECYCLE,),
+        invariants=INVARIANTS,
+        possibilities=POSSIBILITIES,
+        answers=_agrees,
+        abstraction=Abstraction(shape=shape, idle_shape=idle_shape, size=size, extent=extent, outline=outline),
+        rebuilt=specification,
+    )
+
+
+SPEC = specification()

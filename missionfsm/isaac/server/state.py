@@ -1,0 +1,253 @@
+"""The mission server as a state: missions in the order of submission, connections in the order of arrival.
+
+Readings are decided when they matter, and a state remembers which are left (`Server.left`), so that nothing is decided
+twice. Times are whole microseconds that are left, as an interval: a clock strikes at the earliest when `lo` is over and
+at the latest when `hi` is; they differ only where the server is known to look about once a second (AI-39 b) or where
+nothing says when (AI-31 a).
+"""
+
+from __future__ import annotations
+
+import enum
+from typing import Any
+
+from attrs import evolve
+
+from missionfsm.isaac.shared.line import MICROSECONDS
+from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.spec import Emission
+from missionfsm.kernel.values import value
+
+SYSTEM = "isaac.server"
+LOOK = MICROSECONDS
+"""How long a server that looks now and then may take to look, in microseconds (AI-39 b)."""
+
+SILENCE = 10 * MICROSECONDS
+"""How long RUNNING has to be missing at least before that is a loss (AI-31 a). The tester's choice."""
+
+
+class Status(enum.Enum):
+    """Where a mission stands. The names are those of the shipped server."""
+
+    QUEUED = "QUEUED"
+    STARTED = "STARTED"
+    RUNNING = "RUNNING"
+    SUCCESS = "SUCCESS"
+    FAILED = "FAILED"
+    LOST = "FAILED_DISCONNECTED"
+    ABORTED = "FAILED_TIMEDOUT"
+    CANCELED = "FAILED_UPSTREAM"
+
+
+UNDER_WAY = (Status.STARTED, Status.RUNNING)
+FAILURES = (Status.FAILED, Status.LOST, Status.ABORTED, Status.CANCELED)
+
+LIFECYCLE: Chart[Status] = Chart(
+    "mission at the server",
+    Status.QUEUED,
+    (
+        ("send", Status.QUEUED, Status.STARTED),
+        ("report running", Status.STARTED, Status.RUNNING),
+        ("report success", Status.STARTED, Status.SUCCESS),
+        ("report success", Status.RUNNING, Status.SUCCESS),
+        ("report failure", Status.STARTED, Status.FAILED),
+        ("report failure", Status.RUNNING, Status.FAILED),
+        ("time out", Status.QUEUED, Status.ABORTED),
+        ("time out", Status.STARTED, Status.ABORTED),
+        ("time out", Status.RUNNING, Status.ABORTED),
+        ("cancel", Status.QUEUED, Status.CANCELED),
+        ("lose", Status.STARTED, Status.LOST),
+        ("lose", Status.RUNNING, Status.LOST),
+        ("send again later", Status.STARTED, Status.QUEUED),
+        ("send again later", Status.RUNNING, Status.QUEUED),
+    ),
+    {
+        "time out": "while QUEUED only where AI-05 is not read as a, or AI-06 as c, or start_timeout is 0",
+        "lose": "AI-15 c",
+        "send again later": "AI-15 b",
+    },
+)
+"""The lifecycle of one mission; being submitted is its start, and AI-09 b and c are no moves but corrections."""
+
+ENDED = frozenset(LIFECYCLE.final)
+START, RUN, SILENT = "start", "run", "silent"
+
+
+@value(cache_hash=True)
+class Clock:
+    """A clock of a mission that runs.
+
+    Attributes:
+        kind: `START`, `RUN` or `SILENT`.
+        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send`` or ``status``.
+        lo: microseconds until it may strike.
+        hi: microseconds until it must have struck; None: it never has to.
+    """
+
+    kind: str
+    since: str
+    lo: int
+    hi: int | None
+
+
+@value(cache_hash=True)
+class Mission:
+    """A submitted mission.
+
+    Attributes:
+        status_channel: None where the submission names none.
+        config: canonical JSON.
+        start, run: the two timeouts in microseconds; None is infinite.
+        waits: the upstreams that have not ended, by their index.
+        doomed: how upstreams ended that did not succeed.
+        link: the slot of the connection that it was sent on; None before, and where that is gone.
+        sent: whether it was sent.
+        depends: whether it has upstreams at all.
+    """
+
+    robot: str | None
+    channel: str
+    status_channel: str | None
+    config: str
+    start: int | None
+    run: int | None
+    waits: tuple[int, ...] = ()
+    doomed: tuple[Status, ...] = ()
+    status: Status = Status.QUEUED
+    clocks: tuple[Clock, ...] = ()
+    link: int | None = None
+    sent: bool = False
+    depends: bool = False
+
+    @property
+    def ready(self) -> bool:
+        """Whether nothing but its robot keeps it from being sent."""
+        return self.status is Status.QUEUED and not self.waits and not self.doomed
+
+
+@value(cache_hash=True)
+class Report:
+    """A status message: what it says, where, and which missions its identifiers name.
+
+    `named` and `header` are indices of missions; -1 for an identifier that is nobody's; None for none.
+    """
+
+    status: str
+    channel: str
+    named: int | None
+    header: int | None
+
+
+@value(cache_hash=True)
+class Link:
+    """A connection that is open.
+
+    Attributes:
+        slot: tells it from the other open ones.
+        name: the robot's name that it said; None before it said one.
+        serves: whether the missions of that robot go to it.
+        early: statuses that came before the name and are kept (AI-18.early b).
+    """
+
+    slot: int
+    name: str | None = None
+    serves: bool = False
+    early: tuple[Report, ...] = ()
+
+
+Left = tuple[tuple[str, str], ...]
+
+
+@value(cache_hash=True)
+class World:
+    """What a server is given: the channel for names, and by how much times may be off, in microseconds."""
+
+    name_channel: str = "name"
+    tolerance: int = 0
+
+
+@value(cache_hash=True)
+class Server:
+    """A mission server.
+
+    Attributes:
+        left: for the questions that mattered: the letters that are left, by id.
+        tolerance: by how much times may be off in either direction, in microseconds.
+    """
+
+    name_channel: str = "name"
+    missions: tuple[Mission, ...] = ()
+    links: tuple[Link, ...] = ()
+    left: Left = ()
+    tolerance: int = 0
+
+    def letters(self, question: Ambiguity) -> str:
+        """The readings of a question that are left."""
+        for name, letters in self.left:
+            if name == question.id:
+                return letters
+        return "".join(question.readings)
+
+    def link(self, slot: int) -> Link | None:
+        """The connection in a slot."""
+        return next((one for one in self.links if one.slot == slot), None)
+
+    def serving(self, robot: str | None) -> Link | None:
+        """The connection that the missions of a robot go to."""
+        return next((one for one in self.links if one.serves and one.name == robot), None)
+
+
+@value(cache_hash=True)
+class Sends:
+    """A MissionProto that is owed: its channel and its configuration."""
+
+    channel: str
+    config: str
+
+
+@value(cache_hash=True)
+class Move:
+    """Where something leads: the state, what was sent on the way, and why.
+
+    `at` is when it happens, as an interval of microseconds since what caused it; clocks that start count from there.
+    """
+
+    state: Server
+    sent: tuple[tuple[int, int, Sends], ...] = ()
+    rules: tuple[str, ...] = ()
+    at: tuple[int, int] = (0, 0)
+
+    def to(self, state: Server, *rules: str) -> Move:
+        """The same with another state."""
+        return Move(state, self.sent, (*self.rules, *rules), self.at)
+
+    def mission(self, index: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a mission
+        """The same with a mission changed."""
+        server = self.state
+        missions = list(server.missions)
+        missions[index] = evolve(missions[index], **changes)
+        after = Server(server.name_channel, tuple(missions), server.links, server.left, server.tolerance)
+        return Move(after, self.sent, self.rules, self.at)
+
+    def link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
+        """The same with a connection changed."""
+        links = tuple(evolve(one, **changes) if one.slot == slot else one for one in self.state.links)
+        return evolve(self, state=evolve(self.state, links=links))
+
+    def emit(self, slot: int, index: int, view: Sends) -> Move:
+        """The same with a line sent to a connection, about a mission."""
+        return evolve(self, sent=(*self.sent, (slot, index, view)))
+
+
+def topic(slot: int) -> tuple[str, int]:
+    """The topic of the connection in a slot."""
+    return ("link", slot)
+
+
+def emissions(move: Move) -> tuple[Emission, ...]:
+    """What a move owes to the connections; each gets its lines in order."""
+    return tuple(
+        Emission(topic(slot), view, (2 * index + 1,), certain=True)
+        for slot, index, view in sorted(move.sent, key=lambda one: one[0])
+    )

@@ -1,0 +1,162 @@
+"""A line that an implementation sent, as the oracle sees it: its names apart, the rest small and free of times.
+
+Shared by the two systems of ``MissionSubmission › JsonTcpClient Codelet``. Reading is lenient where the readings leave
+a form open (AI-27, AI-28) and notes which form it was; what no reading allows is kept as what is wrong. Pure.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.isaac.wire import strictjson
+from missionfsm.isaac.wire.framing import WireError, decode_line
+from missionfsm.isaac.wire.messages import Message, MissionProto, MissionStatusProto, TextProto, Uuid
+from missionfsm.kernel.codec import JSON, Garbled
+from missionfsm.kernel.history import Name
+from missionfsm.kernel.rules import Document
+
+MISSION_SUBMISSION = Document("MissionSubmission", "Mission Submission (Isaac SDK)")
+
+MICROSECONDS = 1_000_000
+"""The models count time in whole microseconds: sums of them meet a deadline exactly."""
+
+_HEADER_INTEGERS = ("pubtime", "acqtime", "proto")
+
+
+@frozen(cache_hash=True)
+class Said:
+    """One message, without its mission's identifier and its times.
+
+    Attributes:
+        kind: ``mission``, ``status`` or ``text``.
+        channel: the header's.
+        what: the configuration as canonical JSON, the status in lower case, or the text.
+        form: how it was written: ``object`` or ``text`` (a configuration), ``upper``, ``lower`` or ``number`` (status).
+        named: whether it carries a mission's identifier.
+        header_named: whether the header carries an identifier that counts (only where the caller asked for it).
+        bare: paths of 64-bit integers that came as numbers.
+    """
+
+    kind: str
+    channel: str
+    what: str
+    form: str = ""
+    named: bool = False
+    header_named: bool = False
+    bare: tuple[str, ...] = ()
+
+
+def uuid_name(uuid: Uuid) -> Name:
+    """The name under which the oracle knows a mission by its identifier."""
+    return ("uuid", uuid.value)
+
+
+def uuid_json(name: Any) -> JSON:  # noqa: ANN401 - a name
+    """An identifier's name as the wire has it: two decimal strings."""
+    uuid = Uuid.of(name[1])
+    return {"lower": str(uuid.lower), "upper": str(uuid.upper)}
+
+
+def new_uuid(serial: int) -> Name:
+    """An identifier whose halves differ and are too large for a double; another one for every serial number."""
+    lower = (serial * 0x9E3779B97F4A7C15 + 0x7F4A7C15F39CC061) % (1 << 64) | 1
+    upper = (serial * 0xC2B2AE3D27D4EB4F + 0x165667B19E3779F9) % (1 << 64) | 1 << 62 | 1
+    return ("uuid", upper << 64 | lower)
+
+
+def canonical(text: str) -> str | None:
+    """A JSON object's text in one form for all texts that mean the same; None for what is no JSON object.
+
+    Keys are sorted; a number is what it is worth, so 1 and 1.0 are one.
+    """
+    value = strictjson.parse(text)
+    if not isinstance(value, dict):
+        return None
+    return json.dumps(_plain(value), sort_keys=True, separators=(",", ":"))
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401 - JSON
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value
+
+
+def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], Said | Garbled]:
+    """The names in a line (the payload's identifier, then if `header` is asked for the header's), and the rest."""
+    if not isinstance(line, str):
+        return (), Garbled(f"a line is text, not {strictjson.shown(line)}")
+    if "\n" in line.removesuffix("\n"):
+        return (), Garbled("the line holds newlines, which separate messages")
+    found = decode_line(line.removesuffix("\n").removesuffix("\r").encode(errors="surrogatepass"))
+    if not found:
+        return (), Garbled("the line is empty")
+    first = found[0]
+    if isinstance(first, WireError):
+        return (), Garbled(f"{first.path}: {first.problem}" if first.path else first.problem)
+    raw = json.loads(line)
+    return _named(first, raw, header=header)
+
+
+def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], Said | Garbled]:
+    payload = message.payload
+    bare = _bare(raw)
+    channel = message.header.channel
+    if isinstance(payload, TextProto):
+        return (), Said("text", channel, payload.text, bare=bare)
+    names: list[Name] = []
+    named = payload.uuid is not None and payload.uuid.value != 0
+    if named and payload.uuid is not None:
+        names.append(uuid_name(payload.uuid))
+    header_named = header and message.header.uuid is not None
+    if header_named and message.header.uuid is not None:
+        names.append(uuid_name(message.header.uuid))
+    if isinstance(payload, MissionProto):
+        what = canonical(payload.config)
+        if what is None:
+            return tuple(names), Garbled("the configuration is no JSON object")
+        form = "text" if isinstance((raw["payload"].get("config") or {}).get("serialized"), str) else "object"
+        return tuple(names), Said("mission", channel, what, form, named, header_named, bare)
+    assert isinstance(payload, MissionStatusProto)  # noqa: S101 - the only kind that is left
+    written = raw["payload"].get("missionStatus")
+    form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
+    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, bare)
+
+
+def _bare(raw: JSON) -> tuple[str, ...]:
+    """Where a 64-bit integer came as a number."""
+    found = [f"header.{key}" for key in _HEADER_INTEGERS if isinstance(raw["header"].get(key), int)]
+    for place in ("header", "payload"):
+        uuid = raw[place].get("uuid")
+        if isinstance(uuid, dict) and any(isinstance(uuid.get(half), int) for half in ("lower", "upper")):
+            found.append(f"{place}.uuid")
+    return tuple(found)
+
+
+def to_json(said: Said | Garbled) -> JSON:
+    """What is left of a line once its names are apart, as JSON; `from_json` undoes it."""
+    if isinstance(said, Garbled):
+        return {"garbled": said.says}
+    return [
+        said.kind,
+        said.channel,
+        said.what,
+        said.form,
+        said.named,
+        said.header_named,
+        list(said.bare),
+    ]
+
+
+def from_json(rest: JSON) -> Said | Garbled:
+    """What `to_json` was made of."""
+    if isinstance(rest, dict):
+        return Garbled(rest["garbled"])
+    *first, bare = rest
+    return Said(*first, bare=tuple(bare))  # type: ignore[misc]  # the rest are those before it

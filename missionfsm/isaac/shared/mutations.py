@@ -1,0 +1,48 @@
+"""How a message may be wrong, whoever sends it: one wrong thing at a time, to test the oracle."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from missionfsm.isaac.wire import strictjson
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.system import Bend
+
+
+def changed(change: Callable[[JSON], object]) -> Callable[[JSON], JSON]:
+    """A change of the object that a line holds."""
+
+    def bend(line: JSON) -> JSON:
+        message = json.loads(line)
+        change(message)
+        return strictjson.compact(message)
+
+    return bend
+
+
+def _bare_uuid(message: JSON) -> None:
+    uuid = message["payload"].get("uuid", {})
+    uuid.update({half: int(value) for half, value in uuid.items()})
+
+
+def swapped(message: JSON) -> None:
+    """The halves of the mission's identifier change places."""
+    uuid = message["payload"].get("uuid", {})
+    uuid.update(lower=uuid.get("upper", "0"), upper=uuid.get("lower", "0"))
+
+
+def line_bends(envelope: str, integers: str, channel: str) -> tuple[Bend, ...]:
+    """Wrong lines, for the rules about the envelope, about integers and about the channel of messages."""
+    return (
+        Bend(envelope, "sends the payload alone", lambda line: strictjson.compact(json.loads(line)["payload"])),
+        Bend(envelope, "sends one message on several lines", lambda line: json.dumps(json.loads(line), indent=1)),
+        Bend(envelope, "sends half a line", lambda line: line[: len(line) // 2]),
+        Bend(integers, "writes the mission's identifier in numbers", changed(_bare_uuid)),
+        Bend(
+            integers,
+            "writes the time as a number",
+            changed(lambda message: message["header"].update(pubtime=int(message["header"]["pubtime"]))),
+        ),
+        Bend(channel, "sends on another channel", changed(lambda one: one["header"].update(channel="elsewhere"))),
+    )

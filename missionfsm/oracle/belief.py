@@ -1,0 +1,381 @@
+"""What an implementation may be doing, given what was observed of it: the belief automaton, built as it is walked.
+
+A `Belief` is where one observed conversation stands. Its node is the set of all explanations; an event leads to the
+next one. Nodes are interned and edges remembered in an `Automaton`, as a regular-expression engine builds its DFA: the
+first walk along an edge computes, the second is a dictionary look-up. Names are kept beside the automaton, numbered in
+the order in which the explanations mention them, so that the same situation with other names is the same node.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Hashable, Iterable
+from typing import Any
+
+from attrs import define, field
+
+from missionfsm.kernel.history import (
+    Called,
+    Cancelled,
+    Driven,
+    Ended,
+    Event,
+    Name,
+    Received,
+    Returned,
+    Settled,
+)
+from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.spec import Spec
+from missionfsm.oracle.explanation import GONE, Explanation, rename
+from missionfsm.oracle.subsumption import surviving_names
+from missionfsm.oracle.successors import Moves
+from missionfsm.oracle.transition import Oracle
+
+Tally = defaultdict[int, int]
+"""How often which set of rules was exercised; an automaton numbers the sets."""
+_NO_MARKS: dict[Hashable, int] = {}
+_LARGER = ("larger",)
+REMEMBERED = 100_000
+"""How many names that are gone are remembered, so that one that comes again is noticed."""
+
+NODES = 50_000
+"""How many nodes an automaton keeps before it starts over."""
+
+
+@define(eq=False, slots=True)
+class Node:
+    """All explanations of what was observed, and the edges that were walked from here."""
+
+    explanations: tuple[Explanation, ...]
+    width: int
+    next: dict[Any, Edge] = field(factory=dict, repr=False)
+
+
+@define(eq=False, slots=True)
+class Edge:
+    """Where an event leads: the next node and what becomes of the names.
+
+    Attributes:
+        keep: for every name of the next node its number before (new names count on from the width); None: unchanged.
+        retired: numbers of names that are gone for good.
+        exercises: which rules it exercises, as the automaton numbers such sets.
+        touched: the bits of the ambiguities on which this event's explanations depend.
+        appends: whether nothing becomes of the names before but that others follow them.
+        cuts: whether nothing becomes of the names but that the last ones are left out.
+    """
+
+    node: Node
+    keep: tuple[int, ...] | None
+    retired: tuple[int, ...]
+    exercises: int
+    touched: int
+    appends: bool = False
+    cuts: bool = False
+
+
+class Automaton:
+    """The belief automaton of a spec, as far as it has been walked.
+
+    Args:
+        spec: the system.
+        driven: names of the drives that a tester commands.
+        assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
+
+    Attributes:
+        tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
+    """
+
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
+        self.spec = spec
+        self.assumed = assumed
+        self.moves = Moves(spec, driven, assumed)
+        self.oracle = Oracle(self.moves)
+        self._nodes: dict[tuple[Explanation, ...], Node] = {}
+        self._edges = 0
+        self._rules: dict[tuple[str, ...], int] = {}
+        self.tally: Tally = defaultdict(int)
+
+    def start(self, world: object) -> Node:
+        """The node in which a fresh instance in this world is."""
+        state = self.spec.initial(world)
+        unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
+        return self._intern((Explanation(state, unseen, self.assumed),), 0)
+
+    def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
+        node = self._nodes.get(explanations)
+        if node is None:
+            if len(self._nodes) >= NODES:
+                self._start_over()
+            node = self._nodes[explanations] = Node(explanations, width)
+        return node
+
+    def _start_over(self) -> None:
+        """Forget everything but what the rules are that were exercised."""
+        for node in self._nodes.values():
+            node.next.clear()
+        self._nodes.clear()
+        self._edges = 0
+        self.moves.forget()
+
+    def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
+        """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
+        kind, *what = symbol
+        sightings = self.oracle.step(node.explanations, kind, *what)
+        explanations = tuple(sighting.explanation for sighting in sightings)
+        new = surviving_names(explanations)
+        retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
+        if retired:
+            left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
+            explanations = tuple(one.but(gone=left[id(one)]) for one in explanations)
+        numbered = tuple(rename(one, new) for one in explanations)
+        next_node = self._intern(numbered, len(new))
+        keep = tuple(new)
+        touched = self._touched({one.assumed for one in node.explanations}, {one.assumed for one in explanations})
+        in_order = keep == tuple(range(len(keep)))
+        rules = tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules))
+        edge = Edge(
+            next_node,
+            None if in_order and len(keep) == node.width and not retired else keep,
+            retired,
+            self._rules.setdefault(rules, len(self._rules)),
+            touched,
+            len(keep) > node.width and in_order and not retired,
+            len(keep) < node.width and in_order and not retired,
+        )
+        node.next[symbol] = edge
+        self._edges += 1
+        return edge
+
+    def _touched(self, before: set[int], after: set[int]) -> int:
+        """The bits of the ambiguities of which other readings are possible now."""
+        touched = 0
+        if before != after:
+            for ambiguity in self.spec.ambiguities:
+                if {one & ambiguity.group for one in before} != {one & ambiguity.group for one in after}:
+                    touched |= ambiguity.group
+        return touched
+
+    def exercised(self, tally: Tally | None = None) -> dict[str, int]:
+        """How often each rule was exercised, by a tally of beliefs that walked here; by the automaton's own if none."""
+        sets, times = tuple(self._rules), dict[str, int]()
+        for number, walked in (self.tally if tally is None else tally).items():
+            for rule in sets[number]:
+                times[rule] = times.get(rule, 0) + walked
+        return times
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """How many nodes and edges have been built."""
+        return len(self._nodes), self._edges
+
+
+class Belief:
+    """Where one observed conversation stands.
+
+    ``observe`` returns False once no explanation is left; from then on it stays so, and `node` is the last one that
+    had explanations.
+
+    Args:
+        automaton: the automaton that it walks.
+        world: where it begins.
+        tally: counts what is exercised; the automaton's own if none.
+    """
+
+    __slots__ = (
+        "_given_up",
+        "_marks",
+        "_names",
+        "_numbers",
+        "_renumbered",
+        "_retired",
+        "_tally",
+        "automaton",
+        "broken",
+        "node",
+        "touched",
+    )
+
+    def __init__(self, automaton: Automaton, world: object, tally: Tally | None = None) -> None:
+        self.automaton = automaton
+        self._tally = automaton.tally if tally is None else tally
+        self.node = automaton.start(world)
+        self.broken = False
+        self.touched = 0
+        self._names: list[Name] = []
+        self._numbers: dict[Name, int] = {}
+        self._retired: dict[Name, None] = {}
+        self._given_up: dict[Name, None] = {}
+        self._marks: dict[Name, dict[Hashable, int]] = {}
+        self._renumbered: set[tuple[Name, Hashable]] = set()
+
+    def observe(self, event: Event) -> bool:
+        """Take one event into account; False when nothing explains it.
+
+        Raises:
+            ExhaustedError: it costs too much to decide.
+        """
+        if self.broken:
+            return False
+        kind = type(event)
+        if self._given_up and (kind is Received or kind is Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
+            return True  # what still comes on a stream that was given up means nothing
+        symbol, new = self.symbol(event)
+        edge = self.node.next.get(symbol)
+        if edge is None:
+            edge = self.automaton.edge(self.node, symbol)
+        self._tally[edge.exercises] += 1
+        if not edge.node.explanations:
+            self.broken = True
+            return False
+        if kind is Received and event.marks:  # type: ignore[union-attr]
+            self._mark(event.channel, event.marks)  # type: ignore[union-attr]
+        self.node = edge.node
+        self.touched |= edge.touched
+        if edge.keep is not None:
+            self._rename(edge, edge.keep, new)
+        if kind is Driven:
+            self._start_over(event.event)  # type: ignore[union-attr]
+        elif kind is Cancelled:
+            self._given_up[event.channel] = None  # type: ignore[union-attr]
+            self._unmark(event.channel)  # type: ignore[union-attr]
+            if len(self._given_up) > REMEMBERED:
+                del self._given_up[next(iter(self._given_up))]
+        return True
+
+    def symbol(self, event: Event) -> tuple[tuple[Any, ...], list[Name]]:
+        """The event with numbers for names, as the automaton knows it, and the names that are new."""
+        numbers = self._numbers
+        new: list[Name] = []
+        if type(event) is Called:
+            args = self._number(event.names, new) if event.names else ()
+            call = GONE if event.lost else numbers.get(event.call)
+            if call is None:
+                call = self._number_anew(event.call, new)
+            return (Called, event.request, args, event.lost, call), new
+        if type(event) is Returned:
+            args = self._number(event.names, new) if event.names else ()
+            return (Returned, event.answer, args, numbers.get(event.call, GONE)), new
+        if type(event) is Received:
+            channel = numbers.get(event.channel)
+            if channel is None:
+                channel = self._number_anew(event.channel, new)
+            args = self._number(event.names, new) if event.names else ()
+            relations = self._relations(event.channel, event.marks) if event.marks else ()
+            return (Received, event.content, args, relations, channel), new
+        if type(event) is Settled:
+            return (Settled,), new
+        if type(event) is Driven:
+            return (Driven, event.event, self._number(event.names, new)), new
+        if type(event) is Ended:
+            (channel,) = self._number((event.channel,), new)
+            return (Ended, event.code, channel), new
+        if type(event) is Cancelled:
+            return (Cancelled, numbers.get(event.channel, GONE)), new
+        message = f"not an event: {event!r}"
+        raise TypeError(message)
+
+    def _number(self, names: tuple[Name, ...], new: list[Name]) -> tuple[int, ...]:
+        numbers = tuple(map(self._numbers.get, names))
+        if None in numbers:
+            return tuple(
+                self._number_anew(name, new) if number is None else number
+                for name, number in zip(names, numbers, strict=True)
+            )
+        return numbers  # type: ignore[return-value]  # none is None
+
+    def _number_anew(self, name: Name, new: list[Name]) -> int:
+        if name in self._retired:
+            return GONE
+        if name in new:
+            return self.node.width + new.index(name)
+        new.append(name)
+        return self.node.width + len(new) - 1
+
+    def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
+        """How the numbers of a message compare with those before; asking changes nothing."""
+        tracks = self._marks.get(channel, _NO_MARKS)
+        if len(marks) == 1 and marks[0][1] > tracks.get(marks[0][0], marks[0][1]) and marks[0][1] > 0:
+            return _LARGER  # nearly always, and faster so
+        relations = []
+        for track, number in marks:
+            found = relation(tracks.get(track), number)
+            if found in ("smaller", "equal") and (channel, track) in self._renumbered:
+                found = "renumbered"
+            relations.append(found)
+        return tuple(relations)
+
+    def _mark(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> None:
+        tracks = self._marks.setdefault(channel, {})
+        if not self._renumbered:
+            tracks.update(marks)
+            return
+        for track, number in marks:
+            # A number that is smaller is the first since the numbers started over; an equal one may be the last before.
+            if number < tracks.get(track, number):
+                self._renumbered.discard((channel, track))
+            tracks[track] = number
+
+    def _unmark(self, channel: Name) -> None:
+        """A channel numbers nothing any more."""
+        if self._renumbered:
+            self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
+        self._marks.pop(channel, None)
+
+    def _start_over(self, event: Any) -> None:  # noqa: ANN401 - a drive's event
+        renumbers = self.automaton.spec.drives[event.name].renumbers
+        for track in renumbers(event) if renumbers else ():
+            self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)
+
+    def _rename(self, edge: Edge, keep: tuple[int, ...], new: list[Name]) -> None:
+        if edge.appends and len(keep) == len(self._names) + len(new):
+            for name in new:
+                self._numbers[name] = len(self._names)
+                self._names.append(name)
+            return
+        if edge.cuts:
+            while len(self._names) > len(keep):
+                del self._numbers[self._names.pop()]
+            return
+        names = self._names + new
+        for number in edge.retired:
+            self._retire(names[number])
+        self._names = [names[number] for number in keep]
+        self._numbers = {name: number for number, name in enumerate(self._names)}
+
+    def _retire(self, name: Name) -> None:
+        self._retired[name] = None
+        self._unmark(name)
+        if len(self._retired) > REMEMBERED:
+            del self._retired[next(iter(self._retired))]
+
+    def name(self, number: int) -> Name | None:
+        """The observed name with a number, or None for one that nobody has seen."""
+        return self._names[number] if 0 <= number < len(self._names) else None
+
+    @property
+    def readings(self) -> dict[str, tuple[str, ...]]:
+        """For every ambiguity that mattered so far: the readings that some explanation still follows."""
+        found = {}
+        for ambiguity in self.automaton.spec.ambiguities:
+            if self.touched & ambiguity.group or any(
+                one.assumed & ambiguity.group != ambiguity.group for one in self.node.explanations
+            ):
+                union = 0
+                for one in self.node.explanations:
+                    union |= one.assumed
+                found[ambiguity.id] = ambiguity.possible(union)
+        return found
+
+
+def relation(before: int | None, number: int) -> str:
+    """How a number compares with its predecessor on a track: one of `missionfsm.kernel.spec.RELATIONS`."""
+    if number < 0:
+        return "negative"
+    if number == 0:
+        return "zero"
+    if before is None:
+        return "first"
+    if number == before:
+        return "equal"
+    return "larger" if number > before else "smaller"

@@ -1,0 +1,79 @@
+"""Of many explanations only those that the others do not already stand for.
+
+Three things keep a belief small: explanations that differ in a single question become one; one that has used up more
+lost calls than another at the same point is left out; and so is one that another can silently become.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from missionfsm.kernel.readings import merge
+from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, within
+from missionfsm.oracle.successors import Moves, Place, Sighting, place, point
+
+
+def sift(moves: Moves, found: Iterable[Sighting]) -> tuple[Sighting, ...]:
+    """Those among the explanations that the others do not already stand for."""
+    points: dict[Place, list[Sighting]] = {}
+    for sighting in found:
+        here = place(sighting.explanation)
+        points[here] = _widened(moves, points.get(here, []), sighting)
+    kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
+    return tuple(kept) if len(kept) <= 1 else tuple(_without_later(moves, kept))
+
+
+def _widened(moves: Moves, sightings: list[Sighting], new: Sighting) -> list[Sighting]:
+    """Explanations at one point with one more; those that differ in a single question become one."""
+    for position, other in enumerate(sightings):
+        union = merge(other.explanation.assumed, new.explanation.assumed, moves.groups)
+        if union is not None:
+            if union == other.explanation.assumed:
+                return sightings
+            rules = tuple(dict.fromkeys(other.rules + new.rules))
+            rest = [*sightings[:position], *sightings[position + 1 :]]
+            return _widened(moves, rest, Sighting(new.explanation.but(assumed=union), rules))
+    return [*sightings, new]
+
+
+def _without_later(moves: Moves, sightings: list[Sighting]) -> Iterator[Sighting]:
+    """Those that no other can silently become."""
+    reached: dict[Place, int] = {}
+    for sighting in sightings:
+        here = place(sighting.explanation)
+        if here in reached and sighting.explanation.assumed | reached[here] == reached[here]:
+            covered = True
+        else:
+            covered = False
+            yield sighting
+        base = reached[here] if covered else sighting.explanation.assumed
+        for later in moves.silent(sighting.explanation.but(assumed=base)):
+            key = place(later.explanation)
+            if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
+                reached[key] = later.explanation.assumed
+
+
+def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
+    """Without those that have used up more lost calls than another at the same point, assuming no less."""
+    if not any(sighting.explanation.lost for sighting in sightings):
+        return sightings
+    kept: dict[Place, list[tuple[int, Lost, Sighting]]] = {}
+    for sighting in sorted(sightings, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
+        lost = sighting.explanation.lost
+        others = kept.setdefault(point(sighting.explanation), [])
+        assumed = sighting.explanation.assumed
+        if not any(assumed | other == other and within(lost, left) for other, left, _ in others):
+            others.append((assumed, lost, sighting))
+    return [sighting for others in kept.values() for _, _, sighting in others]
+
+
+def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:
+    """New numbers for the observed names that are still carried, in the order of first mention.
+
+    A name that is gone in some explanations and was never anything's in others is carried on as well.
+    """
+    explanations = tuple(explanations)
+    seen = dict.fromkeys(name for one in explanations for name in mentioned(one) if name > GONE)
+    everywhere = set.intersection(*(set(one.gone) for one in explanations)) if explanations else set()
+    seen.update(dict.fromkeys(name for one in explanations for name in one.gone if name not in everywhere))
+    return {name: number for number, name in enumerate(seen)}

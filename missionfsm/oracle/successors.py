@@ -1,0 +1,289 @@
+"""What one explanation can become: by a step that is known, or unseen, when nobody has said anything.
+
+A call in flight takes effect, a lost one does, the system and its surroundings act by themselves. `Moves` says so for
+one explanation at a time; `missionfsm.oracle.transition` puts it together with what is observed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator
+from typing import Any
+
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import ANYTHING, meet
+from missionfsm.kernel.spec import Match, Mismatch, Spec, Step
+from missionfsm.kernel.values import value
+from missionfsm.oracle.explanation import (
+    GONE,
+    Explanation,
+    InFlight,
+    Lost,
+    Names,
+    Owed,
+    Ready,
+    changes,
+    take,
+    tidy,
+    unify,
+    within,
+    without_lost,
+)
+
+_EQUAL = (Match(),)
+"""The one way in which equal answers agree."""
+
+Place = tuple[Hashable, ...]
+Seen = dict[Place, list[tuple[int, Lost]]]
+"""At each point: what was assumed there, with which lost calls left."""
+
+LAG = 6
+"""How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones."""
+
+BUDGET = 20_000
+"""How many explanations one event may cost before the run is given up as inconclusive."""
+
+
+class ExhaustedError(Exception):
+    """An event has more explanations than the budget allows."""
+
+
+@value
+class Sighting:
+    """An explanation that an observation leaves, and the rules that were exercised on the way."""
+
+    explanation: Explanation
+    rules: tuple[str, ...] = ()
+
+
+class Moves:
+    """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
+
+    It holds caches and nothing that could change an answer.
+
+    Args:
+        spec: the system.
+        driven: the drives that a tester commands; what the others do may happen at any time by itself.
+        assumed: what every explanation assumes; steps that contradict it are left out from the start.
+        budget: explanations that a single event may cost.
+    """
+
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
+        self.spec = spec.decided(assumed) if spec.decided and assumed != ANYTHING else spec
+        self.driven = frozenset(driven)
+        self.assumed = assumed
+        self.budget = budget
+        self.groups = tuple(ambiguity.group for ambiguity in spec.ambiguities)
+        self._outcomes: dict[Any, tuple[Step, ...]] = {}
+        self._effects: dict[Any, tuple[Step, ...]] = {}
+        self._urgent: dict[Any, tuple[Step, ...]] = {}
+        self._unseen: dict[Any, tuple[Step, ...]] = {}
+        self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
+        self._spent = 0
+
+    def reset(self) -> None:
+        """Start counting against the budget anew."""
+        self._spent = 0
+
+    # What the spec says, remembered.
+
+    def forget(self) -> None:
+        """Drop what the spec said; it will say the same again."""
+        for memory in (self._outcomes, self._effects, self._urgent, self._unseen, self._matches):
+            memory.clear()
+
+    def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+        """Every answer to a request in a state."""
+        key = (state, request, refs)
+        found = self._outcomes.get(key)
+        if found is None:
+            found = self._outcomes[key] = self._possible(self.spec.outcomes(state, request, refs))
+        return found
+
+    def _possible(self, steps: Iterable[Step]) -> tuple[Step, ...]:
+        """Those steps that do not contradict what everybody assumes."""
+        return tuple(step for step in steps if meet(self.assumed, step.assumes))
+
+    def effects(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+        """The outcomes of a request in a state that change something."""
+        key = (state, request, refs)
+        found = self._effects.get(key)
+        if found is None:
+            steps = self.outcomes(state, request, refs)
+            found = self._effects[key] = tuple(step for step in steps if changes(state, step))
+        return found
+
+    def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+        """What must happen before things have settled."""
+        found = self._urgent.get(state)
+        if found is None:
+            found = self._urgent[state] = self._possible(self.spec.urgent(state))
+        return found
+
+    def unseen(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+        """What may happen at any time although nobody asked for it."""
+        found = self._unseen.get(state)
+        if found is None:
+            steps = list(self.spec.spontaneous(state))
+            for drive in self.spec.drives.values():
+                if drive.name not in self.driven:
+                    for event in drive.by_itself:
+                        steps += drive.steps(state, event, ())
+            found = self._unseen[state] = self._possible(steps)
+        return found
+
+    def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
+        """The ways in which a message shows what is owed."""
+        key = (owed.view, content)
+        found = self._matches.get(key)
+        if found is None:
+            found = self._matches[key] = self.spec.matches(owed.view, content)
+        return found
+
+    def agreements(self, allowed: Answer, given: Answer) -> tuple[Match, ...]:
+        """The ways in which an answer is the one that is allowed."""
+        if allowed == given:
+            return _EQUAL
+        if self.spec.answers is None or (allowed.code, allowed.unordered) != (given.code, given.unordered):
+            return ()
+        key = (allowed, given)
+        found = self._matches.get(key)
+        if found is None:
+            found = self._matches[key] = self.spec.answers(allowed.shape, given.shape)
+        return () if isinstance(found, Mismatch) else found
+
+    # How one explanation goes on.
+
+    def advance(
+        self, explanation: Explanation, step: Step, given: Names = (), besides: int | None = None
+    ) -> tuple[Explanation, Names] | None:
+        """The explanation after a step; calls in flight remember what they could have been answered before it.
+
+        The call `besides` does not need to: whoever looks for its answer looks at every explanation on the way.
+        """
+        if explanation.calls and step.after is not explanation.state:
+            explanation = self._remember(explanation, besides)
+        passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
+        return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)
+
+    def _remember(self, explanation: Explanation, besides: int | None) -> Explanation:
+        if all(call.done or call.name == besides for call in explanation.calls):
+            return explanation
+        calls = []
+        for call in explanation.calls:
+            if call.done is None and call.name != besides:
+                known = dict.fromkeys(call.ready)
+                known.update(dict.fromkeys(self._idle_answers(explanation, call)))
+                call = InFlight(call.name, call.request, call.args, tuple(known), call.done)  # noqa: PLW2901 - the same call, knowing more
+            calls.append(call)
+        return explanation.but(calls=tuple(calls))
+
+    def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
+        refs = tuple(explanation.ref(arg) for arg in call.args)
+        for step in self.outcomes(explanation.state, call.request, refs):
+            if step.answer is not None and step.applied and not changes(explanation.state, step):
+                yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
+
+    def late_answers(self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]) -> Iterator[Ready]:
+        """What a call may be answered that is given up although it takes effect, now or later."""
+        for step in self.outcomes(explanation.state, call.request, refs):
+            if step.answer is not None and not step.applied:
+                yield Ready(step.answer, (), step.assumes, step.rules)
+
+    def addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
+        """The explanation with the positions of a request's names.
+
+        A name that nothing has may be that of something whose name was not seen yet.
+        """
+        yield explanation, tuple(explanation.ref(arg) for arg in args)
+        for arg in args:
+            if arg != GONE and explanation.ref(arg) is None:
+                for own in explanation.names:
+                    if own < GONE:
+                        bound = unify(explanation, [(own, arg)])
+                        if bound:
+                            yield from self.addressed(bound, args)
+
+    def silent(self, explanation: Explanation, besides: int | None = None) -> Iterator[Sighting]:
+        """Everything that an explanation can become next without anybody seeing it.
+
+        Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves.
+        """
+        for step in self.urgent(explanation.state):
+            yield from self._sight(explanation, step, besides)
+        if all(len(channel.owed) < LAG for channel in explanation.channels):
+            for step in self.unseen(explanation.state):
+                yield from self._sight(explanation, step, besides)
+        for position, (request, args, _) in enumerate(explanation.lost):
+            for where, refs in self.addressed(explanation, args):
+                for step in self.effects(where.state, request, refs):
+                    if not step.opens:
+                        rest = where.but(lost=without_lost(explanation.lost, position))
+                        yield from self._sight(rest, step, besides)
+        for position, call in enumerate(explanation.calls):
+            if call.done is None and call.name != besides:
+                yield from self._take_effect(explanation, position, besides)
+
+    def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
+        taken = self.advance(explanation, step, besides=besides)
+        if taken:
+            yield Sighting(tidy(taken[0]), step.rules)
+
+    def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
+        for where, refs in self.addressed(explanation, explanation.calls[position].args):
+            for step in self.effects(where.state, where.calls[position].request, refs):
+                if step.answer is None:
+                    continue
+                taken = self.advance(where, step, besides=besides)
+                if taken:
+                    after, names = taken
+                    done = Ready(step.answer, names, (), step.rules)
+                    calls = list(after.calls)
+                    late = () if step.opens else tuple(self.late_answers(where, where.calls[position], refs))
+                    calls[position] = InFlight(calls[position].name, calls[position].request, (), late, done)
+                    yield Sighting(tidy(after.but(calls=tuple(calls))), step.rules)
+
+    def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:
+        """Explanations and everything that they can silently become, nearest first.
+
+        One that has used up more lost calls than another at the same point is left out, and so is all that follows.
+        """
+        seen: Seen = {}
+        todo = [Sighting(start) for start in starts]
+        while todo:
+            later: list[Sighting] = []
+            for sighting in todo:
+                if self.outdone(seen, sighting.explanation):
+                    continue
+                yield sighting
+                later += (
+                    Sighting(next_one.explanation, sighting.rules + next_one.rules)
+                    for next_one in self.silent(sighting.explanation, besides)
+                )
+            todo = later
+
+    def outdone(self, seen: Seen, explanation: Explanation) -> bool:
+        """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
+        self.spend()
+        key = point(explanation)
+        others = seen.setdefault(key, [])
+        for assumed, left in others:
+            if explanation.assumed | assumed == assumed and within(explanation.lost, left):
+                return True
+        others.append((explanation.assumed, explanation.lost))
+        return False
+
+    def spend(self) -> None:
+        """Count one thing more that was looked at. Raises ExhaustedError when it is too many for one event."""
+        self._spent += 1
+        if self._spent > self.budget:
+            raise ExhaustedError
+
+
+def place(explanation: Explanation) -> Place:
+    """Where an explanation is, whatever it assumed."""
+    return (*point(explanation), explanation.lost)
+
+
+def point(explanation: Explanation) -> Place:
+    """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
+    return explanation.state, explanation.names, explanation.calls, explanation.channels, explanation.gone

@@ -1,0 +1,298 @@
+"""The history format, version 1: lines of JSON to events, strictly.
+
+A transcript reads one conversation line by line. Whatever its author got wrong is refused with `UnreadableError`,
+which says what is wrong; whatever the implementation got wrong becomes an event that nothing explains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.codec import JSON, Codec, UnreadableError
+from missionfsm.kernel.history import (
+    Answer,
+    Called,
+    Cancelled,
+    Driven,
+    Ended,
+    Event,
+    Name,
+    Received,
+    Returned,
+    Settled,
+)
+from missionfsm.kernel.rules import OK, STATUS_NUMBERS
+from missionfsm.kernel.text import brief
+
+VERSION = 1
+_SETTLED: tuple[Event, ...] = (Settled(),)
+_ANY_KEYS = ("at", "robot")
+_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", *_ANY_KEYS))
+STREAM_KEYS = ("stream", "message", "closed", "error")
+_KEYS: Mapping[str, frozenset[str]] = {
+    keys[0]: frozenset((*keys, *_ANY_KEYS))
+    for keys in (
+        ("call", "method", "params"),
+        ("return", "result", "error"),
+        STREAM_KEYS,
+        ("connection", "line"),
+        ("drive",),
+        ("settled",),
+    )
+}
+"""What each kind of line may have; one that has more means something that would be passed over."""
+REMEMBERED = 20_000
+"""How many different requests and messages a transcript knows again without reading them anew."""
+
+
+_Reader = Callable[[dict[str, Any]], tuple[Event, ...]]
+
+
+@frozen
+class Head:
+    """The first line of a history.
+
+    `drives` is an addition to the format: the drives that the tester commanded. Without it the environment may have
+    done everything by itself.
+    """
+
+    system: str
+    world: JSON
+    drives: tuple[str, ...] = ()
+
+
+def _wrong(says: str) -> UnreadableError:
+    return UnreadableError(says)
+
+
+def _known_keys(kind: str, line: dict[str, Any], known: frozenset[str]) -> None:
+    if not line.keys() <= known:
+        unknown = next(key for key in line if key not in known)
+        raise _wrong(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
+
+
+class Ids:
+    """A set of whole numbers that costs next to nothing where they are close together."""
+
+    def __init__(self) -> None:
+        self._blocks: dict[int, int] = {}
+        self._next = 1  # all from 1 up to, but not with, this one are in the set: most clients count
+
+    def add(self, number: int) -> bool:
+        """Add a number; whether it is new."""
+        if number == self._next and not self._blocks:
+            self._next += 1
+            return True
+        if 0 < number < self._next:
+            return False
+        block, bit = number >> 8, 1 << (number & 255)
+        bits = self._blocks.get(block, 0)
+        if bits & bit:
+            return False
+        self._blocks[block] = bits | bit
+        return True
+
+
+def head(line: JSON) -> Head:
+    """What the first line says. Raises UnreadableError."""
+    if not isinstance(line, dict) or "missionfsm" not in line:
+        raise _wrong('the first line has to be {"missionfsm": 1, "system": …, "world": …}')
+    if line["missionfsm"] != VERSION or isinstance(line["missionfsm"], bool):
+        raise _wrong(f"history format {brief(line['missionfsm'])} is not known; this is version {VERSION}")
+    _known_keys("first", line, _HEAD_KEYS)
+    name, drives = line.get("system"), line.get("drives", [])
+    if not isinstance(name, str):
+        raise _wrong(f"system: {brief(name)} is not the name of a system")
+    if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
+        raise _wrong(f"drives: {brief(drives)} is not a list of names")
+    return Head(name, line.get("world", {}), tuple(drives))
+
+
+class Transcript:
+    """Reads the lines of one conversation, after the first.
+
+    Args:
+        codec: how the system's JSON is read.
+        fingerprint: JSON to something hashable that tells it from other JSON; a fast one makes reading fast.
+        lost: ids of calls that are known to have no answer.
+
+    Attributes:
+        answered: the request that the answer is to that was read last.
+    """
+
+    def __init__(
+        self,
+        codec: Codec,
+        fingerprint: Callable[[JSON], Hashable] = repr,
+        lost: frozenset[int] = frozenset(),
+    ) -> None:
+        self.codec = codec
+        self._fingerprint = fingerprint
+        self._lost = lost
+        self._open: dict[int, tuple[str, Any]] = {}
+        self.answered: Any = None
+        self._sent = Ids()
+        self._errors: dict[str, Answer] = {}
+        self._requests: dict[Hashable, Any] = {}
+        self._interned: dict[Any, Any] = {}
+        self._contents: dict[Hashable, Hashable] = {}
+        self._forms: dict[tuple[str, ...], _Reader] = {}
+        self._kinds: Mapping[str, _Reader] = {
+            "call": self._call,
+            "return": self._return,
+            "stream": self._stream,
+            "connection": self._connection,
+            "drive": self._drive,
+            "settled": self._settled,
+        }
+
+    def read(self, line: JSON) -> tuple[Event, ...]:
+        """The events that a line stands for; usually one. Raises UnreadableError."""
+        if not isinstance(line, dict):
+            raise _wrong(f"{brief(line)} is not an object")
+        form = tuple(line)
+        reader = self._forms.get(form)
+        return (reader or self._reader(form, line))(line)
+
+    def _reader(self, form: tuple[str, ...], line: dict[str, Any]) -> _Reader:
+        """What reads lines with these keys."""
+        for key in form:
+            reader = self._kinds.get(key)
+            if reader is not None:
+                _known_keys(key, line, _KEYS[key])
+                self._forms[form] = reader
+                return reader
+        raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
+
+    @property
+    def pending(self) -> Mapping[int, tuple[str, Any]]:
+        """The calls that have no answer yet: their ids, in the order of sending, to the method and the request."""
+        return self._open
+
+    def _number(self, line: dict[str, Any], key: str) -> int:
+        number = line[key]
+        if type(number) is not int:  # a bool is none
+            raise _wrong(f"{key}: {brief(number)} is not a whole number")
+        return number
+
+    def _call(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
+        self.begins(number)
+        if not isinstance(method, str):
+            raise _wrong(f"method: {brief(method)} is not the name of a call")
+        if method == "cancel":
+            stream = params.get("stream") if isinstance(params, dict) else None
+            if isinstance(stream, bool) or not isinstance(stream, int):
+                raise _wrong(f"cancel: {brief(params)} names no stream")
+            self._open[number] = method, None
+            return (Cancelled(("stream", stream)),)
+        request, names = self._request(method, params)
+        return self.sends(number, method, request, names)
+
+    def begins(self, number: int) -> None:
+        """A call has this id. Raises UnreadableError if another one had it."""
+        if not self._sent.add(number):
+            raise _wrong(f"call {number} was sent before; ids are unique within a file")
+
+    def sends(
+        self,
+        number: int,
+        method: str,
+        request: Any,  # noqa: ANN401 - of any system
+        names: tuple[Name, ...],
+    ) -> tuple[Event, ...]:
+        """The event of a call that has begun and whose params are known."""
+        if number in self._lost and method not in self.codec.streams:  # what a stream shows tells that it was opened
+            return (Called(("call", number), request, names, lost=True),)
+        self._open[number] = method, request
+        return (Called(("call", number), request, names),)
+
+    def answers(self, number: int, answer: Answer, names: tuple[Name, ...]) -> tuple[Event, ...]:
+        """The event of an answer to a call that is open."""
+        _, self.answered = self._open.pop(number)
+        return (Returned(("call", number), answer, names),)
+
+    def _request(self, method: str, params: JSON) -> tuple[Any, tuple[Any, ...]]:
+        names, rest = self.codec.split(method, params)
+        key = (method, self._fingerprint(rest))
+        request = self._requests.get(key)
+        if request is None:
+            if len(self._requests) >= REMEMBERED:
+                self._requests.clear()
+                self._interned.clear()
+            request = self.codec.request(method, rest)
+            # One object for one request, however it is written: the oracle then knows it by identity.
+            request = self._requests[key] = self._interned.setdefault(request, request)
+        return request, names
+
+    def _return(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        number = self._number(line, "return")
+        waiting = self._open.pop(number, None)
+        if waiting is None:
+            raise _wrong(f"return {number}: no call with this id is waiting for an answer")
+        method, self.answered = waiting
+        if ("result" in line) == ("error" in line):
+            raise _wrong(f"return {number}: expected either a result or an error")
+        if method == "cancel":
+            return ()
+        if "error" in line:
+            status = self._status(line["error"])
+            answer = self._errors.get(status)
+            if answer is None:
+                answer = self._errors[status] = Answer(status)
+            return (Returned(("call", number), answer, ()),)
+        answer, names = self.codec.answer(method, line["result"])
+        return (Returned(("call", number), answer, names),)
+
+    def _status(self, error: JSON) -> str:
+        status = error.get("status") if isinstance(error, dict) else None
+        if not isinstance(status, str) or status not in STATUS_NUMBERS or status == OK:
+            raise _wrong(f"error.status: {brief(status)} is not the name of a gRPC error")
+        return status
+
+    def _stream(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        stream = ("stream", self._number(line, "stream"))
+        if "closed" not in line and "error" not in line:
+            if "message" not in line:
+                raise _wrong(f"stream {stream[1]}: expected a message or closed")
+            return self._received(stream, line["message"])  # nearly always
+        if "message" in line:
+            raise _wrong(f"stream {stream[1]}: expected a message or closed (with an error or without), not both")
+        if line.get("closed") is not True:
+            raise _wrong(f"closed: {brief(line.get('closed'))} is not true")
+        error = line.get("error")
+        return (Ended(stream, OK if error is None else self._status(error)),)
+
+    def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
+        found = []
+        for names, marks, rest in self.codec.strip(message):
+            key = self._fingerprint(rest)
+            content = self._contents.get(key)
+            if content is None:
+                content = self._content(key, rest)
+            found.append(Received(channel, content, names, marks))
+        return tuple(found)
+
+    def _content(self, key: Hashable, rest: JSON) -> Hashable:
+        if len(self._contents) >= REMEMBERED:
+            self._contents.clear()
+        content = self._contents[key] = self.codec.content(rest)
+        return content
+
+    def _connection(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        connection = ("connection", self._number(line, "connection"))
+        if "line" not in line:
+            raise _wrong(f"connection {connection[1]}: expected a line")
+        return self._received(connection, line["line"])
+
+    def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        event, names = self.codec.happened(line["drive"])
+        return (Driven(event, names),)
+
+    def _settled(self, line: dict[str, Any]) -> tuple[Event, ...]:
+        if line["settled"] is not True:
+            raise _wrong(f"settled: {brief(line['settled'])} is not true")
+        return _SETTLED

@@ -1,0 +1,418 @@
+"""From explanations of what was observed so far to those of what is observed next: exact, and only once for each.
+
+`Oracle.step` is the transition function of the belief automaton: all explanations before an event to all explanations
+after it. `missionfsm.oracle.belief` walks that automaton and remembers it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from typing import Any
+
+from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
+from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.spec import Match, Mismatch, Step
+from missionfsm.oracle.explanation import (
+    GONE,
+    Channel,
+    Explanation,
+    InFlight,
+    Names,
+    Owed,
+    mentioned,
+    outlived,
+    tidy,
+    unify,
+    with_lost,
+)
+from missionfsm.oracle.subsumption import sift
+from missionfsm.oracle.successors import Moves, Seen, Sighting
+
+
+class Oracle:
+    """The transition function of the belief automaton.
+
+    Args:
+        moves: what one explanation can become.
+    """
+
+    def __init__(self, moves: Moves) -> None:
+        self.moves = moves
+        self.spec = moves.spec
+
+    def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Sighting, ...]:  # noqa: ANN401
+        """Every explanation of what was observed before and of this event.
+
+        Args:
+            explanations: those of what was observed before.
+            kind: the class of the event in `missionfsm.kernel.history`.
+            what: its fields, with names as numbers (see `Explanation`).
+
+        Raises:
+            ExhaustedError: the event costs more than the budget.
+        """
+        self.moves.reset()
+        observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
+        return sift(self.moves, observe(self, explanations, *what))
+
+    def _called(
+        self,
+        explanations: Iterable[Explanation],
+        request: Hashable,
+        args: Names,
+        lost: bool,  # noqa: FBT001 - a field of the event
+        call: int,
+    ) -> Iterator[Sighting]:
+        for explanation in explanations:
+            if lost:
+                yield Sighting(explanation.but(lost=with_lost(explanation.lost, request, args)))
+            else:
+                yield Sighting(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
+
+    def _returned(
+        self, explanations: Iterable[Explanation], answer: Answer, names: Names, call: int
+    ) -> Iterator[Sighting]:
+        undone = []
+        for explanation in explanations:
+            position = _position(explanation, call)
+            if position is None:
+                continue
+            yield from self._failed(explanation, position, answer, names)
+            if explanation.calls[position].done is None:
+                undone.append(explanation)
+                continue
+            # What is silent may as well come after the answer.
+            for after, rules in self._answered(explanation, position, answer, names):
+                yield Sighting(tidy(after), rules)
+        for sighting in self.moves.closure(undone, besides=call):
+            position = _position(sighting.explanation, call)
+            if position is not None:
+                for after, rules in self._answered(sighting.explanation, position, answer, names):
+                    yield Sighting(tidy(after), sighting.rules + rules)
+
+    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Sighting]:
+        """The explanation in which the call has failed without anybody's doing, which any state allows.
+
+        What is silent may as well come after it, so that this explanation is enough.
+        """
+        if names or answer.shape is not None:
+            return
+        one = explanation.calls[position]
+        failure = self.spec.failing(one.request, answer.code)
+        if (
+            failure is None
+            or (failure.driven and "fault" in self.moves.driven)
+            or (one.done and not failure.open_ended)
+        ):
+            return
+        assumed = meet(explanation.assumed, failure.assumes)
+        if assumed:
+            calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
+            late = failure.open_ended and not one.done
+            lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
+            yield Sighting(tidy(explanation.but(assumed=assumed, calls=calls, lost=lost)))
+
+    def _answered(
+        self, here: Explanation, position: int, answer: Answer, names: Names
+    ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
+        call = here.calls[position]
+        rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        if call.done:
+            for match in self.moves.agreements(call.done.answer, answer):
+                assumed = meet(rest.assumed, match.assumes)
+                for bound in self._bound(rest, answer, call.done.names, names) if assumed else ():
+                    yield bound.but(assumed=assumed), match.rules
+        for ready in call.ready:
+            for match in self.moves.agreements(ready.answer, answer):
+                assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
+                for bound in self._bound(rest, answer, ready.names, names) if assumed else ():
+                    yield bound.but(assumed=assumed), ready.rules + match.rules
+        if call.done:
+            return
+        for where, refs in self.moves.addressed(rest, call.args):
+            for step in self.moves.outcomes(where.state, call.request, refs):
+                if step.answer is None or len(step.refs) != len(names):
+                    continue
+                for match in self.moves.agreements(step.answer, answer):
+                    yield from self._answered_by(where, step, match, call, answer, names)
+
+    def _answered_by(  # noqa: PLR0913 - what an answer is made of
+        self, where: Explanation, step: Step, match: Match, call: InFlight, answer: Answer, names: Names
+    ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
+        assumed = meet(where.assumed, match.assumes)
+        if not assumed:
+            return
+        lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
+        taken = self.moves.advance(where.but(lost=lost, assumed=assumed), step)
+        if taken:
+            for bound in self._bound(taken[0], answer, taken[1], names):
+                yield bound, step.rules + match.rules
+
+    def _bound(self, explanation: Explanation, answer: Answer, own: Names, observed: Names) -> Iterator[Explanation]:
+        """The explanation with the names of an answer, in every way in which they can be ours.
+
+        In an unordered answer those that are known go together; of the others, any can be any. Where nothing else
+        mentions ours, though, which is which makes no difference.
+        """
+        if len(own) != len(observed):
+            return
+        for pairs in _pairings(explanation, own, observed) if answer.unordered else (zip(own, observed, strict=True),):
+            self.moves.spend()
+            bound = unify(explanation, pairs)
+            if bound:
+                yield bound
+
+    def _received(
+        self,
+        explanations: Iterable[Explanation],
+        content: Hashable,
+        names: Names,
+        relations: tuple[str, ...],
+        channel: int,
+    ) -> Iterator[Sighting]:
+        todo: list[tuple[Sighting, Hashable]] = []
+        for explanation in explanations:
+            echoes = self._echoed(explanation, channel)
+            sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
+            assumed = 0 if sequence is None else meet(explanation.assumed, sequence)
+            if not assumed:
+                continue
+            start = Sighting(explanation.but(assumed=assumed))
+            if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
+                yield from self._showings(start, channel, None, content, names, echo=True)
+            if not ("equal" in relations and echoes):
+                todo.append((start, None))
+        # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
+        seen: dict[Hashable, Seen] = {}
+        while todo:
+            later: list[tuple[Sighting, Hashable]] = []
+            for sighting, topic in todo:
+                if self.moves.outdone(seen.setdefault(topic, {}), sighting.explanation):
+                    continue
+                yield from self._showings(sighting, channel, topic, content, names, echo=False)
+                for skipped, whose in self._passed_over(sighting.explanation, channel, topic):
+                    later += (
+                        (Sighting(one.explanation, sighting.rules + one.rules), whose)
+                        for one in self.moves.silent(skipped)
+                    )
+            todo = later
+
+    def _sequence(self, relations: Iterable[str]) -> list[Assumption] | None:
+        """What is assumed where numbers compare so with those before; None where they cannot."""
+        assumes: list[Assumption] = []
+        for relation in relations:
+            right = self.spec.sequence(relation)
+            if isinstance(right, Mismatch):
+                return None
+            assumes += right
+        return assumes
+
+    def _showings(  # noqa: PLR0913 - what a message is made of
+        self,
+        sighting: Sighting,
+        name: int,
+        topic: Hashable,
+        content: Hashable,
+        names: Names,
+        *,
+        echo: bool,
+    ) -> Iterator[Sighting]:
+        """The explanations in which a channel of that name, and of that topic if one is given, shows the message."""
+        known = _channel_names(sighting.explanation)
+        for position, one in enumerate(sighting.explanation.channels):
+            if topic is not None and one.topic != topic:
+                continue
+            if one.name == name or (one.name < GONE and name not in known):
+                yield from self._shown(sighting, position, name, content, names, echo=echo, again=topic is None)
+
+    def _echoed(self, explanation: Explanation, name: int) -> bool:
+        """Whether a channel of that name may send its last message again under its old number."""
+        channels = (channel for channel in explanation.channels if channel.name == name)
+        return any(self.spec.delivery(channel.topic).echoes for channel in channels)
+
+    def _candidates(
+        self, channel: Channel, assumed: int, *, echo: bool, again: bool
+    ) -> Iterator[tuple[Owed, tuple[Owed, ...], int]]:
+        """What a channel may show next: the message, those owed after it, and what is assumed then."""
+        delivery = self.spec.delivery(channel.topic)
+        repeats = delivery.echoes if echo else delivery.repeats
+        if channel.last and repeats and again:
+            yield channel.last, channel.owed, meet(assumed, (repeats,))
+        for index, owed in enumerate(() if echo else channel.owed):
+            left = channel.owed[index if owed.stays else index + 1 :]
+            yield owed, left, meet(assumed, (owed.only,)) if owed.only else assumed
+            if not owed.passing:
+                assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
+            if not assumed:
+                return
+
+    def _shown(  # noqa: PLR0913 - what a message is made of
+        self,
+        sighting: Sighting,
+        position: int,
+        name: int,
+        content: Hashable,
+        names: Names,
+        *,
+        echo: bool,
+        again: bool,
+    ) -> Iterator[Sighting]:
+        """The explanations in which the message shows one of those that the channel owes, or its last one `again`."""
+        here = sighting.explanation
+        channel = here.channels[position]
+        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo, again=again):
+            matches = self.moves.matches(owed, content)
+            if not assumption or isinstance(matches, Mismatch):
+                continue
+            for match in matches:
+                agreed = meet(assumption, match.assumes)
+                if not agreed:
+                    continue
+                shown = Channel(channel.name, channel.topic, Owed(owed.view, owed.names), left)
+                channels = (*here.channels[:position], shown, *here.channels[position + 1 :])
+                after = here.but(assumed=agreed, channels=channels)
+                pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
+                bound = unify(after, pairs)
+                if bound:
+                    yield Sighting(tidy(bound), sighting.rules + match.rules)
+
+    def _passed_over(
+        self, explanation: Explanation, name: int, topic: Hashable
+    ) -> Iterator[tuple[Explanation, Hashable]]:
+        """The explanations in which all that a channel of that name owes is passed over, each with its topic.
+
+        One whose name is not known yet owes nothing to anybody.
+        """
+        if name not in _channel_names(explanation):
+            yield explanation, None
+            return
+        for position, channel in enumerate(explanation.channels):
+            if channel.name != name or (topic is not None and channel.topic != topic):
+                continue
+            assumed = explanation.assumed
+            if not all(owed.passing for owed in channel.owed):
+                skips = self.spec.delivery(channel.topic).skips
+                assumed = meet(assumed, (skips,)) if skips else 0
+            if assumed:
+                passed = _offering(channel)
+                channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
+                yield explanation.but(assumed=assumed, channels=channels), channel.topic
+
+    def _ended(self, explanations: Iterable[Explanation], code: str, name: int) -> Iterator[Sighting]:
+        # A stream that nothing is known of yet is that of a call whose answer has not come.
+        known: list[Explanation] = []
+        unknown: list[Explanation] = []
+        for explanation in explanations:
+            (known if name in _channel_names(explanation) else unknown).append(explanation)
+        for sighting in (*map(Sighting, known), *self.moves.closure(unknown)):
+            here = sighting.explanation
+            names = dict.fromkeys(channel.name for channel in here.channels)
+            for own in (name,) if name in names else [one for one in names if one < GONE]:
+                assumed = here.assumed
+                for topic in (channel.topic for channel in here.channels if channel.name == own):
+                    assumes = self.spec.delivery(topic).ends.get(code)
+                    assumed = meet(assumed, assumes) if assumes is not None else 0
+                bound = unify(here, [(own, name)]) if assumed else None
+                if bound:
+                    rest = tuple(channel for channel in bound.channels if channel.name != name)
+                    ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
+                    yield Sighting(tidy(ended), sighting.rules)
+
+    def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
+        for explanation in explanations:
+            rest = tuple(channel for channel in explanation.channels if channel.name != name)
+            left = explanation
+            if len(rest) < len(explanation.channels):
+                left = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
+            yield Sighting(tidy(left))
+
+    def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Sighting]:
+        drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
+        for sighting in self.moves.closure(explanations):
+            here = sighting.explanation
+            for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
+                taken = self.moves.advance(here, step, names)
+                if taken:
+                    yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
+
+    def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Sighting]:
+        # What is urgent need not be what happened: a call or the surroundings may have come before it.
+        seen: Seen = {}
+        todo = [Sighting(explanation) for explanation in explanations]
+        while todo:
+            later: list[Sighting] = []
+            for sighting in todo:
+                here = sighting.explanation
+                if self.moves.outdone(seen, here):
+                    continue
+                rest = None if self.moves.urgent(here.state) else self._nothing_owed(here)
+                if rest:
+                    yield Sighting(rest, sighting.rules)
+                if rest is None or rest.assumed != here.assumed:
+                    later += (Sighting(one.explanation, sighting.rules + one.rules) for one in self.moves.silent(here))
+            todo = later
+
+    def _nothing_owed(self, explanation: Explanation) -> Explanation | None:
+        """The explanation in which every channel has shown where things stand, or None if one has not."""
+        assumed, channels = explanation.assumed, []
+        for channel in explanation.channels:
+            due = [owed for owed in channel.owed if not owed.passing]
+            if due:
+                # What is back where the subscriber saw it last may stay unsaid by one that sends only the latest.
+                skips = self.spec.delivery(channel.topic).skips
+                told = channel.last and (due[-1].view, due[-1].names) == (channel.last.view, channel.last.names)
+                assumed = meet(assumed, (skips,)) if skips and told else 0
+            channels.append(
+                Channel(channel.name, channel.topic, channel.last, _offers(channel)) if channel.owed else channel
+            )
+        return tidy(explanation.but(assumed=assumed, channels=tuple(channels))) if assumed else None
+
+
+def _offering(channel: Channel) -> Channel:
+    """The channel without what it owed, but for what it may say at any time."""
+    return Channel(channel.name, channel.topic, channel.last, _offers(channel))
+
+
+def _offers(channel: Channel) -> tuple[Owed, ...]:
+    """What a channel may still show once everything else is passed over."""
+    last = channel.owed[-1] if channel.owed else None
+    return (last,) if last and last.optional else ()
+
+
+def _position(explanation: Explanation, call: int) -> int | None:
+    """Where among the calls in flight the one with this name stands."""
+    return next((position for position, one in enumerate(explanation.calls) if one.name == call), None)
+
+
+def _channel_names(explanation: Explanation) -> set[int]:
+    return {channel.name for channel in explanation.channels}
+
+
+def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator[list[tuple[int, int]]]:
+    """The pairs of names that an unordered answer may mean; none where it says one twice."""
+    shared = [name for name in own if name in observed]
+    left, free = ([name for name in names if name not in shared] for names in (own, observed))
+    if max(left, default=GONE - 1) >= GONE or len(left) != len(set(free)):
+        return
+    elsewhere = set(mentioned(explanation)) if len(left) > 1 else set()
+    told = [name for name in left if name in elsewhere]
+    rest = [name for name in left if name not in elsewhere]
+    for some in itertools.permutations(free, len(told)):
+        others = (name for name in free if name not in some)
+        yield [
+            *zip(shared, shared, strict=True),
+            *zip(told, some, strict=True),
+            *zip(rest, others, strict=True),
+        ]
+
+
+_OBSERVERS: dict[type, Callable[..., Iterator[Sighting]]] = {
+    Called: Oracle._called,  # noqa: SLF001 - the table belongs to the class
+    Returned: Oracle._returned,  # noqa: SLF001
+    Received: Oracle._received,  # noqa: SLF001
+    Ended: Oracle._ended,  # noqa: SLF001
+    Cancelled: Oracle._cancelled,  # noqa: SLF001
+    Driven: Oracle._driven,  # noqa: SLF001
+    Settled: Oracle._settled,  # noqa: SLF001
+}

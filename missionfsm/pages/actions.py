@@ -1,0 +1,191 @@
+"""What can be tried in a state of a system, each with the line that it is in a history."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from attrs import field, frozen
+
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Name
+from missionfsm.kernel.spec import Step
+from missionfsm.kernel.system import System
+from missionfsm.pages.naming import TEXT, Writer, dumped, put
+from missionfsm.tools.placeholders import kind_of, slots
+
+State = Any
+Request = Any
+Event = Any
+
+CALL, DRIVE, ITSELF = "call", "drive", "itself"
+ENVIRONMENT, BY_ITSELF = "environment", "by itself"
+"""The headings under which drives and what a system does by itself stand."""
+
+
+@frozen
+class Doing:
+    """Something that may be tried in a state: a request, an event, or what the system does by itself.
+
+    Attributes:
+        group: the heading under which it stands: an operation, or what sort of thing it is.
+        line: the line that it is in a history, as a template; empty for what nobody sees.
+        refs: positions of the names that it is about, among those of the state and then those that it brings along;
+            None for a name that nothing has.
+        kinds: of each of these names the kind.
+        brings: the kinds of the names that an event brings along.
+    """
+
+    kind: str
+    group: str
+    words: str
+    line: str = ""
+    refs: tuple[int | None, ...] = ()
+    kinds: tuple[str, ...] = ()
+    brings: tuple[str, ...] = ()
+
+
+@frozen
+class Tried:
+    """A doing with all that may come of it; `method` is the method of a call."""
+
+    doing: Doing
+    steps: tuple[Step, ...]
+    method: str = ""
+
+
+@frozen
+class _Filled:
+    """A prompt or a drive with names in it: the params, the positions of the names, and the names.
+
+    Attributes:
+        kinds: of each name its kind.
+        fixed: of each name whether it stood there from the start.
+    """
+
+    params: JSON
+    refs: tuple[int | None, ...]
+    names: tuple[Name, ...]
+    kinds: tuple[str, ...]
+    fixed: tuple[bool, ...]
+
+
+@frozen
+class _Asked:
+    doing: Doing
+    method: str
+    request: Request
+
+
+@frozen
+class _Event:
+    event: Event
+    filled: _Filled
+    words: str
+    made: dict[tuple[str, ...], Doing] = field(factory=dict)
+
+
+class Doings:
+    """All that an alphabet has to try. How it is asked depends on the kinds of a state's names alone, and is kept."""
+
+    def __init__(self, system: System, alphabet: Alphabet, writer: Writer) -> None:
+        self.system = system
+        self.writer = writer
+        self.alphabet = alphabet
+        self._asked: dict[tuple[str, ...], tuple[_Asked, ...]] = {}
+        self._events: dict[tuple[str, ...], tuple[_Event, ...]] = {}
+
+    def __call__(self, here: State, kinds: tuple[str, ...]) -> Iterator[Tried]:
+        """All that can be tried in a state whose names are of these kinds."""
+        spec = self.system.spec
+        if kinds not in self._asked:
+            self._asked[kinds] = tuple(self._requests(kinds))
+            self._events[kinds] = tuple(self._drives(kinds))
+        for asked in self._asked[kinds]:
+            yield Tried(asked.doing, spec.outcomes(here, asked.request, asked.doing.refs), asked.method)
+        for one in self._events[kinds]:
+            steps = spec.drives[one.event.name].steps(here, one.event, one.filled.refs)
+            opened = {opening.ref: opening.kind for step in steps for opening in step.opens if opening.ref < 0}
+            brought = tuple(opened[ref] for ref in sorted(opened, reverse=True))
+            if brought not in one.made:
+                one.made[brought] = self._driven(one, len(kinds), brought)
+            yield Tried(one.made[brought], steps)
+        for step in (*spec.urgent(here), *spec.spontaneous(here)):
+            yield Tried(Doing(ITSELF, BY_ITSELF, self._unasked(step)), (step,))
+
+    def _unasked(self, step: Step) -> str:
+        """What a system does by itself, in words."""
+        says = (self.system.spec.rules_by_id[one].says for one in step.rules)
+        opens = (f"a {opening.kind} opens" for opening in step.opens)
+        return step.label or next(itertools.chain(says, opens), "something happens unseen")
+
+    def _requests(self, kinds: tuple[str, ...]) -> Iterator[_Asked]:
+        codec, spec = self.system.codec, self.system.spec
+        seen: set[tuple[Request, tuple[int | None, ...]]] = set()
+        for prompt in self.alphabet.plain:
+            method = prompt.method
+            for filled in self._filled(prompt.params, kinds, functools.partial(self._names_asked, method)):
+                request = codec.request(method, codec.split(method, filled.params)[1])
+                if (request, filled.refs) in seen:
+                    continue
+                seen.add((request, filled.refs))
+                line = self.writer.text({"call": 0, "method": method, "params": filled.params})
+                doing = Doing(
+                    CALL, spec.request_operation(request), spec.describe(request), line, filled.refs, filled.kinds
+                )
+                yield _Asked(doing, method, request)
+
+    def _names_asked(self, method: str, params: JSON) -> tuple[Name, ...]:
+        return self.system.codec.split(method, params)[0]
+
+    def _drives(self, kinds: tuple[str, ...]) -> Iterator[_Event]:
+        for drive in self.alphabet.plain_drives:
+            for filled in self._filled(drive, kinds, lambda given: self.system.codec.drive(given)[1]):
+                event = self.system.codec.drive(filled.params)[0]
+                yield _Event(event, filled, self.system.spec.describe(event))
+
+    def _driven(self, one: _Event, names: int, opened: tuple[str, ...]) -> Doing:
+        """An event. What it names as it stands, and the channels that it opens, are names that it brings along."""
+        filled = one.filled
+        fixed = [at for at, stands in enumerate(filled.fixed) if stands]
+        positions = {at: names + number for number, at in enumerate(fixed)}
+        first = names + len(fixed)
+        places = [self.writer.place(kind, first + at) for at, kind in enumerate(opened)]
+        told = {**filled.params, **self.system.codec.write_happened(one.event, (*filled.names, *places))}
+        line = self.writer.text({"drive": told}, {filled.names[at]: position for at, position in positions.items()})
+        refs = (
+            *(positions.get(at, ref) for at, ref in enumerate(filled.refs)),
+            *range(first, first + len(opened)),
+        )
+        brings = (*(kind_of(filled.names[at]) or TEXT for at in fixed), *opened)
+        return Doing(DRIVE, ENVIRONMENT, one.words, line, refs, (*filled.kinds, *opened), brings)
+
+    def _filled(
+        self, params: JSON, kinds: tuple[str, ...], names_in: Callable[[JSON], tuple[Name, ...]]
+    ) -> Iterator[_Filled]:
+        """Params with every way to put names of a state, or one that it does not have, where names go."""
+        naming, writer = self.system.naming, self.writer
+        any_name = ((None, TEXT),) if ANY_NAME in dumped(params) else ()
+        wanted: dict[int | None, str] = dict((*slots(params).items(), *any_name))
+        stand_ins = {writer.place(kind, at): slot for at, (slot, kind) in enumerate(wanted.items())}
+        marked = put(params, {slot: name for name, slot in stand_ins.items()}, naming)
+        # The names in params are picked by us, or stand there as they are.
+        order = names_in(marked)
+        choices = [
+            [None, *(at for at, kind in enumerate(kinds) if kind == wanted[stand_ins[name]])]
+            if name in stand_ins
+            else [None]
+            for name in order
+        ]
+        for refs in itertools.product(*choices):
+            picked = [(stand_ins[name], at) for name, at in zip(order, refs, strict=True) if name in stand_ins]
+            chosen = {
+                slot: writer.made(wanted[slot], 0) if at is None else writer.place(wanted[slot], at)
+                for slot, at in picked
+            }
+            told = put(params, chosen, naming)
+            sorts = tuple(wanted[stand_ins[name]] if name in stand_ins else kind_of(name) or TEXT for name in order)
+            yield _Filled(told, refs, names_in(told), sorts, tuple(name not in stand_ins for name in order))

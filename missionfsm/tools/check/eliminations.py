@@ -1,0 +1,94 @@
+"""Which event ruled a reading out: noted while a conversation is judged, at next to no cost.
+
+What the explanations of a conversation assume only ever grows, so a node of the belief automaton that was seen before
+in the same conversation can have ruled nothing out; only nodes that are new to it are looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.history import Event, Returned
+from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.spec import Spec
+from missionfsm.oracle.belief import NODES, Belief, Node
+from missionfsm.tools.check.explain import event_words
+
+
+@frozen(eq=False)
+class Ruling:
+    """The event that ruled a reading out, and the request that it answers where it is an answer."""
+
+    spec: Spec
+    event: Event
+    request: Any
+
+    def __str__(self) -> str:
+        words = event_words(self.spec, self.event)
+        return words if self.request is None else f"{self.spec.describe(self.request)} was {words}"
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """Ids of the rules that the event speaks for: those by which such an answer is given."""
+        if self.request is None or not isinstance(self.event, Returned):
+            return ()
+        operation = self.spec.operations[self.spec.request_operation(self.request)]
+        return tuple(rule.id for rule in operation.refusals if rule.code == self.event.answer.code)
+
+
+class Rulings:
+    """The readings that one conversation has ruled out so far, each with the event that did it.
+
+    Attributes:
+        seen: the nodes that were looked at; whoever meets another one calls `notice`.
+        found: ambiguity id and letter to what ruled it out.
+    """
+
+    def __init__(self, belief: Belief) -> None:
+        self.seen: set[Node] = {belief.node}
+        self.found: dict[tuple[str, str], Ruling] = {}
+        self._belief = belief
+        self._left = _left(belief.node)
+
+    def notice(self, event: Event, asked: Any) -> None:  # noqa: ANN401 - a request of any system
+        """An event has led to a node that was not seen before: note what it rules out, if anything.
+
+        Args:
+            asked: the request that is answered, if the event is an answer.
+        """
+        node = self._belief.node
+        if len(self.seen) >= NODES:
+            self.seen.clear()
+        self.seen.add(node)
+        left = _left(node)
+        gone = self._left & ~left
+        if not gone:
+            return
+        self._left = left
+        spec = self._belief.automaton.spec
+        request = asked if isinstance(event, Returned) else None
+        ruling = Ruling(spec, event, request)
+        for ambiguity in spec.ambiguities:
+            for letter in ambiguity.possible(gone & ambiguity.group):
+                self.found[ambiguity.id, letter] = ruling
+
+
+def _left(node: Node) -> int:
+    left = 0
+    for one in node.explanations:
+        left |= one.assumed
+    return left
+
+
+def by_ambiguity(
+    ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Ruling]
+) -> dict[str, dict[str, str]]:
+    """Ambiguity id to letter to the event that ruled it out, in words, in the order of the ambiguities."""
+    told = {
+        one.id: {letter: str(found[one.id, letter]) for letter in one.readings if (one.id, letter) in found}
+        for one in ambiguities
+    }
+    return {name: letters for name, letters in told.items() if letters}

@@ -1,0 +1,148 @@
+"""What happened, for people: one line for each thing that was done, with its answer, up to the one that is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from attrs import evolve
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.system import System
+from missionfsm.oracle.transcript import Transcript, head
+from missionfsm.tools.check.explain import answer_words, event_words, name_words, told
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.verdict import Allowed, Violation
+
+if TYPE_CHECKING:
+    from missionfsm.tools.conform.conversation import Conversation
+    from missionfsm.tools.conform.run import Run
+
+
+def story(system: System, history: tuple[JSON, ...]) -> str:
+    """A history in numbered lines; calls and their answers share one where nothing came between."""
+    return "\n".join(f"{number:>3}. {line}" for number, line in enumerate(_told(system, history), 1))
+
+
+def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:
+    transcript = Transcript(system.codec)
+    for line in history:
+        yield from transcript.read(line)
+
+
+def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
+    waiting: str | None = None
+    waits_for: Any = None
+    spec = system.spec
+    for event in _events(system, history[1:]):
+        if isinstance(event, Returned) and event.call == waits_for and waiting is not None:
+            yield f"{waiting} → {answer_words(event.answer, tuple(map(name_words, event.names)))}"
+            waiting = waits_for = None
+            continue
+        if waiting is not None:
+            yield waiting
+            waiting = waits_for = None
+        if isinstance(event, Called):
+            about = f" of {', '.join(map(name_words, event.names))}" if event.names else ""
+            waiting, waits_for = event_words(spec, event) + about, event.call
+        elif isinstance(event, Settled):
+            yield "(settled)"
+        else:
+            yield event_words(spec, event)
+    if waiting is not None:
+        yield waiting
+
+
+def suspects(system: System, history: tuple[JSON, ...], readings: dict[str, str] | None = None) -> tuple[str, ...]:
+    """Answers before the last event without which everything can be explained: perhaps one of those was wrong.
+
+    A violation shows where the last excuse died. Where an earlier answer was excused by an assumption that only the
+    last event refuted, that answer is the one to look at.
+    """
+    first, lines = head(history[0]), history[1:]
+    found = []
+    for at, line in enumerate(lines[:-1]):
+        if "return" not in line:
+            continue
+        lost = frozenset({line["return"]})
+        judge = Judge(system, first, readings=readings, lost=lost)
+        rest = (*lines[:at], *lines[at + 1 :])
+        if all(judge.feed(one) for one in rest):
+            call = next(one for one in lines if one.get("call") == line["return"])
+            said = "OK" if "result" in line else line["error"]["status"]
+            request = system.codec.request(
+                call["method"], system.codec.split(call["method"], call.get("params", {}))[1]
+            )
+            found.append(f"{system.spec.describe(request)} was answered {said}")
+    return tuple(found)
+
+
+def inconsistent(run: Run) -> Violation:
+    """The violation of an implementation that follows one reading now and another later: names both events."""
+    run.shorten_evidence()
+    name = run.contradiction
+    ambiguity = next(one for one in run.system.spec.ambiguities if one.id == name)
+    expected, notes, rules = [], [], list[str]()
+    last: Conversation | None = None
+    for letter, answer in ambiguity.readings.items():
+        conversation = run.settled_by[ambiguity.id, letter]
+        ruling = conversation.judge.rulings.found.get((ambiguity.id, letter))
+        expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
+        if ruling is None:
+            notes.append(f"{letter} is ruled out: another reading had to be followed")
+            continue
+        rules += ruling.rules
+        notes.append(f"{letter} is ruled out: {ruling}")
+        last = conversation
+    history = last.judge.history if last else ()
+    return Violation(
+        told(run.system.spec, rules),
+        f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
+        tuple(expected),
+        tuple(notes),
+        history,
+    )
+
+
+def as_pytest(history: tuple[JSON, ...], name: str) -> str:
+    """A pytest function that judges the history again."""
+    import json  # noqa: PLC0415 - text for a file, seldom needed
+
+    body = "\n".join(f"    {json.dumps(line, ensure_ascii=False)!r}," for line in history)
+    return (
+        "import json\n\n"
+        "from missionfsm.oracle.transcript import head\n"
+        "from missionfsm.systems import system\n"
+        "from missionfsm.tools.check.judge import check\n\n"
+        f"HISTORY = (\n{body}\n)\n\n\n"
+        f"def test_{name}() -> None:\n"
+        '    """The recorded conversation can be explained."""\n'
+        "    first, *lines = map(json.loads, HISTORY)\n"
+        "    start = head(first)\n"
+        "    verdict = check(system(start.system), start, lines)\n"
+        "    assert verdict.violation is None, str(verdict)\n"
+    )
+
+
+def as_mermaid(system: System, history: tuple[JSON, ...]) -> str:
+    """A Mermaid sequence diagram of the history."""
+    lines = ["sequenceDiagram", "    participant C as client", "    participant S as implementation"]
+    for event in _events(system, history[1:]):
+        words = event_words(system.spec, event).replace(";", ",").replace("#", "no. ")
+        if isinstance(event, Called):
+            lines.append(f"    C->>S: {words}")
+        elif isinstance(event, Returned | Received | Ended):
+            lines.append(f"    S-->>C: {words}")
+        elif isinstance(event, Driven):
+            lines.append(f"    Note over S: {words}")
+        else:
+            lines.append(f"    Note over C,S: {words}")
+    return "\n".join(lines) + "\n"
+
+
+def with_suspects(system: System, violation: Violation) -> Violation:
+    """The violation with a note on answers before it that may be the ones that are wrong."""
+    found = suspects(system, violation.history)
+    notes = tuple(f"without this answer everything is explained: {one}" for one in found)
+    return evolve(violation, notes=(*violation.notes, *notes)) if notes else violation

@@ -1,0 +1,249 @@
+"""What a judgement comes to, as a value: for people with ``str``, for machines with `to_json`."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Mapping
+
+from attrs import field, frozen
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.text import printable
+
+RATE, PER = 100, 10_000
+"""How often each rule should be exercised, in how many steps."""
+
+MOST_RARE = 10
+"""How many of the rules that came up seldom a person is told."""
+
+SHORT = 72
+"""How much of an event a line of the verdict has room for."""
+
+
+class Outcome(enum.Enum):
+    """How it came out."""
+
+    CONFORMS = "conforms"
+    VIOLATES = "violates"
+    INCONCLUSIVE = "inconclusive"
+
+
+@frozen
+class Broken:
+    """A rule in question, as a person is told it."""
+
+    id: str
+    says: str
+    cite: str
+
+    def __str__(self) -> str:
+        return f"{self.says} [{self.cite}]"
+
+
+@frozen
+class Allowed:
+    """Something that would have been right in the place of what was observed."""
+
+    what: str
+    rules: tuple[Broken, ...] = ()
+    assumes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        why = "; ".join(map(str, self.rules))
+        under = f" (under {', '.join(self.assumes)})" if self.assumes else ""
+        return f"{self.what}{under}" + (f": {why}" if why else "")
+
+
+@frozen
+class Violation:
+    """An event that nothing explains.
+
+    Attributes:
+        rules: the rules that it breaks.
+        observed: the event, for people.
+        expected: what would have been right.
+        notes: why explanations died, one line each.
+        history: the shortest history known that shows it, as lines of the history format.
+        at: where it is: the number of the event, or of the line in a file, from 1.
+    """
+
+    rules: tuple[Broken, ...]
+    observed: str
+    expected: tuple[Allowed, ...]
+    notes: tuple[str, ...] = ()
+    history: tuple[JSON, ...] = ()
+    at: int = 0
+    where: str = ""
+
+    @property
+    def explanation(self) -> str:
+        """The violation in a few lines."""
+        lines = [f"{self.where}{self.observed}"]
+        if self.expected:
+            lines.append("  allowed here:")
+            lines += [f"    - {one}" for one in self.expected]
+        else:
+            lines.append("  nothing was allowed here")
+        lines += [f"  {note}" for note in self.notes]
+        if self.rules:
+            lines.append("  against:")
+            lines += dict.fromkeys(f"    - {one}" for one in self.rules)
+        return "\n".join(lines)
+
+
+@frozen
+class Experiment:
+    """What would tell readings apart that are still open.
+
+    Attributes:
+        ambiguity: the id of the question.
+        follows: the letter of the reading that it shows.
+        against: the letters that it rules out if the implementation follows that one.
+        says: what to do and what is then seen, line by line.
+        history: the same as lines of the history format, as the reference answers under `follows`.
+    """
+
+    ambiguity: str
+    follows: str
+    against: tuple[str, ...]
+    says: str
+    history: tuple[JSON, ...] = ()
+
+    def to_json(self) -> JSON:
+        """The experiment as the command line writes it."""
+        return {
+            "ambiguity": self.ambiguity,
+            "follows": self.follows,
+            "against": list(self.against),
+            "says": self.says.splitlines(),
+            "history": list(self.history),
+        }
+
+    def __str__(self) -> str:
+        return f"{self.ambiguity}: {self.follows}, and not {' or '.join(self.against)}, would show in\n{self.says}"
+
+
+@frozen
+class Verdict:
+    """A judgement of one implementation or of one recorded history.
+
+    Attributes:
+        exercised: rule id to how often it was exercised.
+        uncovered: ids of rules that were not.
+        readings: ambiguity id to the readings that are still possible, for those that mattered.
+        flagged: readings among those followed that depart from the letter of the text.
+        because: why it is inconclusive.
+        ruled_out: ambiguity id to letter to the event that ruled it out, in words.
+        experiments: for readings that are still open, what would tell them apart.
+        known: ids of rules whose violation was expected, to how often it was met.
+        stale: ids of rules whose violation was expected and was not met.
+        rare: ids of rules that were exercised less often than they should be, to the reason.
+        notes: what else there is to know about how the run went.
+    """
+
+    outcome: Outcome
+    system: str
+    implementation: str = ""
+    seed: int | None = None
+    examples: int = 0
+    events: int = 0
+    readings: Mapping[str, tuple[str, ...]] = field(factory=dict)
+    exercised: Mapping[str, int] = field(factory=dict)
+    uncovered: tuple[str, ...] = ()
+    violation: Violation | None = None
+    because: str = ""
+    flagged: tuple[str, ...] = ()
+    story: str = ""
+    ruled_out: Mapping[str, Mapping[str, str]] = field(factory=dict)
+    experiments: tuple[Experiment, ...] = ()
+    known: Mapping[str, int] = field(factory=dict)
+    stale: tuple[str, ...] = ()
+    rare: Mapping[str, str] = field(factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def conforms(self) -> bool:
+        """Whether everything that was observed is explained or was expected, and something was observed."""
+        return self.outcome is Outcome.CONFORMS
+
+    def to_json(self) -> JSON:
+        """The verdict as the command line writes it."""
+        return {
+            "verdict": self.outcome.value,
+            "system": self.system,
+            "implementation": self.implementation,
+            "seed": self.seed,
+            "examples": self.examples,
+            "events": self.events,
+            "readings": {name: list(letters) for name, letters in self.readings.items()},
+            "ruled_out": {name: dict(events) for name, events in self.ruled_out.items()},
+            "experiments": [one.to_json() for one in self.experiments],
+            "coverage": {
+                "rules": dict(self.exercised),
+                "uncovered": list(self.uncovered),
+                "rare": dict(self.rare),
+            },
+            "known": dict(self.known),
+            "stale": list(self.stale),
+            "notes": list(self.notes),
+            "because": self.because,
+            "story": self.story.splitlines(),
+            "violation": None
+            if self.violation is None
+            else {
+                "rules": [rule.id for rule in self.violation.rules],
+                "expected": [str(one) for one in self.violation.expected],
+                "observed": self.violation.observed,
+                "explanation": self.violation.explanation,
+                "history": list(self.violation.history),
+            },
+        }
+
+    def __str__(self) -> str:
+        about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
+        counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
+        lines = [f"{self.outcome.value}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
+        if self.because:
+            lines.append(f"  because {self.because}")
+        if self.violation:
+            if self.story:
+                lines += ["", self.story]
+            lines += ["", self.violation.explanation]
+        lines += [f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times]
+        lines += [f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale]
+        lines += [f"  {note}" for note in self.notes]
+        if self.readings:
+            lines += ["", "readings followed:"]
+            lines += [f"  {name} = {self._told(name, letters)}" for name, letters in self.readings.items()]
+        lines += [f"  departs from the text: {one}" for one in self.flagged]
+        for experiment in self.experiments:
+            lines += ["", str(experiment)]
+        total = len(self.exercised) + len(self.uncovered)
+        if total:
+            lines += ["", f"rules exercised: {len(self.exercised)} of {total}"]
+        lines += self._rarely()
+        return "\n".join(lines)
+
+    def _rarely(self) -> list[str]:
+        """The rules that came up least, but for those that belong to readings that are not followed."""
+        least = sorted(
+            (rule for rule in self.rare if rule in self.exercised or rule in self.uncovered),
+            key=lambda rule: self.exercised.get(rule, 0),
+        )
+        if not least:
+            return []
+        lines = [f"fewer than {RATE} times in {PER:,} steps: {len(least)} rules, the rarest of them"]
+        lines += [f"  {rule}, {self.exercised.get(rule, 0)} times: {self.rare[rule]}" for rule in least[:MOST_RARE]]
+        return lines
+
+    def _told(self, name: str, letters: tuple[str, ...]) -> str:
+        """The readings of an ambiguity that are left, and what ruled out the others."""
+        events: dict[str, list[str]] = {}
+        for letter, event in self.ruled_out.get(name, {}).items():
+            events.setdefault(event, []).append(letter)
+        gone = "; ".join(f"not {', '.join(others)}: {_short(event)}" for event, others in events.items())
+        return (" or ".join(letters) or "none") + (f" ({gone})" if gone else "")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= SHORT else text[: SHORT - 1] + "…"

@@ -1,0 +1,136 @@
+"""Which rules a run exercised less often than it should, and why: computed from the model, not from the run."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Hashable, Iterator, Mapping
+from typing import Any
+
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.readings import ANYTHING, choose, meet
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.spec import Mismatch, Step
+from missionfsm.kernel.system import System
+from missionfsm.tools.check.verdict import PER, RATE
+from missionfsm.tools.explore.explore import Labels, references
+from missionfsm.tools.reference.model import recognised
+
+BOUNDS = Bounds(missions=2, goals=2, batch=2)
+
+SITUATIONS = 12
+"""How many different situations of each world are looked at, the nearest ones."""
+
+
+def rare(
+    system: System, exercised: Mapping[str, int], steps: int, readings: Mapping[str, tuple[str, ...]]
+) -> dict[str, str]:
+    """The rules that were exercised less than `RATE` times in `PER` steps, each with the reason.
+
+    Args:
+        exercised: rule id to how often it was.
+        steps: calls and drives of the run.
+        readings: ambiguity id to the readings that are followed, as far as any were ruled out.
+    """
+    seldom = [rule for rule in system.spec.all_rules if exercised.get(rule.id, 0) * PER < RATE * steps]
+    if not seldom:
+        return {}
+    census = Census(system, readings)
+    return {rule.id: census.why(rule) for rule in seldom}
+
+
+class Census:
+    """How often each rule comes up in the model, within small bounds, under the readings that are followed.
+
+    Attributes:
+        moves: how many ways to do something there are in all situations together.
+        ways: rule id to in how many of them it comes up; `worlds`: in which worlds.
+    """
+
+    def __init__(self, system: System, readings: Mapping[str, tuple[str, ...]]) -> None:
+        self.system = system
+        self.readings = readings
+        self.moves = self.situations = 0
+        self.ways: Counter[str] = Counter()
+        self.worlds: dict[str, set[int]] = {}
+        spec = system.spec
+        self._assumed = meet(ANYTHING, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
+        self._shown: dict[Hashable, tuple[str, ...]] = {}
+        self._all = system.alphabet({}, BOUNDS).worlds
+        for world, params in enumerate(self._all):
+            self._look(world, spec.initial(system.codec.world(params)), params)
+
+    def why(self, rule: Rule) -> str:
+        """Why a rule comes up seldom."""
+        followed = self.readings.get(rule.under.of.id) if rule.under else None
+        if rule.under and followed and not set(rule.under.letters) & set(followed):
+            return f"only under {rule.under}, which is not followed"
+        ways, under = self.ways[rule.id], f" (it belongs to {rule.under})" if rule.under else ""
+        if not ways:
+            return f"no step in {self.situations} situations near the start rests on it{under}"
+        worlds = len(self.worlds[rule.id])
+        elsewhere = f", and that in {worlds} of {len(self._all)} worlds" if worlds < len(self._all) else ""
+        return f"{ways} of {self.moves:,} ways to go on near the start lead to it{elsewhere}{under}"
+
+    def _look(self, world: int, start: Any, params: Any) -> None:  # noqa: ANN401 - of any system
+        spec = self.system.spec
+        alphabet = self.system.alphabet(params, BOUNDS)
+        plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
+        everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
+        size = spec.size
+        situations, found, todo = set[Hashable](), {start}, [start]
+        for here in todo:  # grows while it is walked
+            situation = spec.abstraction.situation(here)
+            if situation not in situations:
+                if len(situations) >= SITUATIONS:
+                    return
+                situations.add(situation)
+                self.situations += 1
+                for steps in self._moves(here, everything):
+                    self._count(world, steps)
+            for step in itertools.chain.from_iterable(self._moves(here, plain)):
+                if step.after not in found and size(step.after) <= BOUNDS.missions:
+                    found.add(step.after)
+                    todo.append(step.after)
+
+    def _moves(self, here: Any, labels: Labels) -> Iterator[list[Step]]:  # noqa: ANN401 - a state of any system
+        spec = self.system.spec
+        for request, free in labels.requests:
+            for refs in references(spec, here, free):
+                yield self._possible(spec.outcomes(here, request, refs))
+        for event, free in labels.events:
+            for refs in references(spec, here, free):
+                yield self._possible(spec.drives[event.name].steps(here, event, refs))
+        yield self._possible((*spec.urgent(here), *spec.spontaneous(here)))
+
+    def _possible(self, steps: tuple[Step, ...]) -> list[Step]:
+        return [step for step in steps if meet(self._assumed, step.assumes)]
+
+    def _count(self, world: int, steps: list[Step]) -> None:
+        if not steps:
+            return
+        self.moves += 1
+        rules = {rule for step in steps for rule in (*step.rules, *self._shown_by(step))}
+        self.ways.update(rules)
+        for rule in rules:
+            self.worlds.setdefault(rule, set()).add(world)
+
+    def _shown_by(self, step: Step) -> Iterator[str]:
+        """The rules that the messages of a step are held to; lines that carry names cannot be made up here."""
+        if not self.system.codec.streams:
+            return
+        for emission in (*step.emits, *(owed for opening in step.opens for owed in opening.owed)):
+            if emission.only and not meet(self._assumed, (emission.only,)):
+                continue
+            count = self.system.spec.names(step.after) if emission.refs is None else len(emission.refs)
+            rules = self._shown.get(emission.view)
+            if rules is None:
+                rules = self._shown[emission.view] = tuple(_rules_of(self.system, emission.view, count))
+            yield from rules
+
+
+def _rules_of(system: System, view: Any, count: int) -> Iterator[str]:  # noqa: ANN401 - of any system
+    names = tuple(f"n{number}" for number in range(count))
+    for matches in recognised(system, view, names, choose(system.spec.ambiguities)):
+        if not isinstance(matches, Mismatch):
+            yield from dict.fromkeys(rule for match in matches for rule in match.rules)

@@ -1,0 +1,289 @@
+"""Where to go next: the model says what each action would exercise, and the least exercised goes first.
+
+An *edge* is a shape of the system, an operation or drive, and what the rules say to it there. Plain random
+generation finds the common edges again and again; a guide counts them over a whole run and proposes actions on those
+that were walked least, or that lead to situations that were seen least.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections import Counter
+from collections.abc import Hashable, Iterable, Iterator
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import meet
+from missionfsm.kernel.spec import Step
+from missionfsm.kernel.system import System
+from missionfsm.oracle.explanation import Explanation
+from missionfsm.oracle.successors import Moves
+from missionfsm.tools.conform.conversation import Conversation, Given, Picks
+from missionfsm.tools.placeholders import fill, is_template, slots, ways
+
+Edge = tuple[Hashable, ...]
+
+ENOUGH = 6
+"""How many edges that were never walked are enough to choose from."""
+
+_MADE_UP = 1_000_003
+"""Serial numbers of names that templates are read with."""
+
+MOST = 120
+"""How many proposals are enough in any case."""
+
+
+@frozen
+class Proposal:
+    """An action that a guide proposes, and the edge that it would walk."""
+
+    method: str
+    params: JSON
+    name: Given | str | None
+    edge: Edge
+    leads_to: Hashable
+    phase: Hashable = None
+    picks: Picks = ()
+
+
+@frozen(eq=False)
+class Template:
+    """Params with stand-ins: what they say, the kind of name in each slot, and for each name the slot that it is in."""
+
+    method: str
+    params: JSON
+    what: Any
+    wants: dict[int, str]
+    slots: tuple[int | None, ...]
+
+
+@frozen(eq=False)
+class Call:
+    """A prompt without stand-ins but perhaps for one name, and what it says."""
+
+    prompt: Prompt
+    request: Any
+    named: bool
+
+
+class Guide:
+    """Counts the edges that a run has walked, and proposes actions on the ones walked least.
+
+    Args:
+        system: the system.
+        worlds: the worlds that conversations start in.
+        bounds: for the alphabet; longer queues than `bounds.missions` are not sought.
+        drives: the drives that the adapter has.
+
+    Attributes:
+        alphabets: what is worth trying in each world.
+        calls, events, templates: the same, prepared, by operation or drive.
+    """
+
+    def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds, drives: tuple[str, ...]) -> None:
+        self.system = system
+        self.abstraction = system.spec.abstraction
+        self.bounds = bounds
+        self.worlds = worlds
+        self.alphabets = [system.alphabet(world, bounds) for world in worlds]
+        self.calls = [self._prepared(alphabet) for alphabet in self.alphabets]
+        self.events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
+        self.templates = [_prepared_templates(system, alphabet, drives) for alphabet in self.alphabets]
+        self._labels = [
+            list(dict.fromkeys((*calls, *events, *templates)))
+            for calls, events, templates in zip(self.calls, self.events, self.templates, strict=True)
+        ]
+        self.walked: Counter[Edge] = Counter()
+        self.tried: Counter[tuple[Hashable, str]] = Counter()
+        self.taken: Counter[str] = Counter()
+        self.said: Counter[tuple[Hashable, ...]] = Counter()
+        self.visited: Counter[Hashable] = Counter()
+        self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
+        self._growth: dict[Any, int] = {}
+
+    def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
+        """The calls of each operation; those that are the same request in other words only once."""
+        found: dict[str, dict[Any, Call]] = {}
+        for prompt in alphabet.prompts:
+            if is_template(prompt.params):
+                continue
+            names, rest = self.system.codec.split(prompt.method, prompt.params)
+            request = self.system.codec.request(prompt.method, rest)
+            found.setdefault(prompt.method, {}).setdefault(request, Call(prompt, request, bool(names)))
+        return {method: list(calls.values()) for method, calls in found.items()}
+
+    def _prepared_events(self, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[JSON, Any]]]:
+        found: dict[str, list[tuple[JSON, Any]]] = {}
+        for drive in alphabet.drives:
+            if drive["event"] in drives and not is_template(drive):
+                found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
+        return found
+
+    def proposals(
+        self, conversation: Conversation, world: int, only: str | None = None, *, rare: bool = False
+    ) -> list[Proposal]:
+        """What could be done now, least walked first: of the operations that were tried least, some edges each.
+
+        Args:
+            only: an operation or drive to look at alone.
+            rare: look at all of them, and put first what the rules have said least often in the whole run.
+        """
+        belief = conversation.judge.belief
+        here = _rested(conversation.judge.automaton.moves, belief.node.explanations[0])
+        shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
+        known = {name: given for given, name in conversation.given.items()}
+        wrong = self.alphabets[world].wrong_names[:1]
+        nameless: list[tuple[int | None, Given | str | None]] = [(None, None)]
+        names: list[tuple[int | None, Given | str | None]] = [(None, one) for one in wrong]
+        for position, number in enumerate(here.names):
+            seen = belief.name(number)
+            if seen in known:
+                names.append((position, known[seen]))
+        found: list[Proposal] = []
+        labels = [only] if only else self._labels[world]
+        for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
+            for call in self.calls[world].get(label, ()):
+                for where, name in names if call.named else nameless:
+                    refs = (where,) if call.named else ()
+                    edge = self._edge(conversation, here, shape, call.request, refs)
+                    if edge:
+                        found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
+            for drive, event in self.events[world].get(label, ()):
+                edge = self._drive_edge(here, shape, event)
+                if edge:
+                    found.append(Proposal("drive", drive, None, *edge, phase))
+            found += self._filled(conversation, here, shape, self.templates[world].get(label, ()))
+            enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
+            if enough and not rare:
+                break
+        if rare:
+            found.sort(key=lambda one: (self.said[phase, one.edge[1:]], one.leads_to == shape, self.walked[one.edge]))
+        else:
+            found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
+        return found
+
+    def _filled(
+        self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[Template]
+    ) -> Iterator[Proposal]:
+        """Proposals from templates, with some of the names that were given in their slots."""
+        belief = conversation.judge.belief
+        phase = self.abstraction.phase(here.state)
+        positions = {belief.name(number): position for position, number in enumerate(here.names)}
+        given = {name: one for one, name in conversation.given.items()}
+        for template in templates:
+            for picked in ways(template.wants, given, self.system.naming):
+                refs = tuple(positions.get(picked.get(-1 if slot is None else slot)) for slot in template.slots)
+                if template.method == "drive":
+                    edge = self._drive_edge(here, shape, template.what, refs, exact=True)
+                else:
+                    edge = self._edge(conversation, here, shape, template.what, refs, exact=True)
+                if edge:
+                    picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
+                    yield Proposal(template.method, template.params, None, *edge, phase, picks)
+
+    def fresh(self) -> Guide:
+        """A guide to the same system that has not been anywhere yet."""
+        other = copy.copy(self)
+        other.walked, other.tried, other.taken, other.visited = Counter(), Counter(), Counter(), Counter()
+        other.said = Counter()
+        return other
+
+    def note(self, proposal: Proposal) -> None:
+        """A proposal was taken up."""
+        label = proposal.method if proposal.method != "drive" else proposal.params["event"]
+        self.tried[proposal.edge[0], label] += 1
+        self.taken[label] += 1
+        self.walked[proposal.edge] += 1
+        self.said[proposal.phase, proposal.edge[1:]] += 1
+        self.visited[proposal.leads_to] += 1
+
+    def _edge(  # noqa: PLR0913 - what leads anywhere
+        self,
+        conversation: Conversation,
+        here: Explanation,
+        shape: Hashable,
+        request: Any,  # noqa: ANN401 - of any system
+        refs: tuple[int | None, ...],
+        *,
+        exact: bool = False,
+    ) -> tuple[Edge, Hashable] | None:
+        size = self.system.spec.size
+        key = (here.state if exact else shape, request, self._places(here, refs))
+        if key not in self._edges:
+            moves = conversation.judge.automaton.moves
+            steps = [step for step in moves.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)]
+            operation = self.system.spec.request_operation(request)
+            says = tuple(sorted({rule for step in steps for rule in step.rules}))
+            after = next((step.after for step in steps if step.after is not here.state), here.state)
+            leads_to = self.abstraction.shape(after)
+            where = self._where(here, shape, steps)
+            self._edges[key] = ((where, operation, says), leads_to) if steps else None
+            self._growth[key] = size(after) - size(here.state)
+        grows = self._growth[key]
+        return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.missions else None
+
+    def _places(self, here: Explanation, refs: tuple[int | None, ...]) -> tuple[Hashable, ...]:
+        """Where the named things stand: a shape does not tell their positions apart."""
+        return tuple(self.abstraction.place(here.state, ref) for ref in refs)
+
+    def _drive_edge(
+        self,
+        here: Explanation,
+        shape: Hashable,
+        event: Any,  # noqa: ANN401 - of any system
+        refs: tuple[int | None, ...] = (),
+        *,
+        exact: bool = False,
+    ) -> tuple[Edge, Hashable] | None:
+        key = (here.state if exact else shape, "drive", event, self._places(here, refs))
+        if key not in self._edges:
+            steps = [
+                step
+                for step in self.system.spec.drives[event.name].steps(here.state, event, refs)
+                if meet(here.assumed, step.assumes)
+            ]
+            says: Hashable = event
+            if exact or self.abstraction.idle_shape is not None:
+                says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
+            where = self._where(here, shape, steps)
+            self._edges[key] = ((where, says), self.abstraction.shape(steps[0].after)) if steps else None
+        return self._edges[key]
+
+    def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:
+        """Where an edge begins; where nothing changes that may be said more coarsely."""
+        idle = self.abstraction.idle_shape
+        return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
+
+
+def _rested(moves: Moves, here: Explanation) -> Explanation:
+    """Where an explanation comes to rest."""
+    while step := next((one for one in moves.urgent(here.state) if meet(here.assumed, one.assumes)), None):
+        taken = moves.advance(here, step)
+        if taken is None:
+            break
+        here = taken[0]
+    return here
+
+
+def _prepared_templates(system: System, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[Template]]:
+    """The prompts and drives with stand-ins, by the name of the operation or the drive."""
+    asked = {repr(one.params): (one.method, one.params) for one in alphabet.prompts if is_template(one.params)}
+    driven = {repr(one): ("drive", one) for one in alphabet.drives if one["event"] in drives and is_template(one)}
+    found: dict[str, list[Template]] = {}
+    for method, params in (*asked.values(), *driven.values()):
+        wants = slots(params)
+        # What is said does not depend on which names are picked, so it is read once, with made up ones.
+        made = {slot: system.naming.make(kind, _MADE_UP + slot) for slot, kind in wants.items()}
+        filled = fill(params, made, system.naming, _MADE_UP - 1)
+        if method == "drive":
+            what, names = system.codec.drive(filled)
+        else:
+            names, rest = system.codec.split(method, filled)
+            what = system.codec.request(method, rest)
+        of = {name: slot for slot, name in made.items()}
+        label = params["event"] if method == "drive" else method
+        found.setdefault(label, []).append(Template(method, params, what, wants, tuple(of.get(one) for one in names)))
+    return found

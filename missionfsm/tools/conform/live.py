@@ -1,0 +1,61 @@
+"""Judge an implementation in real time: every conversation takes as long as it takes, so there are few.
+
+The drawing of examples and the shortening of what was found are left to implementations whose time is not real.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Mapping
+
+from attrs import define
+
+from missionfsm.kernel.subject import Subject
+from missionfsm.kernel.system import System
+from missionfsm.tools.check.baseline import Expected
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import verdict_of
+from missionfsm.tools.conform.run import Run
+
+
+@define(eq=False)
+class _LiveRun(Run):
+    """A run in which nothing is had twice only to make it shorter."""
+
+    def shorten(self) -> None:
+        """Leave what was found as it is."""
+
+    def shorten_evidence(self) -> None:
+        """Leave the evidence as it is."""
+
+
+def live(  # noqa: PLR0913 - every one but the first four has a default
+    system: System,
+    subject: Subject,
+    conversations: int,
+    steps: int,
+    *,
+    seed: int = 0,
+    readings: Mapping[str, str] | None = None,
+    expected: tuple[str, ...] = (),
+    enough: Callable[[], bool] = lambda: False,
+    progress: Callable[[Run], None] = lambda _: None,
+    notes: tuple[str, ...] = (),
+) -> Verdict:
+    """Judge an implementation in real time.
+
+    Args:
+        system: the system, with what is to be tried on it in real time.
+        conversations: how many, those that are written down among them.
+        steps: calls and drives in a conversation, at most.
+        notes: what is to be said with the verdict.
+
+    Raises:
+        SubjectError: the implementation failed.
+        ValueError: `readings` names something that does not exist.
+    """
+    known = Expected(expected)
+    run = _LiveRun.of(system, subject, readings, progress=progress, expects=known, enough=enough)
+    if run.play():
+        run.tour(random.Random(seed), conversations - run.examples, steps)  # noqa: S311 - no secret
+    return verdict_of(run, seed, known, notes)

@@ -1,0 +1,137 @@
+"""The shortest conversation that cannot be explained: all of some kinds of things are had, short ones first.
+
+What leads where another conversation led is not gone on from: to go on from there was tried already.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+
+from attrs import define, evolve, field
+
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Prompt
+from missionfsm.oracle.belief import Node
+from missionfsm.tools.conform.conversation import WRONG_NAME, Action, Conversation, Given
+from missionfsm.tools.placeholders import is_template, slots, ways
+
+MOST = 3_000
+"""How many things are done at most."""
+
+
+def length(conversation: Conversation) -> int:
+    """How many things are done in a conversation; to wait is none."""
+    return sum(action.method != "settle" for action in conversation.actions)
+
+
+def shortest(
+    found: Conversation,
+    attempt: Callable[[tuple[Action, ...]], Conversation],
+    alphabet: Alphabet,
+    depth: int,
+    most: int = MOST,
+) -> Conversation | None:
+    """A conversation that cannot be explained, of few calls and drives of the kinds in one that was found.
+
+    Args:
+        found: one that cannot be explained.
+        attempt: has one anew in the same world.
+        alphabet: what is worth trying there.
+        depth: how many calls and drives it has at most.
+        most: how many things are done in all.
+
+    Returns:
+        the shortest; none where nothing was found within these bounds.
+    """
+    kinds = {action.method for action in found.actions}
+    own = tuple(Prompt(one.method, one.params) for one in found.actions if one.method not in ("settle", "drive"))
+    events = tuple(one.params for one in found.actions if one.method == "drive")
+    like = evolve(
+        alphabet,
+        prompts=own,
+        plain=tuple(one for one in alphabet.plain if one.method in kinds),
+        drives=events,
+        plain_drives=tuple(one for one in alphabet.plain_drives if one in events),
+    )
+    return everything(attempt, like, depth, most)
+
+
+def everything(
+    attempt: Callable[[tuple[Action, ...]], Conversation], alphabet: Alphabet, depth: int, most: int = MOST
+) -> Conversation | None:
+    """The same of anything in an alphabet: anything at the end, and on the way there what brings the system on."""
+    return _Search(attempt, alphabet, most).run(depth)
+
+
+@define(eq=False)
+class _Search:
+    attempt: Callable[[tuple[Action, ...]], Conversation]
+    alphabet: Alphabet
+    left: int
+    seen: set[Node] = field(factory=set)
+    serials: Iterator[int] = field(factory=lambda: itertools.count(1))
+
+    def run(self, depth: int) -> Conversation | None:
+        way: list[tuple[Action, ...]] = [()]
+        for _ in range(depth):
+            onward: list[tuple[Action, ...]] = []
+            for begun in way:
+                found = self._from(begun, onward)
+                if found is not None or self.left <= 0:
+                    return found
+            way = onward
+        return None
+
+    def _from(self, begun: tuple[Action, ...], onward: list[tuple[Action, ...]]) -> Conversation | None:
+        """Try everything after what was begun; `onward` gets what leads somewhere new."""
+        here = self.attempt(begun)
+        for one, leads_on in list(self._actions(here)):
+            if self.left <= 0:
+                return None
+            self.left -= 1
+            before = here.judge.belief.node
+            action, settled = evolve(one, serial=next(self.serials)), Action(next(self.serials), "settle")
+            if not (here.perform(action) and here.perform(settled)):
+                found = self._confirmed((*begun, action), settled)
+                if found is not None:
+                    return found
+            elif here.judge.belief.node is before:
+                continue  # nothing came of it: the next is tried in the same conversation
+            elif leads_on and here.judge.belief.node not in self.seen:
+                self.seen.add(here.judge.belief.node)
+                onward.append((*begun, action, settled))
+            here = self.attempt(begun)
+            self.left -= len(begun)
+        return None
+
+    def _confirmed(self, actions: tuple[Action, ...], settled: Action) -> Conversation | None:
+        """A conversation of these actions alone, if it cannot be explained; perhaps one has to wait at the end."""
+        for done in (actions, (*actions, settled)):
+            found = self.attempt(done)
+            if not found.right and not found.judge.exhausted:
+                return found
+        return None
+
+    def _actions(self, here: Conversation) -> Iterator[tuple[Action, bool]]:
+        """Everything worth doing here, and whether it brings the system on."""
+        plain = (*self.alphabet.plain, *(Prompt("drive", one) for one in self.alphabet.plain_drives))
+        others = (*self.alphabet.prompts, *(Prompt("drive", one) for one in self.alphabet.drives))
+        for prompt in {repr(one): one for one in (*plain, *others)}.values():
+            for action in _named(here, prompt, self.alphabet.wrong_names):
+                yield action, prompt in plain
+
+
+def _named(here: Conversation, prompt: Prompt, wrong: tuple[str, ...]) -> Iterator[Action]:
+    """A prompt with each of the names that were given, and with one that was not."""
+    if is_template(prompt.params):
+        wanted = slots(prompt.params)
+        given = {name: by for by, name in here.given.items()}
+        for picked in ways(wanted, given, here.system.naming):
+            picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
+            yield Action(0, prompt.method, prompt.params, None, picks)
+        return
+    names: tuple[Given | str | None, ...] = (None,)
+    if ANY_NAME in repr(prompt.params):
+        names = (*here.given, *(wrong[:1] or (WRONG_NAME,)))
+    for name in names:
+        yield Action(0, prompt.method, prompt.params, name)

@@ -1,0 +1,331 @@
+"""Does the oracle notice? For every rule an implementation that breaks just that rule, judged as any other would be.
+
+The implementations are the reference with one thing changed: a condition dropped or always true, a code swapped, an
+effect left out, a message missing, a value in a message altered. One that is judged right is a *survivor*: either what
+it does is allowed by the documents under some reading (every conversation within bounds can be explained, which is
+shown by exploring it together with the oracle), or the oracle lacks a tooth.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import random
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.rules import (
+    FAILED_PRECONDITION,
+    INVALID_ARGUMENT,
+    NOT_FOUND,
+    OK,
+    PERMISSION_DENIED,
+    Operation,
+    Rule,
+)
+from missionfsm.kernel.spec import Spec, Step
+from missionfsm.kernel.subject import Exchange, GibberishError
+from missionfsm.kernel.system import System
+from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.guide import Guide
+from missionfsm.tools.conform.run import BOUNDS, Run
+from missionfsm.tools.mutate.equivalent import Honest, excuse
+from missionfsm.tools.mutate.equivalent import straight as as_it_is
+from missionfsm.tools.reference.model import Model, Twist, straight
+from missionfsm.tools.reference.subject import Reference
+
+FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
+"""Conversations before it is asked whether an implementation is allowed; after it, until it survives; steps of each."""
+BLOCK = 8
+"""How many mutants are judged one after the other in the same part: those of a rule share what they remember."""
+
+_OTHER_CODES = (FAILED_PRECONDITION, INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED, "OUT_OF_RANGE")
+
+
+@frozen
+class Mutant:
+    """An implementation with one rule broken.
+
+    Attributes:
+        rule: the id of the rule; `kind`: how it is broken.
+        choice: the readings that it follows, so that the rule is in force.
+        favour: the operation in which it shows, if it is one.
+    """
+
+    rule: str
+    kind: str
+    choice: Mapping[str, str]
+    favour: str | None
+    spec: Spec
+    twist: Twist = straight
+    bend: Callable[[JSON], JSON] = as_it_is
+
+    @property
+    def name(self) -> str:
+        """The rule and how it is broken."""
+        return f"{self.rule} {self.kind}"
+
+    def subject(self, system: System) -> Reference:
+        """The implementation, to be asked."""
+        return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend)
+
+
+@frozen
+class Bite:
+    """What came of one mutant."""
+
+    mutant: str
+    rule: str
+    killed: bool
+    length: int = 0
+    because: str = ""
+
+
+@frozen
+class Teeth:
+    """What came of all mutants."""
+
+    system: str
+    bites: tuple[Bite, ...]
+    untested: tuple[str, ...]
+
+    @property
+    def killed(self) -> int:
+        """How many mutants were noticed."""
+        return sum(bite.killed for bite in self.bites)
+
+    @property
+    def allowed(self) -> tuple[Bite, ...]:
+        """Survivors that do nothing that the documents forbid, within the bounds that were explored."""
+        return tuple(bite for bite in self.bites if not bite.killed and bite.because)
+
+    @property
+    def missed(self) -> tuple[Bite, ...]:
+        """Survivors that nothing excuses."""
+        return tuple(bite for bite in self.bites if not bite.killed and not bite.because)
+
+    @property
+    def percent(self) -> int:
+        """The score in whole per cent, rounded down: 100 is all and nothing less."""
+        return math.floor(100 * self.score)
+
+    @property
+    def score(self) -> float:
+        """Noticed, of those that break something; 1.0 is all."""
+        guilty = len(self.bites) - len(self.allowed)
+        return self.killed / guilty if guilty else 0.0
+
+    def to_json(self) -> JSON:
+        """The result as the command line writes it."""
+        return {
+            "system": self.system,
+            "mutants": len(self.bites),
+            "killed": self.killed,
+            "allowed": [{"mutant": bite.mutant, "because": bite.because} for bite in self.allowed],
+            "missed": [bite.mutant for bite in self.missed],
+            "untested": list(self.untested),
+            "score": self.score,
+        }
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.system}: {self.killed} of {len(self.bites) - len(self.allowed)} mutants killed ({self.percent}%), "
+            f"{len(self.allowed)} more do nothing that is forbidden"
+        ]
+        lines += [f"missed: {bite.mutant}" for bite in self.missed]
+        lines += [f"no mutant breaks: {rule}" for rule in self.untested]
+        lines += [f"allowed: {bite.mutant}: {bite.because}" for bite in self.allowed]
+        return "\n".join(lines)
+
+
+def teeth(
+    system: System,
+    *,
+    seed: int = 0,
+    only: str = "",
+    part: tuple[int, int] = (0, 1),
+    progress: Callable[[Bite], None] = lambda _: None,
+) -> Teeth:
+    """Judge every mutant of a system.
+
+    Args:
+        only: part of the names of the mutants to judge; all by default.
+        part: which part of them, of how many that go side by side; `joined` puts them together again.
+        progress: told of every mutant when it has been judged.
+    """
+    automaton = Automaton(system.spec, tuple(system.spec.drives))
+    guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS, tuple(system.spec.drives))
+    bites, tested = [], set()
+    which, parts = part
+    for number, mutant in enumerate(mutants(system)):
+        tested.add(mutant.rule)
+        if only in mutant.name and number // BLOCK % parts == which:
+            bites.append(_bite(system, mutant, automaton, guide, seed))
+            progress(bites[-1])
+    untested = tuple(rule.id for rule in system.spec.all_rules if rule.id not in tested)
+    return Teeth(system.name, tuple(bites), untested)
+
+
+def joined(system: System, parts: Iterable[Teeth]) -> Teeth:
+    """What came of all mutants, from what came of each part of them, in the order of the rules."""
+    parts = tuple(parts)
+    found = {bite.mutant: bite for part in parts for bite in part.bites}
+    ordered = tuple(found[mutant.name] for mutant in mutants(system) if mutant.name in found)
+    return Teeth(system.name, ordered, parts[0].untested)
+
+
+class _Broken(Reference):
+    """The reference with a rule broken: what it cannot answer any more, it answers with nothing."""
+
+    def _call(self, method: str, params: JSON) -> Exchange:
+        try:
+            return super()._call(method, params)
+        except (LookupError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+            return Exchange({})
+
+
+def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
+    broken = mutant.subject(system)
+    because = ""
+    for fresh, conversations in enumerate((FIRST, *ROUNDS)):
+        about = introduce(system, broken)
+        run = Run(system, broken, about, automaton, BOUNDS, guide=guide.fresh())
+        try:
+            # Every round is a run of its own: what was walked least in the last one has been walked by now.
+            draw = random.Random(seed + fresh)  # noqa: S311 - no secret
+            tour = functools.partial(run.tour, draw, conversations, STEPS, mutant.favour)
+            right = tour() if fresh else _at_first(system, run, tour)
+        except GibberishError:  # it does not even speak the protocol any more
+            return Bite(mutant.name, mutant.rule, killed=True)
+        if not right:
+            length = len(run.found.judge.history) - 1 if run.found else 0
+            return Bite(mutant.name, mutant.rule, killed=True, length=length)
+        if not fresh:
+            because = _excuse(system, mutant, broken.model, guide.worlds)
+        if because:
+            break
+    return Bite(mutant.name, mutant.rule, killed=False, because=because)
+
+
+def _at_first(system: System, run: Run, tour: Callable[[], bool]) -> bool:
+    """Both the first tour and what is written down, the cheaper one first: with clocks, tours are dear."""
+    return run.play() and tour() if system.spec.abstraction.outline else tour() and run.play()
+
+
+@functools.lru_cache(maxsize=2)
+def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> Honest:
+    """The reference under some readings; the mutants of a rule follow each other and share it.
+
+    Those with the readings of the reference come again and again, so that it is in nobody's way that two are kept.
+    """
+    return Honest(Model(system, dict(choice)))
+
+
+def _excuse(system: System, mutant: Mutant, model: Model, worlds: tuple[JSON, ...]) -> str:
+    honest = _honest(system, tuple(sorted(mutant.choice.items())))
+    return excuse(honest, model, mutant.rule, mutant.favour, mutant.bend, worlds)
+
+
+# The mutants.
+
+
+def mutants(system: System) -> Iterator[Mutant]:
+    """Every implementation with one rule broken."""
+    spec = system.spec
+    for operation in spec.operations.values():
+        for rule in operation.refusals:
+            yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
+        for promised in operation.promises:
+            yield from _of_promise(spec, promised, operation.name)
+    own = {bend.rule for bend in system.bends} | {one.rule for one in system.twists if one.at}
+    for rule in spec.rules:
+        if rule.id not in own:
+            yield from _of_promise(spec, rule, None)
+    for bend in system.bends:
+        yield Mutant(bend.rule, bend.says, {}, None, spec, bend=bend.bend)
+    for one in system.twists:
+        yield Mutant(
+            one.rule,
+            one.says,
+            _in_force(spec, one.rule),
+            _operation_of(spec, one.rule),
+            spec,
+            _where(one.at or one.rule, one.twist),
+        )
+
+
+def _reaching(system: System, rule: Rule) -> Mapping[str, str]:
+    return system.reaching.get(rule.id) or system.reaching.get(rule.name, {})
+
+
+def _operation_of(spec: Spec, rule: str) -> str | None:
+    name = rule.split("/")[1]
+    return name if name in spec.operations else None
+
+
+def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
+    """A choice of readings under which a rule is in force."""
+    rule = spec.rules_by_id.get(rule_id)
+    if rule is None or rule.under is None or rule.under.of.default in rule.under.letters:
+        return {}
+    return {rule.under.of.id: rule.under.letters[0]}
+
+
+def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]) -> Iterator[Mutant]:
+    choice = {**_in_force(spec, rule.id), **reaching}
+    code = next(code for code in _OTHER_CODES if code != rule.code)
+    if spec.rebuilt is None or rule.holds is None:
+        # Its condition is in the effect: what can be broken is what is answered.
+        yield Mutant(
+            rule.id, "is answered with another code", choice, operation.name, spec, _where(rule.id, _coded(code))
+        )
+        yield Mutant(rule.id, "is dropped", choice, operation.name, spec, _where(rule.id, _coded(OK)))
+        return
+    for kind, others in (
+        ("is dropped", [one for one in operation.refusals if one is not rule]),
+        ("holds always", [evolve(one, holds=_always) if one is rule else one for one in operation.refusals]),
+        (f"is answered {code}", [evolve(one, code=code) if one is rule else one for one in operation.refusals]),
+    ):
+        changed = evolve(operation, refusals=tuple(others))
+        yield Mutant(rule.id, kind, choice, operation.name, spec.rebuilt({**spec.operations, operation.name: changed}))
+
+
+def _always(_: object, __: object) -> bool:
+    return True
+
+
+def _of_promise(spec: Spec, rule: Rule, operation: str | None) -> Iterator[Mutant]:
+    for kind, twist in (
+        ("has no effect", _without_effect),
+        ("is not shown", _unseen),
+        ("answers its names in reverse", _reversed),
+    ):
+        yield Mutant(rule.id, kind, {}, operation, spec, _where(rule.id, twist))
+
+
+def _where(rule: str, twist: Callable[[Any, Step], Step | None]) -> Twist:
+    """A twist of the steps that a rule justifies, and of no others."""
+    return lambda state, step: twist(state, step) if step is not None and rule in step.rules else step
+
+
+def _coded(code: str) -> Callable[[Any, Step], Step]:
+    return lambda _, step: evolve(step, answer=Answer(code)) if step.answer is not None else step
+
+
+def _without_effect(state: Any, step: Step) -> Step | None:  # noqa: ANN401 - a state of any system
+    if step.answer is None:
+        return None
+    return evolve(step, after=state, names=None, emits=(), opens=())
+
+
+def _unseen(_: Any, step: Step) -> Step:  # noqa: ANN401 - a state of any system
+    return evolve(step, emits=(), opens=tuple(evolve(one, owed=()) for one in step.opens))
+
+
+def _reversed(_: Any, step: Step) -> Step:  # noqa: ANN401 - a state of any system
+    return evolve(step, refs=tuple(reversed(step.refs)))

@@ -1,0 +1,130 @@
+"""The reference model in the role of an implementation under test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.subject import Exchange, Notification, SubjectError
+from missionfsm.kernel.system import System
+from missionfsm.tools.reference.model import Model, Reply, Sent, Snapshot, Twist, straight
+
+
+class Reference:
+    """The reference model of a system behind the adapter protocol, in this process.
+
+    Args:
+        system: the system.
+        choice, twist: the readings that it follows, and what is broken; see `missionfsm.tools.reference.model.Model`.
+        bend: a message to the one that is sent in its place; for one that is broken.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        choice: Mapping[str, str] | None = None,
+        twist: Twist = straight,
+        bend: Callable[[JSON], JSON] = lambda message: message,
+    ) -> None:
+        self.model = Model(system, choice, twist=twist)
+        self._bend = bend
+        self._here: Snapshot | None = None
+        self._minted = 0
+
+    @property
+    def drives(self) -> tuple[str, ...]:
+        """The drives that it has: all of the system's."""
+        return tuple(self.model.system.spec.drives)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        """Answer one request of the protocol. Raises SubjectError for one that the protocol does not have."""
+        codec = self.model.system.codec
+        try:
+            if method == "initialize":
+                return Exchange(self._initialized(params))
+            if method == "reset":
+                return self._reset(params)
+            if method == "settle":
+                return Exchange({})
+            if method == "drive":
+                return self._drive(params)
+            if method == "cancel":
+                return self._cancel(params)
+            if method in codec.methods:
+                return self._call(method, params)
+        except UnreadableError as error:
+            raise SubjectError(str(error)) from None
+        message = f"{method!r} is not a method of {self.model.system.name}"
+        raise SubjectError(message)
+
+    def _initialized(self, params: JSON) -> JSON:
+        wanted = params.get("system") if isinstance(params, dict) else None
+        if wanted != self.model.system.name:
+            message = f"this is an adapter of {self.model.system.name}, not of {wanted!r}"
+            raise SubjectError(message)
+        return {
+            "implementation": {"name": "missionfsm reference", "version": "1"},
+            "drives": list(self.drives),
+            "concurrent": False,
+        }
+
+    def _started(self) -> Snapshot:
+        if self._here is None:
+            message = "nothing can be asked before reset"
+            raise SubjectError(message)
+        return self._here
+
+    def _reset(self, params: JSON) -> Exchange:
+        world = self.model.system.codec.world(params.get("world", {}) if isinstance(params, dict) else {})
+        fresh = self.model.start(world)
+        # Stream numbers are never used twice in one process, so the serial numbers go on.
+        self._here = Snapshot(fresh.state, fresh.names, fresh.channels, max(self._minted, fresh.minted))
+        return Exchange({})
+
+    def _drive(self, params: JSON) -> Exchange:
+        codec = self.model.system.codec
+        event, names = codec.drive(params)
+        self._here, reply = self.model.drive(self._started(), event, names)
+        self._minted = self._here.minted
+        told = codec.write_happened(event, reply.names) if reply.happened else {}
+        return Exchange({"happened": reply.happened, **told}, after=self._notifications(reply))
+
+    def _cancel(self, params: JSON) -> Exchange:
+        stream = params.get("stream") if isinstance(params, dict) else None
+        self._here = self.model.cancel(self._started(), ("stream", stream))
+        return Exchange({})
+
+    def _call(self, method: str, params: JSON) -> Exchange:
+        codec = self.model.system.codec
+        names, rest = codec.split(method, params)
+        self._here, reply = self.model.call(self._started(), codec.request(method, rest), names)
+        self._minted = self._here.minted
+        answer = reply.answer
+        assert answer is not None, "a call is answered"  # noqa: S101 - a model always answers
+        if answer.code != OK:
+            said = "; ".join(self.model.system.spec.rule(rule).says for rule in reply.rules)
+            error = {"status": answer.code, "message": said}
+            return Exchange(error=error, after=self._notifications(reply))
+        return Exchange(codec.write_answer(method, answer, reply.names), after=self._notifications(reply))
+
+    def _notifications(self, reply: Reply) -> tuple[Notification, ...]:
+        return tuple(map(self._notification, reply.sent))
+
+    def _notification(self, sent: Sent) -> Notification:
+        codec = self.model.system.codec
+        message = codec.write_message(sent.view, sent.names, self.model.choice, sent.number, float(sent.number))
+        message = self._bend(message)
+        kind, number = _channel(sent.channel)
+        if kind == "connection":
+            return Notification("line", {"connection": number, "line": message})
+        return Notification("message", {"stream": number, "message": message})
+
+
+def _channel(name: Any) -> tuple[str, int]:  # noqa: ANN401 - a channel's name
+    kind, number = name
+    return kind, number

@@ -17,7 +17,7 @@ from attrs import field, frozen
 
 from missionfsm.adapters.jsonlines import CutShortError, loads
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.oracle.transcript import Ids
+from missionfsm.kernel.ids import IdSet
 
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024
@@ -149,12 +149,12 @@ def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
 
 
 def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
-    """Ids of the calls of each robot that a file never answers.
+    """IdSet of the calls of each robot that a file never answers.
 
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
     """
     waiting: dict[str | None, set[int]] = {}
-    sent: dict[str | None, Ids] = {}
+    sent: dict[str | None, IdSet] = {}
     with open_history(path) as source:
         try:
             for _, found, _ in _chunks(source, path):
@@ -164,7 +164,7 @@ def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
     return {robot: frozenset(calls) for robot, calls in waiting.items()}
 
 
-def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, Ids]) -> None:
+def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, IdSet]) -> None:
     """Take the calls and the returns of some lines into account. Raises UnreadableError if an id comes twice."""
     for line in found:
         if b'"call"' not in line and b'"return"' not in line and b"\\u" not in line:
@@ -174,7 +174,7 @@ def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[
             continue
         known = waiting.setdefault(one.get("robot"), set())
         if "call" in one:
-            if not sent.setdefault(one.get("robot"), Ids()).add(one["call"]):
+            if not sent.setdefault(one.get("robot"), IdSet()).add(one["call"]):
                 raise UnreadableError("an id that was sent before")
             known.add(one["call"])
         else:

@@ -162,13 +162,6 @@ class Delivery:
     unending: tuple[str, ...] = ()
 
 
-RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative", "renumbered")
-"""How a number compares with its predecessor on its track; 0 is "zero" and less is "negative", whatever came before.
-
-One that is not larger is "renumbered" where the numbers of its track are known to have started over since.
-"""
-
-
 @frozen
 class Drive:
     """Something that a tester may be able to make happen.
@@ -271,8 +264,8 @@ class Spec:
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
         matches: (view, content) to the ways in which the message shows the view, or why it does not.
         delivery: topic to how its messages travel.
-        sequence: how a number on a track compares with the one before (one of `RELATIONS`) to the readings under which
-            that is right, or why it is wrong.
+        sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
+            `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
         concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
         names: how many names a state has.
         request_operation: request to the name of its operation.

@@ -26,6 +26,7 @@ from missionfsm.kernel.history import (
     Settled,
 )
 from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.subsumption import surviving_names
@@ -366,16 +367,3 @@ class Belief:
                     union |= one.assumed
                 found[ambiguity.id] = ambiguity.possible(union)
         return found
-
-
-def relation(before: int | None, number: int) -> str:
-    """How a number compares with its predecessor on a track: one of `missionfsm.kernel.spec.RELATIONS`."""
-    if number < 0:
-        return "negative"
-    if number == 0:
-        return "zero"
-    if before is None:
-        return "first"
-    if number == before:
-        return "equal"
-    return "larger" if number > before else "smaller"

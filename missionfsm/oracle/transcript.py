@@ -24,6 +24,7 @@ from missionfsm.kernel.history import (
     Returned,
     Settled,
 )
+from missionfsm.kernel.ids import IdSet
 from missionfsm.kernel.rules import OK, STATUS_NUMBERS
 from missionfsm.kernel.text import brief
 
@@ -74,28 +75,6 @@ def _known_keys(kind: str, line: dict[str, Any], known: frozenset[str]) -> None:
         raise _wrong(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
 
 
-class Ids:
-    """A set of whole numbers that costs next to nothing where they are close together."""
-
-    def __init__(self) -> None:
-        self._blocks: dict[int, int] = {}
-        self._next = 1  # all from 1 up to, but not with, this one are in the set: most clients count
-
-    def add(self, number: int) -> bool:
-        """Add a number; whether it is new."""
-        if number == self._next and not self._blocks:
-            self._next += 1
-            return True
-        if 0 < number < self._next:
-            return False
-        block, bit = number >> 8, 1 << (number & 255)
-        bits = self._blocks.get(block, 0)
-        if bits & bit:
-            return False
-        self._blocks[block] = bits | bit
-        return True
-
-
 def head(line: JSON) -> Head:
     """What the first line says. Raises UnreadableError."""
     if not isinstance(line, dict) or "missionfsm" not in line:
@@ -134,7 +113,7 @@ class Transcript:
         self._lost = lost
         self._open: dict[int, tuple[str, Any]] = {}
         self.answered: Any = None
-        self._sent = Ids()
+        self._sent = IdSet()
         self._errors: dict[str, Answer] = {}
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}

@@ -26,9 +26,9 @@ from missionfsm.bear.status.values import Fault, a_stuck_state_is_known, faults,
 from missionfsm.bear.wire.messages import EventMetadata
 from missionfsm.bear.wire.protojson import MalformedError, camel
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Mismatch
 from missionfsm.kernel.text import brief
-from missionfsm.oracle.belief import relation
 
 REMEMBERED = 50_000
 """How many different payloads a monitor remembers before it starts to remember anew."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_28_STATUS
 from missionfsm.isaac.robot.spec import (
@@ -17,6 +16,7 @@ from missionfsm.isaac.robot.spec import (
     Report,
     Stops,
 )
+from missionfsm.isaac.shared.drives import seconds, text_line
 from missionfsm.isaac.shared.line import MICROSECONDS, Said, from_json, new_uuid, see, to_json, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
@@ -36,8 +36,6 @@ from missionfsm.kernel.text import brief
 
 NAME_CHANNEL = "name"
 MISSION_CHANNEL = "mission"
-LONGEST = 1e300
-"""Seconds; of what is longer the microseconds are more than a float can be."""
 
 
 def _refuse(says: str) -> UnreadableError:
@@ -49,28 +47,6 @@ def world(given: JSON) -> tuple[()]:
     if given not in ({}, None):
         raise _refuse(f"world: isaac.robot has no parameters, not {brief(given)}")
     return ()
-
-
-def seconds(given: JSON, where: str = "drive.seconds") -> int:
-    """Some seconds in microseconds. Raises UnreadableError for what is no time that can pass."""
-    if isinstance(given, bool) or not isinstance(given, int | float) or not 0 <= given < math.inf:
-        raise _refuse(f"{where}: {brief(given)} is no number of seconds from 0 on")
-    return in_microseconds(given, where)
-
-
-def in_microseconds(given: float, where: str) -> int:
-    """A finite number of seconds in microseconds. Raises UnreadableError for one that is too large to be told."""
-    if abs(given) > LONGEST:
-        raise _refuse(f"{where}: {brief(given)} is more than {LONGEST:g} seconds, the most that is counted")
-    return round(given * MICROSECONDS)
-
-
-def text_line(given: JSON) -> str:
-    """A drive's line. Raises UnreadableError for what is no text."""
-    line = given.get("line")
-    if not isinstance(line, str):
-        raise _refuse(f"drive.line: {brief(line)} is not a text")
-    return line
 
 
 def _arrives(line: str) -> tuple[Arrives, tuple[Name, ...]]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from missionfsm.isaac.robot.codec import CODEC
 from missionfsm.isaac.robot.mutations import BENDS, TWISTS
 from missionfsm.isaac.robot.pictures import SKETCHES
 from missionfsm.isaac.robot.spec import SPEC
-from missionfsm.isaac.shared.line import new_uuid, uuid_json
+from missionfsm.isaac.shared.line import new_uuid
+from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming, as_text, new, pick
+from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, new, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -79,17 +79,6 @@ def alphabet(_: JSON, __: Bounds) -> Alphabet:
         worlds=({},),
     )
 
-
-def _write(name: Any) -> JSON:  # noqa: ANN401 - a name
-    return uuid_json(name) if name[0] == "uuid" else name[1]
-
-
-def _make(kind: str, serial: int) -> Any:  # noqa: ANN401 - a name
-    return new_uuid(serial) if kind == "uuid" else (kind, serial)
-
-
-NAMING = Naming(_write, _make, new_uuid)
-"""Identifiers as two decimal strings, all other names by their number."""
 
 _PLAIN: JSON = {
     "event": "line",

@@ -7,13 +7,13 @@ import math
 import operator
 from typing import Any
 
-from missionfsm.isaac.robot.codec import in_microseconds, seconds, text_line
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.connections import BAD, FOREIGN, NAME, NOISE, STATUS, Heard
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_28_CONFIG
 from missionfsm.isaac.server.rules import Submission
 from missionfsm.isaac.server.spec import SPEC, Connects, Drops, Passes, Statuses
 from missionfsm.isaac.server.state import Sends, World
+from missionfsm.isaac.shared.drives import in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, to_json, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line, encode

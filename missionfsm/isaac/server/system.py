@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.isaac.robot.system import NAMING
 from missionfsm.isaac.server.codec import CODEC
 from missionfsm.isaac.server.mutations import BENDS, TWISTS
 from missionfsm.isaac.server.pictures import SKETCHES
 from missionfsm.isaac.server.plans import PLANS
 from missionfsm.isaac.server.scripts import SCRIPTS
 from missionfsm.isaac.server.spec import SPEC
+from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON

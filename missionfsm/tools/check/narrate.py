@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from attrs import evolve
 
@@ -11,13 +11,9 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import Transcript, head
-from missionfsm.tools.check.explain import answer_words, event_words, name_words, told
+from missionfsm.tools.check.explain import answer_words, event_words, name_words
 from missionfsm.tools.check.judge import Judge
-from missionfsm.tools.check.verdict import Allowed, Violation
-
-if TYPE_CHECKING:
-    from missionfsm.tools.conform.conversation import Conversation
-    from missionfsm.tools.conform.run import Run
+from missionfsm.tools.check.verdict import Violation
 
 
 def story(system: System, history: tuple[JSON, ...]) -> str:
@@ -76,33 +72,6 @@ def suspects(system: System, history: tuple[JSON, ...], readings: dict[str, str]
             )
             found.append(f"{system.spec.describe(request)} was answered {said}")
     return tuple(found)
-
-
-def inconsistent(run: Run) -> Violation:
-    """The violation of an implementation that follows one reading now and another later: names both events."""
-    run.shorten_evidence()
-    name = run.contradiction
-    ambiguity = next(one for one in run.system.spec.ambiguities if one.id == name)
-    expected, notes, rules = [], [], list[str]()
-    last: Conversation | None = None
-    for letter, answer in ambiguity.readings.items():
-        conversation = run.settled_by[ambiguity.id, letter]
-        ruling = conversation.judge.rulings.found.get((ambiguity.id, letter))
-        expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
-        if ruling is None:
-            notes.append(f"{letter} is ruled out: another reading had to be followed")
-            continue
-        rules += ruling.rules
-        notes.append(f"{letter} is ruled out: {ruling}")
-        last = conversation
-    history = last.judge.history if last else ()
-    return Violation(
-        told(run.system.spec, rules),
-        f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
-        tuple(expected),
-        tuple(notes),
-        history,
-    )
 
 
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:

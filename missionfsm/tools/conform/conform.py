@@ -20,7 +20,7 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected, held_against
 from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.judge import flagged, uncovered
-from missionfsm.tools.check.narrate import inconsistent, story, with_suspects
+from missionfsm.tools.check.narrate import story, with_suspects
 from missionfsm.tools.check.verdict import Outcome, Verdict
 from missionfsm.tools.conform.conversation import Conversation, Given, Picks
 from missionfsm.tools.conform.coverage import rare
@@ -158,7 +158,7 @@ def verdict_of(
         outcome, followed = Outcome.VIOLATES, judge.belief.readings
         violation = with_suspects(run.system, judge.violation)
     elif run.contradiction is not None:
-        outcome, violation = Outcome.VIOLATES, inconsistent(run)
+        outcome, violation = Outcome.VIOLATES, run.inconsistency()
     spec = run.system.spec
     verdict = Verdict(
         outcome,

@@ -16,8 +16,8 @@ from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
 from missionfsm.tools.check.eliminations import Ruling
-from missionfsm.tools.check.narrate import inconsistent
 from missionfsm.tools.check.verdict import Violation
+from missionfsm.tools.conform.contradiction import inconsistent
 from missionfsm.tools.conform.conversation import WRONG_NAME, Action, Conversation, Given, Introduced, Picks, introduce
 from missionfsm.tools.conform.guide import Guide, Proposal
 from missionfsm.tools.conform.shortest import everything, length, shortest
@@ -245,7 +245,7 @@ class Run:
 
     def _is_known_contradiction(self, name: str) -> bool:
         self.contradiction = name
-        if self.expects is None or not self.expects(inconsistent(self)):
+        if self.expects is None or not self.expects(self.inconsistency()):
             return False
         self.contradiction = None
         self.aside.add(name)
@@ -387,6 +387,13 @@ class Run:
             if shorter is not None and not self._is_known(shorter):
                 short = shrink(shorter, same, self._simpler, self.guide.worlds[0])
         return short
+
+    def inconsistency(self) -> Violation:
+        """What is wrong with an implementation that follows no single reading of the contradiction's ambiguity."""
+        self.shorten_evidence()
+        ambiguity = next(one for one in self.system.spec.ambiguities if one.id == self.contradiction)
+        evidence = {letter: self.settled_by[ambiguity.id, letter].judge for letter in ambiguity.readings}
+        return inconsistent(self.system.spec, ambiguity, evidence)
 
     def shorten_evidence(self) -> None:
         """Make the conversations that ruled out the readings of a contradiction as short as can be."""

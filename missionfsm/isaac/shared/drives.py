@@ -1,0 +1,34 @@
+"""The drives that both systems have: lines that arrive, and time that passes."""
+
+from __future__ import annotations
+
+import math
+
+from missionfsm.isaac.shared.line import MICROSECONDS
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.text import brief
+
+MAX_SECONDS = 1e300
+"""Of what is longer the microseconds are more than a float can be."""
+
+
+def seconds(given: JSON, where: str = "drive.seconds") -> int:
+    """Some seconds in microseconds. Raises UnreadableError for what is no time that can pass."""
+    if isinstance(given, bool) or not isinstance(given, int | float) or not 0 <= given < math.inf:
+        raise UnreadableError(f"{where}: {brief(given)} is no number of seconds from 0 on")
+    return in_microseconds(given, where)
+
+
+def in_microseconds(given: float, where: str) -> int:
+    """A finite number of seconds in microseconds. Raises UnreadableError for one that is too large to be told."""
+    if abs(given) > MAX_SECONDS:
+        raise UnreadableError(f"{where}: {brief(given)} is more than {MAX_SECONDS:g} seconds, the most that is counted")
+    return round(given * MICROSECONDS)
+
+
+def text_line(given: JSON) -> str:
+    """A drive's line. Raises UnreadableError for what is no text."""
+    line = given.get("line")
+    if not isinstance(line, str):
+        raise UnreadableError(f"drive.line: {brief(line)} is not a text")
+    return line

@@ -1,0 +1,21 @@
+"""How names are written in JSON, and made up: identifiers as two decimal strings, all others by their number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from missionfsm.isaac.shared.line import new_uuid, uuid_json
+from missionfsm.kernel.alphabet import Naming
+from missionfsm.kernel.codec import JSON
+
+
+def _write(name: Any) -> JSON:  # noqa: ANN401 - a name
+    return uuid_json(name) if name[0] == "uuid" else name[1]
+
+
+def _make(kind: str, serial: int) -> Any:  # noqa: ANN401 - a name
+    return new_uuid(serial) if kind == "uuid" else (kind, serial)
+
+
+NAMING = Naming(_write, _make, new_uuid)
+"""Identifiers as two decimal strings, all other names by their number."""

@@ -1,0 +1,25 @@
+"""Sets of ids that clients count up: calls and streams of a long history, at next to no cost."""
+
+from __future__ import annotations
+
+
+class IdSet:
+    """A set of whole numbers that costs next to nothing where they are close together."""
+
+    def __init__(self) -> None:
+        self._blocks: dict[int, int] = {}
+        self._next = 1  # all from 1 up to, but not with, this one are in the set: most clients count
+
+    def add(self, number: int) -> bool:
+        """Add a number; whether it is new."""
+        if number == self._next and not self._blocks:
+            self._next += 1
+            return True
+        if 0 < number < self._next:
+            return False
+        block, bit = number >> 8, 1 << (number & 255)
+        bits = self._blocks.get(block, 0)
+        if bits & bit:
+            return False
+        self._blocks[block] = bits | bit
+        return True

@@ -1,0 +1,38 @@
+"""What is wrong with an implementation that follows one reading now and another later."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.spec import Spec
+from missionfsm.tools.check.explain import told
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.verdict import Allowed, Violation
+
+
+def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]) -> Violation:
+    """The violation of an implementation of which no reading of an ambiguity is left.
+
+    Args:
+        evidence: each of the ambiguity's letters to the judge of a conversation that ruled it out.
+    """
+    expected, notes, rules = [], [], list[str]()
+    last: Judge | None = None
+    for letter, answer in ambiguity.readings.items():
+        judge = evidence[letter]
+        ruling = judge.rulings.found.get((ambiguity.id, letter))
+        expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
+        if ruling is None:
+            notes.append(f"{letter} is ruled out: another reading had to be followed")
+            continue
+        rules += ruling.rules
+        notes.append(f"{letter} is ruled out: {ruling}")
+        last = judge
+    return Violation(
+        told(spec, rules),
+        f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
+        tuple(expected),
+        tuple(notes),
+        last.history if last else (),
+    )

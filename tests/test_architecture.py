@@ -5,12 +5,18 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+
+import pytest
 
 import missionfsm
 
 ROOT = Path(missionfsm.__file__).parent
-MODULES = {".".join(path.relative_to(ROOT.parent).with_suffix("").parts): path for path in sorted(ROOT.rglob("*.py"))}
+MODULES = {
+    ".".join(path.relative_to(ROOT.parent).with_suffix("").parts): ast.parse(path.read_text())
+    for path in sorted(ROOT.rglob("*.py"))
+}
 
 BEAR, ISAAC = {"kernel", "bear.wire"}, {"kernel", "isaac.wire", "isaac.shared"}
 SYSTEMS = {"bear.mission", "bear.status", "isaac.server", "isaac.robot"}
@@ -109,11 +115,10 @@ def climbs(module: str, imported: str) -> bool:
     return within(imported, HOUSE[layer] | {layer} | EXCEPTIONS.get(module, set())) is None
 
 
-def wrong(dotted: str, path: Path) -> Iterator[str]:
+def wrong(dotted: str, tree: ast.Module) -> Iterator[str]:
     """What a file imports or calls although its layer may not."""
     module = dotted.removeprefix("missionfsm.").removesuffix(".__init__")
     layer = module.partition(".")[0]
-    tree = ast.parse(path.read_text())
     for name, at_top in imports(tree):
         head, _, rest = name.partition(".")
         if layer in PURE and head in WORLD and not (layer in SEEDED and name == "random"):
@@ -134,16 +139,29 @@ def wrong(dotted: str, path: Path) -> Iterator[str]:
 
 def test_every_import_follows_the_layers() -> None:
     """No module imports what its layer may not, and the pure ones touch neither clock, chance nor the world."""
-    house = {name: path for name, path in MODULES.items() if name not in {"missionfsm.__init__", "missionfsm.__main__"}}
-    assert [line for name, path in house.items() for line in wrong(name, path)] == []
+    house = {name: tree for name, tree in MODULES.items() if name not in {"missionfsm.__init__", "missionfsm.__main__"}}
+    assert [line for name, tree in house.items() for line in wrong(name, tree)] == []
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    """The modules stand in an order in which each imports earlier ones only, what is loaded late included."""
+    house = {name.removesuffix(".__init__") for name in MODULES}
+    graph = {
+        name.removesuffix(".__init__"): {imported for imported, _ in imports(tree)} & house
+        for name, tree in MODULES.items()
+    }
+    try:
+        assert len(list(TopologicalSorter(graph).static_order())) == len(house)
+    except CycleError as error:
+        pytest.fail(f"these import each other: {error.args[1]}")
 
 
 def test_no_exception_outlives_its_reason() -> None:
     """Every exception is an import that is really there; what is mended leaves the list."""
     there = {
         (module.removeprefix("missionfsm."), name.removeprefix("missionfsm."))
-        for module, path in MODULES.items()
-        for name, _ in imports(ast.parse(path.read_text()))
+        for module, tree in MODULES.items()
+        for name, _ in imports(tree)
     }
     listed = {(module, name) for module, names in EXCEPTIONS.items() for name in names}
     assert listed <= there
@@ -151,6 +169,6 @@ def test_no_exception_outlives_its_reason() -> None:
 
 def test_every_package_says_what_lives_in_it() -> None:
     """A newcomer who opens a package reads what lives there, what it may import and where to begin."""
-    texts = {name: ast.get_docstring(ast.parse(path.read_text())) or "" for name, path in MODULES.items()}
+    texts = {name: ast.get_docstring(tree) or "" for name, tree in MODULES.items()}
     silent = [name for name, text in texts.items() if name.endswith("__init__") and len(text) < 100]
     assert silent == []

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
+from missionfsm.bear.mission.describe import describe
 from missionfsm.bear.mission.effects import (
     ACTIVE,
     ADDED,
@@ -254,12 +255,6 @@ POSSIBILITIES = (
 )
 
 
-def _describe(value: object) -> str:
-    from missionfsm.bear.mission.describe import describe  # noqa: PLC0415 - words are for people and seldom needed
-
-    return describe(value)
-
-
 def _shape(robot: Robot) -> tuple[object, ...]:
     """What a search tells robots apart by: what they are at, not where they are to go."""
     active = robot.active
@@ -304,7 +299,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         names=lambda robot: len(robot.listed),
         request_operation=lambda request: request.operation,
         ambiguities=AMBIGUITIES,
-        describe=_describe,
+        describe=describe,
         rules=RULES,
         charts=(LIFECYCLE,),
         invariants=INVARIANTS,

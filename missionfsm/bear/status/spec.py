@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 
+from missionfsm.bear.status.describe import describe
 from missionfsm.bear.status.effects import armed, failing, moved, outcomes, reported, restarted
 from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
 from missionfsm.bear.status.readings import AMBIGUITIES, AS_01, AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_34
@@ -126,12 +127,6 @@ POSSIBILITIES = (
 )
 
 
-def _describe(value: object) -> str:
-    from missionfsm.bear.status.describe import describe  # noqa: PLC0415 - words are for people and seldom needed
-
-    return describe(value)
-
-
 def _names(_: Fleet) -> int:
     return 0
 
@@ -172,7 +167,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         request_operation=lambda request: request.operation,
         ambiguities=AMBIGUITIES,
         concerns=concerns,
-        describe=_describe,
+        describe=describe,
         rules=RULES,
         charts=CHARTS,
         invariants=INVARIANTS,

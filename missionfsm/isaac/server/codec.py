@@ -7,11 +7,23 @@ import math
 import operator
 from typing import Any
 
-from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.connections import BAD, FOREIGN, NAME, NOISE, STATUS, Heard
+from missionfsm.isaac.server import inputs
+from missionfsm.isaac.server.inputs import (
+    BAD,
+    DEFECTS,
+    FOREIGN,
+    NAME,
+    NOISE,
+    STATUS,
+    Connects,
+    Drops,
+    Heard,
+    Passes,
+    Statuses,
+    Submission,
+)
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_28_CONFIG
-from missionfsm.isaac.server.rules import Submission
-from missionfsm.isaac.server.spec import SPEC, Connects, Drops, Passes, Statuses
+from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Sends, World
 from missionfsm.isaac.shared.drives import in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, to_json, uuid_name
@@ -76,7 +88,7 @@ def request(method: str, params: JSON) -> Submission | Statuses:
         raise _refuse(f"{brief(method)} is not a method of isaac.server; those are submit, statuses")
     mission = params.get("mission") if isinstance(params, dict) else None
     if not isinstance(mission, dict):
-        return Submission(defects=(rules.MALFORMED,))
+        return Submission(defects=(inputs.MALFORMED,))
     return _Reader(mission).submission()
 
 
@@ -89,64 +101,64 @@ class _Reader:
 
     def submission(self) -> Submission:
         if not set(self.mission) <= set(_KEYS):
-            self.defects.add(rules.KEY)
+            self.defects.add(inputs.KEY)
         robot = self._text("robot")
         if robot == "":
-            self.defects.add(rules.NO_NAME)
+            self.defects.add(inputs.NO_NAME)
         channel, status_channel = self._channel("channel"), self._channel("status_channel")
         start, run = self._time("start_timeout", 5.0), self._time("timeout", math.inf)
         upstream = self._upstream()
         config = self._config()
-        defects = tuple(one for one in rules.DEFECTS if one in self.defects)
+        defects = tuple(one for one in DEFECTS if one in self.defects)
         channel = "mission" if channel is None else channel
         return Submission(robot, channel, status_channel, config, start, run, upstream, defects)
 
     def _text(self, key: str) -> str | None:
         value = self.mission.get(key)
         if value is not None and not isinstance(value, str):
-            self.defects.add(rules.MALFORMED)
+            self.defects.add(inputs.MALFORMED)
             return None
         return value
 
     def _channel(self, key: str) -> str | None:
         if key in self.mission and self.mission[key] is None:
-            self.defects.add(rules.NULL)
+            self.defects.add(inputs.NULL)
         value = self._text(key)
         if value == "":
-            self.defects.add(rules.EMPTY)
+            self.defects.add(inputs.EMPTY)
         return value
 
     def _time(self, key: str, default: float) -> int | None:
         value = self.mission.get(key, default)
         if value is None:
-            self.defects.add(rules.NULL)
+            self.defects.add(inputs.NULL)
             value = default
         if isinstance(value, bool) or not isinstance(value, int | float) or value != value:  # noqa: PLR0124 - NaN
-            self.defects.add(rules.MALFORMED)
+            self.defects.add(inputs.MALFORMED)
             return None
         if value < 0:
-            self.defects.add(rules.NEGATIVE)
+            self.defects.add(inputs.NEGATIVE)
         return None if abs(value) == math.inf else in_microseconds(value, f"submit.{key}")
 
     def _upstream(self) -> int:
         value = self.mission.get("upstream", [])
         if value is None:
-            self.defects.add(rules.NULL)
+            self.defects.add(inputs.NULL)
             return 0
         if not isinstance(value, list):
-            self.defects.add(rules.MALFORMED)
+            self.defects.add(inputs.MALFORMED)
             return 0
         if not all(map(_is_handle, value)):
-            self.defects.add(rules.HANDLE)
+            self.defects.add(inputs.HANDLE)
         return len(value)
 
     def _config(self) -> str:
         value = self.mission.get("config", {})
         if value is None:
-            self.defects.add(rules.NULL_CONFIG)
+            self.defects.add(inputs.NULL_CONFIG)
             value = {}
         if not isinstance(value, dict):
-            self.defects.add(rules.MALFORMED)
+            self.defects.add(inputs.MALFORMED)
             return "{}"
         return canonical(json.dumps(value)) or "{}"
 

@@ -6,6 +6,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.deciding import split, ways
+from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Heard
 from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started
 from missionfsm.isaac.server.readings import (
     AI_07,
@@ -33,33 +34,8 @@ from missionfsm.isaac.server.state import (
     Server,
     Status,
 )
-from missionfsm.kernel.values import value
 
 STATUS_CHANNEL = "mission_status"
-NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
-
-
-@value(cache_hash=True)
-class Heard:
-    """A line that a robot sends.
-
-    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`
-    type.
-
-    Attributes:
-        what: the name's text, or the status.
-        named: whether the payload names a mission; its name is the event's second.
-        header: whether the header has an identifier; its name is the event's last.
-        numeric: whether 64-bit integers in it are numbers.
-    """
-
-    kind: str
-    what: str = ""
-    channel: str = ""
-    named: bool = False
-    header: bool = False
-    numeric: bool = False
-    name: str = "line"
 
 
 def connects(move: Move) -> Move:

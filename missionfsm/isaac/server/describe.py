@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.connections import Heard
-from missionfsm.isaac.server.rules import Submission
-from missionfsm.isaac.server.spec import Connects, Drops, Passes, Statuses
+from missionfsm.isaac.server.inputs import Connects, Drops, Heard, Passes, Statuses, Submission
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
 from missionfsm.isaac.shared.line import MICROSECONDS, Said
 from missionfsm.kernel.codec import Garbled

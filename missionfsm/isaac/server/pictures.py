@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.connections import Heard
+from missionfsm.isaac.server.inputs import Connects, Drops, Heard, Passes, Statuses, Submission
 from missionfsm.isaac.server.readings import AMBIGUITIES
-from missionfsm.isaac.server.rules import Submission
-from missionfsm.isaac.server.spec import Connects, Drops, Passes, Statuses
 from missionfsm.isaac.server.state import ENDED, Mission, Sends, Server, Status
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
 from missionfsm.kernel.alphabet import Prompt, as_text, pick

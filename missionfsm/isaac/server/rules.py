@@ -2,57 +2,17 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.server.inputs import EMPTY, HANDLE, KEY, MALFORMED, NEGATIVE, NO_NAME, NULL, NULL_CONFIG, Ask
 from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_33_NULL
 from missionfsm.isaac.server.state import SYSTEM, Server
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
 from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, rule
-from missionfsm.kernel.values import value
 
 KEYS = PAGE["Sample Usage", "Key"]
 SERVER = PAGE["MissionServer Class"]
 DEPENDENCIES = PAGE["Mission Dependencies"]
 NAMES = PAGE["Robot Identification"]
 CLIENT = PAGE["JsonTcpClient Codelet"]
-
-
-@value(cache_hash=True)
-class Submission:
-    """A mission that is submitted, or what is wrong with it; `upstream` says how many handles it names.
-
-    Attributes:
-        start, run: the timeouts in microseconds; None is infinite.
-        defects: what is wrong with it by itself: words of `DEFECTS`.
-    """
-
-    robot: str | None = None
-    channel: str = "mission"
-    status_channel: str | None = None
-    config: str = "{}"
-    start: int | None = 5_000_000
-    run: int | None = None
-    upstream: int = 0
-    defects: tuple[str, ...] = ()
-    operation: str = "submit"
-
-
-MALFORMED, HANDLE, NEGATIVE, KEY, NULL, EMPTY, NO_NAME, NULL_CONFIG = DEFECTS = (
-    "it is not of the documented form",
-    "an upstream is no handle",
-    "a timeout is negative",
-    "a key is unknown",
-    "a field is null",
-    "a channel is empty",
-    "the robot's name is empty",
-    "the configuration is null",
-)
-
-
-@value(cache_hash=True)
-class Ask:
-    """A submission with the missions that its handles mean; None for a handle that is nobody's."""
-
-    submission: Submission
-    upstream: tuple[int | None, ...] = ()
 
 
 @rule(INVALID_ARGUMENT, cite=KEYS)

@@ -13,8 +13,10 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
-from missionfsm.isaac.server.connections import Heard, connects, drops, hears
+from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split
+from missionfsm.isaac.server.describe import describe
+from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Heard, Passes, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import started, urgent, zero_means
 from missionfsm.isaac.server.readings import (
     AI_02,
@@ -26,7 +28,7 @@ from missionfsm.isaac.server.readings import (
     AI_28_CONFIG,
     AMBIGUITIES,
 )
-from missionfsm.isaac.server.rules import OPERATIONS, RULES, Ask, Submission
+from missionfsm.isaac.server.rules import OPERATIONS, RULES
 from missionfsm.isaac.server.state import (
     ENDED,
     FAILURES,
@@ -50,36 +52,6 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
-from missionfsm.kernel.values import value
-
-
-@value(cache_hash=True)
-class Passes:
-    """Time passes, in microseconds."""
-
-    time: int
-    name: str = "advance"
-
-
-@value(cache_hash=True)
-class Connects:
-    """A robot connects; the event's name is the connection's."""
-
-    name: str = "connect"
-
-
-@value(cache_hash=True)
-class Drops:
-    """A connection drops; the event's name is the connection's."""
-
-    name: str = "disconnect"
-
-
-@value(cache_hash=True)
-class Statuses:
-    """The statuses of all missions are asked for."""
-
-    operation: str = "statuses"
 
 
 def _step(
@@ -356,13 +328,6 @@ POSSIBILITIES = tuple(
     )
     for status in LIFECYCLE.states
 )
-
-
-def describe(value: object) -> str:
-    """A state, an event, a request, a view or a line in a few words."""
-    from missionfsm.isaac.server.describe import describe as words  # noqa: PLC0415 - words are for people and seldom needed
-
-    return words(value)
 
 
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:

@@ -1,0 +1,100 @@
+"""What a caller asks of the mission server, and what happens to it: requests and events, as values."""
+
+from __future__ import annotations
+
+from missionfsm.kernel.values import value
+
+NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
+"""What a line can be: a name, a status, a message for nobody, no message, one of another type."""
+
+
+@value(cache_hash=True)
+class Submission:
+    """A mission that is submitted, or what is wrong with it; `upstream` says how many handles it names.
+
+    Attributes:
+        start, run: the timeouts in microseconds; None is infinite.
+        defects: what is wrong with it by itself: words of `DEFECTS`.
+    """
+
+    robot: str | None = None
+    channel: str = "mission"
+    status_channel: str | None = None
+    config: str = "{}"
+    start: int | None = 5_000_000
+    run: int | None = None
+    upstream: int = 0
+    defects: tuple[str, ...] = ()
+    operation: str = "submit"
+
+
+MALFORMED, HANDLE, NEGATIVE, KEY, NULL, EMPTY, NO_NAME, NULL_CONFIG = DEFECTS = (
+    "it is not of the documented form",
+    "an upstream is no handle",
+    "a timeout is negative",
+    "a key is unknown",
+    "a field is null",
+    "a channel is empty",
+    "the robot's name is empty",
+    "the configuration is null",
+)
+
+
+@value(cache_hash=True)
+class Ask:
+    """A submission with the missions that its handles mean; None for a handle that is nobody's."""
+
+    submission: Submission
+    upstream: tuple[int | None, ...] = ()
+
+
+@value(cache_hash=True)
+class Statuses:
+    """The statuses of all missions are asked for."""
+
+    operation: str = "statuses"
+
+
+@value(cache_hash=True)
+class Passes:
+    """Time passes, in microseconds."""
+
+    time: int
+    name: str = "advance"
+
+
+@value(cache_hash=True)
+class Connects:
+    """A robot connects; the event's name is the connection's."""
+
+    name: str = "connect"
+
+
+@value(cache_hash=True)
+class Drops:
+    """A connection drops; the event's name is the connection's."""
+
+    name: str = "disconnect"
+
+
+@value(cache_hash=True)
+class Heard:
+    """A line that a robot sends.
+
+    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`
+    type.
+
+    Attributes:
+        what: the name's text, or the status.
+        named: whether the payload names a mission; its name is the event's second.
+        header: whether the header has an identifier; its name is the event's last.
+        numeric: whether 64-bit integers in it are numbers.
+    """
+
+    kind: str
+    what: str = ""
+    channel: str = ""
+    named: bool = False
+    header: bool = False
+    numeric: bool = False
+    name: str = "line"

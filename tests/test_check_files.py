@@ -201,7 +201,7 @@ def test_what_is_deep_and_wide_is_read(command_line: CommandLine, tmp_path: Path
         (b"\n \n", "", "the history is empty"),
         (bytes(range(256)) * 40, ":1", "not JSON"),
         (FIRST.encode() + b"\n" + bytes(range(128, 256)) * 40, ":2", "not JSON"),
-        (FIRST.encode("utf-16"), ":1", "not JSON"),
+        (FIRST.encode("utf-16"), "", "it is UTF-16; what is read here is UTF-8"),
         (f"{FIRST}\n{CLEAR[:30]}".encode(), ":2", "the file ends in the middle of it"),
     ],
     ids=["empty", "blank", "rubbish", "rubbish after the first line", "UTF-16", "cut short"],
@@ -218,7 +218,7 @@ def test_what_is_no_history_is_refused(
     assert says in ended.err
 
 
-@pytest.mark.parametrize("content", [1000 * b"\0", f"{FIRST}\r{CLEAR}".encode(), b'{"missionfsm" 1}'])
+@pytest.mark.parametrize("content", [f"{FIRST}\r{CLEAR}".encode(), b'{"missionfsm" 1}'])
 def test_only_what_is_cut_short_is_called_so(command_line: CommandLine, tmp_path: Path, content: bytes) -> None:
     """A last line without an end that goes wrong before its end is not said to be cut short."""
     path = tmp_path / "log.jsonl"

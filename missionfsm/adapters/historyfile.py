@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import IO
 
 import orjson
-from attrs import field, frozen
 
+from missionfsm.adapters.addresses import Addresses
+from missionfsm.adapters.decompress import DAMAGED, decompressed
 from missionfsm.adapters.jsonlines import CutShortError, loads
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.ids import IdSet
@@ -27,15 +28,23 @@ CHUNK = 1 << 16
 
 
 def open_history(path: str) -> IO[bytes]:
-    """A history to read; ``-`` is stdin. Raises UnreadableError if there is none."""
-    if path == STDIN:
-        return stdin()
+    """A history to read, decompressed; ``-`` is stdin. Raises UnreadableError if there is none."""
     if not path:
         raise UnreadableError("'': an empty name is no name of a file")
+    source = stdin() if path == STDIN else None
     try:
-        return Path(path).open("rb")
-    except OSError as error:
-        raise UnreadableError(f"{path}: {error.strerror}") from None
+        return decompressed(source, stays_open=True) if source else decompressed(Path(path).open("rb"))
+    except DAMAGED as error:
+        raise _damaged(path, error) from None
+    except UnreadableError as error:
+        raise UnreadableError(f"{called(path)}: {error}") from None
+
+
+def _damaged(path: str, error: Exception) -> UnreadableError:
+    """What is said where reading fails."""
+    if isinstance(error, EOFError):
+        return UnreadableError(f"{called(path)}: the compressed data end too early: the file was cut short")
+    return UnreadableError(f"{called(path)}: {getattr(error, 'strerror', None) or error}")
 
 
 def stdin() -> IO[bytes]:
@@ -81,8 +90,8 @@ def read_whole(path: str) -> bytes:
 def _read(read: Callable[[int], bytes], most: int, path: str) -> bytes:
     try:
         return read(most)
-    except OSError as error:
-        raise UnreadableError(f"{called(path)}: {error.strerror or error}") from None
+    except DAMAGED as error:
+        raise _damaged(path, error) from None
 
 
 def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bool]]:
@@ -100,7 +109,8 @@ def _chunks(source: IO[bytes], path: str) -> Iterator[tuple[int, list[bytes], bo
             begun.append(block)
             continue
         begun.append(block[:end])
-        found = b"".join(begun).split(b"\n")
+        whole = b"".join(begun)
+        found = (whole.replace(b"\r\n", b"\n").removesuffix(b"\r") if b"\r" in whole else whole).split(b"\n")
         yield number, found, True
         number += len(found)
         begun = [block[end + 1 :]]
@@ -148,33 +158,38 @@ def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
     return found.parsed(iter(found))
 
 
-def lost_calls(path: str) -> Mapping[str | None, frozenset[int]]:
-    """IdSet of the calls of each robot that a file never answers.
+def lost_calls(path: str, *, by_params: bool = False) -> Mapping[str | None, frozenset[int]]:
+    """Ids of the calls of each robot that a file never answers.
 
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
+    `by_params` is as for `Addresses`.
     """
     waiting: dict[str | None, set[int]] = {}
     sent: dict[str | None, IdSet] = {}
+    addresses = Addresses(by_params=by_params)
     with open_history(path) as source:
         try:
             for _, found, _ in _chunks(source, path):
-                _follow(found, waiting, sent)
+                _follow(found, waiting, sent, addresses)
         except (orjson.JSONDecodeError, UnreadableError, TypeError, AttributeError):
             return {}
     return {robot: frozenset(calls) for robot, calls in waiting.items()}
 
 
-def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, IdSet]) -> None:
+def _follow(
+    found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, IdSet], addresses: Addresses
+) -> None:
     """Take the calls and the returns of some lines into account. Raises UnreadableError if an id comes twice."""
     for line in found:
         if b'"call"' not in line and b'"return"' not in line and b"\\u" not in line:
             continue
         one = orjson.loads(line)
+        robot, _ = addresses.whose({key: value for key, value in one.items() if key != "at"})
         if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
             continue
-        known = waiting.setdefault(one.get("robot"), set())
+        known = waiting.setdefault(robot, set())
         if "call" in one:
-            if not sent.setdefault(one.get("robot"), IdSet()).add(one["call"]):
+            if not sent.setdefault(robot, IdSet()).add(one["call"]):
                 raise UnreadableError("an id that was sent before")
             known.add(one["call"])
         else:
@@ -184,32 +199,3 @@ def _follow(found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[
 def fingerprint(value: JSON) -> bytes:
     """Something hashable that tells JSON values apart, fast."""
     return orjson.dumps(value)
-
-
-@frozen
-class Stamps:
-    """Checks what any line may carry: ``at`` never goes down, ``robot`` is a text."""
-
-    _latest: dict[str, float] = field(factory=dict, init=False)
-
-    def robot(self, line: JSON) -> str | None:
-        """Whose line it is. Raises UnreadableError."""
-        if not isinstance(line, dict):
-            message = f"{line!r:.60} is not an object"
-            raise UnreadableError(message)
-        if "at" in line:
-            at = line["at"]
-            if isinstance(at, bool) or not isinstance(at, int | float):
-                message = f"at: {at!r:.60} is not a number of seconds"
-                raise UnreadableError(message)
-            if at < self._latest.get("at", at):
-                message = f"at: {at} comes after {self._latest['at']}"
-                raise UnreadableError(message)
-            self._latest["at"] = at
-        robot = line.get("robot")
-        if robot is None and "robot" not in line:
-            return None
-        if not isinstance(robot, str):
-            message = f"robot: {robot!r:.60} is not a text"
-            raise UnreadableError(message)
-        return robot

@@ -26,6 +26,9 @@ def loads(text: bytes) -> JSON:
     try:
         value = orjson.loads(text)
     except orjson.JSONDecodeError as error:
+        if not text.strip(b"\0"):
+            message = f"{len(text):,} NUL bytes stand here instead of a line: the file was cut off while it was written"
+            raise UnreadableError(message) from None
         message = f"not JSON: {error}"
         raise (CutShortError if error.pos == len(error.doc) else UnreadableError)(message) from None
     if len(text) > 2 * DEEPEST and _may_be_too_deep(text) and _is_too_deep(value):

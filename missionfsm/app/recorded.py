@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
 
+from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.historyfile import (
     STDIN,
     Lines,
-    Stamps,
     called,
     fingerprint,
     is_plain_file,
@@ -51,12 +51,16 @@ def check_file(
         return _judged(path, readings, tell, {}, KEPT)
     try:
         return _judged(path, readings, tell, None)
-    except _UndecidedError:
-        return _judged(path, readings, tell, lost_calls(path))
+    except _UndecidedError as undecided:
+        return _judged(path, readings, tell, lost_calls(path, by_params=undecided.by_params))
 
 
 class _UndecidedError(Exception):
     """Calls wait for answers that may never come: it pays to know beforehand which."""
+
+    def __init__(self, *, by_params: bool) -> None:
+        super().__init__()
+        self.by_params = by_params
 
 
 LOOK = 16
@@ -94,7 +98,10 @@ def _judged(
             source.close()
     found = judges.verdicts()
     # What was not kept while it was read is read again.
-    return found if keep else [(robot, _retold(verdict, path, robot)) for robot, verdict in found]
+    if keep:
+        return found
+    by_params = judges.addresses.by_call
+    return [(robot, _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found]
 
 
 class _Judges:
@@ -110,9 +117,9 @@ class _Judges:
 
     def __init__(self, line: JSON, readings: Mapping[str, str] | None, lost: Lost | None, keep: int) -> None:
         self._head = head(line)
-        self._stamps = Stamps()
-        self._stamps.robot(line)
         self._system = system(self._head.system)
+        self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
+        self.addresses.whose(line)
         assumed = constrain(self._system.spec.ambiguities, readings or {})
         self._automaton = Automaton(self._system.spec, self._head.drives, assumed)
         self._lost = lost
@@ -136,7 +143,7 @@ class _Judges:
             try:
                 if looks and not number % LOOK:
                     self._look(nobody)
-                known = again(text) if read_again else None
+                known = again(text) if read_again and not self.addresses.by_call else None
                 if known is None:
                     self._take(number, text, texts.json(text))
                 elif not take(known):  # it names neither a time nor a robot, as most lines
@@ -146,13 +153,13 @@ class _Judges:
 
     def _take(self, number: int, text: bytes, line: JSON) -> None:
         plain = type(line) is dict and "at" not in line and "robot" not in line
-        robot = None if plain else self._stamps.robot(line)
+        robot, line = self.addresses.whose(line)
         judge = self._judges.get(robot)
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
         if self._lost is None and robot is not None and not judge.read % LOOK:
             self._look(judge)
-        comes_again = plain and not self._keep
+        comes_again = plain and not self._keep and robot is None
         if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
             self._stopped.setdefault(robot, number)
 
@@ -160,30 +167,32 @@ class _Judges:
         """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""
         oldest = next(iter(judge.transcript.pending), None)
         if oldest is not None and self._waiting.get(judge) == oldest:
-            raise _UndecidedError
+            raise _UndecidedError(by_params=self.addresses.by_call)
         self._waiting[judge] = oldest
 
     def verdicts(self) -> list[tuple[str | None, Verdict]]:
         """What each judge says of its robot, in the order of their first lines."""
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
-            raise _UndecidedError
+            raise _UndecidedError(by_params=self.addresses.by_call)
         return [(robot, located(judge.verdict(), self._stopped.get(robot))) for robot, judge in judges.items()]
 
 
-def _retold(verdict: Verdict, path: str, robot: str | None) -> Verdict:
+def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) -> Verdict:
     """The verdict with the last lines before its violation, read again."""
     if verdict.violation is None:
         return verdict
+    addresses = Addresses(by_params=by_params)
     kept: deque[JSON] = deque(maxlen=KEPT)
     with open_history(path) as source:
         for number, line in lines(source, path):
-            if number > 1 and line.get("robot") == robot:
-                kept.append(line)
+            whose, told = addresses.whose(line)
+            if number > 1 and whose == robot:
+                kept.append(told)
             if number == verdict.violation.at:
                 break
-    told = (*verdict.violation.history, *kept)
-    return evolve(verdict, violation=evolve(verdict.violation, history=told))
+    history = (*verdict.violation.history, *kept)
+    return evolve(verdict, violation=evolve(verdict.violation, history=history))
 
 
 def located(verdict: Verdict, line: int | None) -> Verdict:

@@ -35,7 +35,7 @@ from missionfsm.bear.status.state import GET, Endpoint
 from missionfsm.bear.status.stream import Promised, show
 from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.wire.messages import EventMetadata
-from missionfsm.bear.wire.protojson import Int64, camel, write
+from missionfsm.bear.wire.protojson import Int64, Timestamp, camel, write
 from missionfsm.fakes.errors import error
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
@@ -108,7 +108,7 @@ class Updates(Generic[T]):
     def _come(self, robot: str, timestamp: str, value: T) -> None:
         if self.open:
             number = self._numbers[robot] = self._numbers.get(robot, -1) + 1
-            self._unread.append(Update(robot, EventMetadata(timestamp, Int64(number)), value))
+            self._unread.append(Update(robot, EventMetadata(Timestamp(timestamp), Int64(number)), value))
 
     def _restart(self, robot: str) -> None:
         self._numbers.pop(robot, None)

@@ -64,6 +64,7 @@ class Codec:
             those that only the environment could give.
         skim: the text of a message that is one part, as nearly all are written, to what `strip` finds; None for any
             other text. Two texts of which the same is left have the same content.
+        robot_in_params: whether the system is about one robot, so that params that name a robot only say which.
     """
 
     methods: tuple[str, ...]
@@ -85,3 +86,4 @@ class Codec:
         default=Factory(lambda self: self.drive, takes_self=True)
     )
     skim: Callable[[bytes], Skimmed | None] = lambda _text: None
+    robot_in_params: bool = False

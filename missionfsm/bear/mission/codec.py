@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -14,12 +15,12 @@ from missionfsm.bear.mission.events import Happening
 from missionfsm.bear.mission.inputs import Defect, Request, Wanted
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import show, with_bare_feedback
-from missionfsm.bear.mission.skim import TIMESTAMP, skim
+from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Family, Fault, Kind, World
 from missionfsm.bear.mission.stream import Listing, Seen, without_ids
 from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.messages import Command, Goal, MissionStates
-from missionfsm.bear.wire.protojson import MalformedError, camel, key_of, read, unknown_fields, write
+from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel, key_of, read, unknown_fields, write
 from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
@@ -292,13 +293,16 @@ def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | Non
     return tuple(named), bare
 
 
+_USUAL_TIMESTAMP = re.compile(USUAL_TIMESTAMP)
+
+
 def _sequence_number(metadata: dict[str, JSON]) -> int | None:
     """The sequence number of well-formed metadata; None where they are malformed."""
     number, timestamp = metadata.get("sequenceNumber"), metadata.get("timestamp")
-    if type(timestamp) is str and not TIMESTAMP.fullmatch(timestamp):
-        return None
-    if type(number) is int and type(timestamp) is str and len(metadata) == 2 and 0 <= number < 1 << 63:
-        return number  # by far the commonest form, read without further ado
+    if type(number) is int and type(timestamp) is str and len(metadata) == 2:
+        usual = 0 <= number < 1 << 63 and _USUAL_TIMESTAMP.fullmatch(timestamp)
+        if usual:
+            return number  # by far the commonest form, read without further ado
     try:
         return read(wire.EventMetadata, metadata).sequence_number
     except MalformedError:
@@ -327,10 +331,10 @@ def _about_metadata(metadata: JSON) -> str:
     if metadata is None:
         return "metadata: it is missing"
     try:
-        timestamp = read(wire.EventMetadata, metadata).timestamp
+        read(wire.EventMetadata, metadata)
     except MalformedError as error:
         return str(error.inside("metadata"))
-    return f"metadata.timestamp: {brief(timestamp)} is not a time"
+    return "metadata: they cannot be read"
 
 
 def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:
@@ -472,5 +476,6 @@ CODEC = Codec(
     write_world=write_world,
     write_drive=write_drive,
     skim=skim,
+    robot_in_params=True,
 )
 __all__ = ["CODEC"]

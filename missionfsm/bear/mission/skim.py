@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import re
 
+from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP
 from missionfsm.kernel.codec import Skimmed
 
-_STAMP = r"[0-9]{4}-[0-9]{2}-[0-9]{2}[Tt][0-9]{2}:[0-9]{2}:[0-9]{2}(?:\.[0-9]{1,9})?(?:[Zz]|[+-][0-9]{2}:[0-9]{2})"
-TIMESTAMP = re.compile(_STAMP)
-"""A google.protobuf.Timestamp in JSON."""
 _METADATA = re.compile(
-    rb'{"metadata":{"timestamp":"%b","sequenceNumber":("?)([1-9][0-9]{0,17})\1},' % _STAMP.encode("ascii")
+    rb'{"metadata":{"timestamp":"%b","sequenceNumber":("?)([1-9][0-9]{0,17})\1},' % USUAL_TIMESTAMP.encode("ascii")
 )
 """How nearly all messages begin."""
 _NAME, _OTHER_NAME = b'"missionId":"', b'"mission_id"'

@@ -14,17 +14,18 @@ that was seen before costs a look-up. Memory grows with the number of robots, ne
 from __future__ import annotations
 
 import marshal
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from attrs import frozen
 
-from missionfsm.bear.status.codec import TIMESTAMP, map_value, metadata_of, read_state, single_value
+from missionfsm.bear.status.codec import map_value, metadata_of, read_state, single_value
 from missionfsm.bear.status.spec import sequence
 from missionfsm.bear.status.state import MAPS, PARTS, SINGLES, WIFI, Endpoint, Value
 from missionfsm.bear.status.stream import SELECTED, WELL_FORMED
 from missionfsm.bear.status.values import Fault, a_stuck_state_is_known, faults, reserved_reasons_are_not_used
 from missionfsm.bear.wire.messages import EventMetadata
-from missionfsm.bear.wire.protojson import MalformedError, camel
+from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Mismatch
@@ -58,6 +59,7 @@ class Problem:
 
 
 Verdict = tuple[Fault, ...]
+_USUAL_TIMESTAMP = re.compile(USUAL_TIMESTAMP)
 _POSE = frozenset({"xMeters", "yMeters", "headingRadians"})
 _TWIST = frozenset({"linearVelocity", "angularVelocity"})
 _KNOWN = frozenset(map(camel, PARTS)) - {camel(WIFI)}
@@ -135,7 +137,7 @@ class StreamMonitor:
         track = self._tracks.get(robot)
         if track is None or type(number) is not int or number <= (track.number or 0):
             return self._slowly(robot, metadata, payload)
-        if len(metadata) != 2 or not TIMESTAMP.fullmatch(metadata["timestamp"]):
+        if len(metadata) != 2 or not _USUAL_TIMESTAMP.fullmatch(metadata["timestamp"]):
             return self._slowly(robot, metadata, payload)
         if self._whole:
             if not _may_stand_alone(payload):

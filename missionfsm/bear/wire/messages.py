@@ -6,7 +6,7 @@ import enum
 
 from attrs import frozen
 
-from missionfsm.bear.wire.protojson import Int64, member
+from missionfsm.bear.wire.protojson import Int64, Timestamp, member
 
 
 class Command(enum.IntEnum):
@@ -272,7 +272,7 @@ class MissionId:
 class EventMetadata:
     """When an event was recorded, and its number in the robot's sequence."""
 
-    timestamp: str | None = None
+    timestamp: Timestamp | None = None
     sequence_number: Int64 = Int64(0)
 
 

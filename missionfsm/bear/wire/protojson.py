@@ -5,6 +5,7 @@ What every kind of input means is decided here, once:
 - a name may come in lowerCamelCase or in snake_case; null is the same as absent; absent means the field's default;
 - an enum may come by name or by number; a name that does not exist is malformed, a number that does not is kept;
 - a 64-bit integer may come as a number or as text; a float also as "NaN", "Infinity" or "-Infinity";
+- a timestamp is an RFC 3339 text of a day and a time that exist, or ``{"seconds", "nanos"}``, as recorders write it;
 - a value of another type, a number out of the range of its field, two members of one oneof are malformed;
 - a field that the message does not have is ignored, and `unknown_fields` finds it for those who refuse it.
 """
@@ -16,6 +17,7 @@ import functools
 import math
 import re
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from typing import Any, NewType, TypeVar, get_args
 
 import attrs
@@ -25,6 +27,17 @@ from missionfsm.kernel.text import brief
 
 Int64 = NewType("Int64", int)
 """A 64-bit integer field; `int` is a 32-bit one."""
+
+Timestamp = NewType("Timestamp", str)
+"""A google.protobuf.Timestamp, as a text of RFC 3339."""
+
+_TIME = r"[Tt](?:[01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9](?:\.[0-9]{1,9})?(?:[Zz]|[+-][0-9]{2}:[0-9]{2})"
+USUAL_TIMESTAMP = r"(?!0000)[0-9]{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|1[0-9]|2[0-8])" + _TIME
+"""A regular expression for timestamps of days that every month has: what it does not know has to be read."""
+_ANY_TIMESTAMP = re.compile(
+    r"([0-9]{4}-[0-9]{2}-[0-9]{2})[Tt]([0-9]{2}:[0-9]{2}):([0-9]{2})(?:\.[0-9]{1,9})?(?:[Zz]|[+-][0-9]{2}:[0-9]{2})"
+)
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 T = TypeVar("T")
 
@@ -92,6 +105,34 @@ def _text(value: object, _: object = None) -> str:
     if not isinstance(value, str):
         raise MalformedError(f"{brief(value)} is not a text")
     return value
+
+
+def _timestamp(value: object) -> str:
+    if isinstance(value, dict):
+        return _counted(value)
+    found = _ANY_TIMESTAMP.fullmatch(value) if isinstance(value, str) else None
+    if found is None:
+        raise MalformedError(f"{brief(value)} is not a timestamp")
+    day, minute, second = found.groups()
+    try:  # a leap second counts as the second before
+        datetime.fromisoformat(f"{day}T{minute}:{'59' if second == '60' else second}")
+    except ValueError:
+        raise MalformedError(f"{brief(value)} is not a day and a time that exist") from None
+    return found[0]
+
+
+def _counted(value: dict[str, Any]) -> str:
+    """The timestamp that an object of seconds since 1970 and nanoseconds says."""
+    if not value.keys() <= {"seconds", "nanos"}:
+        raise MalformedError(f"{brief(value)} is not a timestamp")
+    seconds, nanos = (_integer(bits, value.get(name) or 0) for name, bits in (("seconds", 64), ("nanos", 32)))
+    try:
+        when = _EPOCH + timedelta(seconds=seconds)
+    except OverflowError:
+        when = None
+    if when is None or not 0 <= nanos < 1_000_000_000:
+        raise MalformedError(f"{brief(value)} is not a time that exists")
+    return f"{when:%Y-%m-%dT%H:%M:%S}.{nanos:09}Z"
 
 
 def _enum(value: object, kind: type[enum.IntEnum]) -> int:
@@ -178,6 +219,7 @@ def _converter() -> cattrs.Converter:
     converter = cattrs.Converter(detailed_validation=False)
     converter.register_structure_hook(int, lambda value, _: _integer(32, value))
     converter.register_structure_hook_func(lambda kind: kind is Int64, lambda value, _: _integer(64, value))
+    converter.register_structure_hook_func(lambda kind: kind is Timestamp, lambda value, _: _timestamp(value))
     converter.register_structure_hook(float, _float)
     converter.register_structure_hook(str, _text)
     converter.register_structure_hook(enum.IntEnum, _enum)

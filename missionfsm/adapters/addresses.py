@@ -1,0 +1,93 @@
+"""Whose line it is, and when it was written: what any line of a history may carry."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.text import brief
+
+_ROBOT = ("robotId", "robot_id")
+"""How a request of a vendor's cloud, and a message of its streams, names the robot."""
+
+
+class Addresses:
+    """Tells whose line it is, and checks that ``at`` never goes down for one robot; robots' clocks are independent.
+
+    Args:
+        by_params: whether the params of a call may say for which robot it is. Its answer, and what comes on a stream
+            that it opened, are that robot's as well.
+
+    Attributes:
+        by_call: whether any call said so.
+    """
+
+    def __init__(self, *, by_params: bool = False) -> None:
+        self._by_params = by_params
+        self._latest: dict[str | None, float] = {}
+        self._calls: dict[Any, str] = {}
+        self._streams: dict[Any, str] = {}
+        self.by_call = False
+
+    def whose(self, line: JSON) -> tuple[str | None, JSON]:
+        """The robot of a line, and the line without what only names the robot. Raises UnreadableError."""
+        if not isinstance(line, dict):
+            message = f"{brief(line)} is not an object"
+            raise UnreadableError(message)
+        robot = line.get("robot")
+        if robot is None and "robot" not in line:
+            if self._by_params:
+                robot, line = self._addressed(line)
+        elif not isinstance(robot, str):
+            message = f"robot: {brief(robot)} is not a text"
+            raise UnreadableError(message)
+        if "at" in line:
+            self._at(robot, line["at"])
+        return robot, line
+
+    def _at(self, robot: str | None, at: JSON) -> None:
+        if isinstance(at, bool) or not isinstance(at, int | float):
+            message = f"at: {brief(at)} is not a number of seconds"
+            raise UnreadableError(message)
+        latest = self._latest.get(robot)
+        if latest is not None and at < latest:
+            message = f"at: {at} comes after {latest}" + ("" if robot is None else f" of {brief(robot)}")
+            raise UnreadableError(message)
+        self._latest[robot] = at
+
+    def _addressed(self, line: dict[str, JSON]) -> tuple[str | None, JSON]:
+        """Whose line it is by what a call said before, or says itself."""
+        if "call" in line:
+            robot, params = _named(line.get("params"))
+            if robot is None:
+                return None, line
+            self.by_call = True
+            if _is_number(line["call"]):
+                self._calls[line["call"]] = robot
+            return robot, {**line, "params": params}
+        if not self.by_call:
+            return None, line
+        if "return" in line:
+            robot = self._calls.pop(line["return"], None) if _is_number(line["return"]) else None
+            stream = line["result"].get("stream") if isinstance(line.get("result"), dict) else None
+            if robot is not None and _is_number(stream):
+                self._streams[stream] = robot
+            return robot, line
+        stream = line.get("stream")
+        if not _is_number(stream) or stream not in self._streams:
+            return None, line
+        named, message = _named(line.get("message"))
+        return self._streams[stream], line if named is None else {**line, "message": message}
+
+
+def _named(given: JSON) -> tuple[str | None, JSON]:
+    """The robot that an object names, and the object without that."""
+    if isinstance(given, dict):
+        for key in _ROBOT:
+            if key in given and isinstance(given[key], str) and given[key]:
+                return given[key], {name: value for name, value in given.items() if name not in _ROBOT}
+    return None, given
+
+
+def _is_number(value: JSON) -> bool:
+    return type(value) is int

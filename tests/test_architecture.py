@@ -71,7 +71,7 @@ GUESTS = {
     "tools": {"attrs", "graphviz", "transitions"},
     "pages": {"attrs", "jinja2", "markupsafe"},
     "fakes": {"attrs"},
-    "adapters": {"attrs", "orjson"},
+    "adapters": {"attrs", "orjson", "zstandard"},
     "kernel.chart": {"transitions"},
     "tools.conform.conform": {"hypothesis"},
 }

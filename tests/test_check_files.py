@@ -13,7 +13,7 @@ import pytest
 from commandline import CommandLine
 
 from missionfsm.kernel.codec import JSON
-from missionfsm.oracle.transcript import Ids
+from missionfsm.kernel.ids import IdSet
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission", "world": {}}'
 CLEAR = '{"call": 1, "method": "ClearMissionStatus", "params": {}}'
@@ -437,8 +437,8 @@ def test_the_command_itself_refuses_in_one_line(tmp_path: Path) -> None:
 
 
 def test_ids_are_a_set() -> None:
-    """`Ids` tells numbers that came before from new ones, negative and huge ones as well."""
-    ids = Ids()
+    """`IdSet` tells numbers that came before from new ones, negative and huge ones as well."""
+    ids = IdSet()
     numbers = [0, 1, -1, 255, 256, -256, -257, 1 << 62, -(1 << 62)]
     assert [ids.add(number) for number in numbers] == [True] * len(numbers)
     assert [ids.add(number) for number in numbers] == [False] * len(numbers)

@@ -240,7 +240,7 @@ def test_a_number_that_is_missing_is_zero(metadata: JSON) -> None:
         (shown({"goals": [{"destinationId": "a", "pose": {}}]}), "destinationId and pose are set; only one may be"),
         (shown(sequenceNumber="many"), "metadata.sequenceNumber: 'many' is not an integer"),
         (shown(sequenceNumber=2**63), "metadata.sequenceNumber: 9223372036854775808 does not fit into 64 bits"),
-        (shown(timestamp=7), "metadata.timestamp: 7 is not a text"),
+        (shown(timestamp=7), "metadata.timestamp: 7 is not a timestamp"),
     ],
 )
 def test_a_garbled_message_says_where(message: JSON, says: str) -> None:

@@ -6,7 +6,7 @@ import itertools
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 
-from attrs import evolve
+from attrs import evolve, frozen
 
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.historyfile import (
@@ -23,12 +23,12 @@ from missionfsm.adapters.historyfile import (
 )
 from missionfsm.app.watched import subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.readings import constrain
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import KEPT, Judge
+from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Verdict
 
 Lost = Mapping[str | None, frozenset[int]]
@@ -36,23 +36,39 @@ Lost = Mapping[str | None, frozenset[int]]
 
 
 def check_file(
-    path: str, readings: Mapping[str, str] | None = None, tell: Callable[[str], None] = lambda _: None
+    path: str,
+    readings: Mapping[str, str] | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+    *,
+    no_flagged: bool = False,
 ) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot that a history speaks of, in the order of their first lines.
 
     A line without a robot belongs to the one conversation of the file. A file that begins with a message of a status
     subscription is the bare messages of that subscription; what is wrong with one is told at once.
 
+    Args:
+        no_flagged: whether nothing may depart from the letter of the text.
+
     Raises:
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
         ValueError: `readings` names something that does not exist.
     """
+    asked = _Asked(readings or {}, no_flagged)
     if not is_plain_file(path):  # it can be read only once
-        return _judged(path, readings, tell, {}, KEPT)
+        return _judged(path, asked, tell, {}, KEPT)
     try:
-        return _judged(path, readings, tell, None)
+        return _judged(path, asked, tell, None)
     except _UndecidedError as undecided:
-        return _judged(path, readings, tell, lost_calls(path, by_params=undecided.by_params))
+        return _judged(path, asked, tell, lost_calls(path, by_params=undecided.by_params))
+
+
+@frozen
+class _Asked:
+    """What a history has to keep to: readings, and perhaps the letter of the text."""
+
+    readings: Mapping[str, str]
+    no_flagged: bool
 
 
 class _UndecidedError(Exception):
@@ -68,7 +84,7 @@ LOOK = 16
 
 
 def _judged(
-    path: str, readings: Mapping[str, str] | None, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
+    path: str, asked: _Asked, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
 ) -> list[tuple[str | None, Verdict]]:
     """See `check_file`.
 
@@ -91,7 +107,7 @@ def _judged(
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
             return [(None, watch_messages(watched, messages, tell))]
         with placed(path, number):
-            judges = _Judges(line, readings, lost, keep)
+            judges = _Judges(line, asked, lost, keep)
         judges.read(path, texts, numbered)
     finally:
         if path != STDIN:
@@ -115,13 +131,14 @@ class _Judges:
         UnreadableError: that is no first line.
     """
 
-    def __init__(self, line: JSON, readings: Mapping[str, str] | None, lost: Lost | None, keep: int) -> None:
+    def __init__(self, line: JSON, asked: _Asked, lost: Lost | None, keep: int) -> None:
         self._head = head(line)
         self._system = system(self._head.system)
         self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
         self.addresses.whose(line)
-        assumed = constrain(self._system.spec.ambiguities, readings or {})
-        self._automaton = Automaton(self._system.spec, self._head.drives, assumed)
+        decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
+        self._automaton = Automaton(self._system.spec, self._head.drives, decided)
+        self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
         self._nobody = self._new(None)
@@ -133,7 +150,16 @@ class _Judges:
     def _new(self, robot: str | None) -> Judge:
         calls = (self._lost or {}).get(robot, frozenset())
         automaton, keep = self._automaton, self._keep
-        return Judge(self._system, self._head, automaton, fingerprint=fingerprint, lost=calls, keep=keep, apart=True)
+        return Judge(
+            self._system,
+            self._head,
+            automaton,
+            no_flagged=self._no_flagged,
+            fingerprint=fingerprint,
+            lost=calls,
+            keep=keep,
+            apart=True,
+        )
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""

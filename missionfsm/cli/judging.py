@@ -43,6 +43,9 @@ Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
 ]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
+NoFlagged = Annotated[
+    bool, typer.Option("--no-flagged", help="What is explained, and yet departs from the text, is a violation.")
+]
 KnownFile = Annotated[
     str | None,
     typer.Option(
@@ -79,6 +82,7 @@ def conform(  # noqa: PLR0913 - options of the command
         typer.Option("--time", metavar="SECONDS", min=0.1, callback=_finite, help="Begin no further step after that."),
     ] = None,
     reading: Readings = None,
+    no_flagged: NoFlagged = False,
     expect_violations: KnownFile = None,
     distinguish: Annotated[
         bool, typer.Option("--distinguish", help="Try at the end to tell readings apart that are still open.")
@@ -140,6 +144,7 @@ def conform(  # noqa: PLR0913 - options of the command
                 asked: dict[str, Any] = {
                     "seed": secrets.randbits(32) if seed is None else seed,
                     "readings": readings,
+                    "no_flagged": no_flagged,
                     "expected": known,
                     "enough": lambda: deadline is not None and time.monotonic() > deadline,
                     "progress": bar.conversation,
@@ -206,9 +211,10 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
         stop(f"{path}:{error}", BAD_INPUT)
 
 
-def check(
+def check(  # noqa: PLR0913 - options of the command
     files: Annotated[list[str], typer.Argument(metavar="FILE…", help="Recorded histories; - is stdin.")],
     reading: Readings = None,
+    no_flagged: NoFlagged = False,
     expect_violations: KnownFile = None,
     json: JsonFile = None,
     html: HtmlFile = None,
@@ -223,7 +229,9 @@ def check(
     troubles = Troubles()
     for path in files:  # one that cannot be read keeps none of the others from being judged
         with troubles.kept():
-            for robot, judged in _recorded(path, readings, lambda problem: say_shown(problem, json=json)):
+            for robot, judged in _recorded(
+                path, readings, lambda problem: say_shown(problem, json=json), no_flagged=no_flagged
+            ):
                 reached.append((readable(path), robot, excused(judged, known)))
                 say_shown(_headed(*reached[-1]), json=json)
     stale = () if troubles else known.stale  # they may be met in what cannot be read
@@ -240,12 +248,14 @@ def check(
     troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
 
 
-def _recorded(path: str, readings: Mapping[str, str], tell: Callable[[str], None]) -> list[tuple[str | None, Verdict]]:
+def _recorded(
+    path: str, readings: Mapping[str, str], tell: Callable[[str], None], *, no_flagged: bool
+) -> list[tuple[str | None, Verdict]]:
     """The verdicts on a file. Raises UnreadableError, also for readings that there are not."""
     from missionfsm.app.recorded import check_file  # noqa: PLC0415 - commands load what they need
 
     try:
-        return check_file(path, readings, tell)
+        return check_file(path, readings, tell, no_flagged=no_flagged)
     except ValueError as error:
         raise UnreadableError(str(error)) from None
 

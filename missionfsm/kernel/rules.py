@@ -68,6 +68,26 @@ class Document:
         return Citation(self.name, (headings,) if isinstance(headings, str) else headings)
 
 
+@frozen
+class Waiver:
+    """A sentence of a document that is not checked.
+
+    Attributes:
+        name: what is not checked, as a phrase, words joined by hyphens.
+        says: what is not checked and why, in one line for people.
+        cite: where the sentence stands.
+        shown_by: names of the calls and drives in whose use it could have shown; any use of the system if none.
+    """
+
+    name: str
+    says: str
+    cite: Citation
+    shown_by: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.says} [{self.cite}]"
+
+
 Condition = Callable[[Any, Any], bool]
 
 

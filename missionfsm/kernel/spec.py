@@ -25,7 +25,7 @@ from attrs import field, frozen
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, Assumption
-from missionfsm.kernel.rules import Citation, Operation, Rule
+from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
 from missionfsm.kernel.values import value
 
 State = Any
@@ -277,6 +277,7 @@ class Spec:
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         abstraction: how a search and an exploration look at its states.
+        waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
     """
 
@@ -305,6 +306,7 @@ class Spec:
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     abstraction: Abstraction = Abstraction()
+    waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
 
     def size(self, state: State) -> int:

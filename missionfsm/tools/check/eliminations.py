@@ -20,11 +20,15 @@ from missionfsm.tools.check.explain import event_words
 
 @frozen(eq=False)
 class Ruling:
-    """The event that ruled a reading out, and the request that it answers where it is an answer."""
+    """The event that ruled a reading out, and the request that it answers where it is an answer.
+
+    `at` is how many events that ruled something out came before it in its conversation.
+    """
 
     spec: Spec
     event: Event
     request: Any
+    at: int = 0
 
     def __str__(self) -> str:
         words = event_words(self.spec, self.event)
@@ -70,7 +74,7 @@ class Rulings:
         self._left = left
         spec = self._belief.automaton.spec
         request = asked if isinstance(event, Returned) else None
-        ruling = Ruling(spec, event, request)
+        ruling = Ruling(spec, event, request, len(self.found))
         for ambiguity in spec.ambiguities:
             for letter in ambiguity.possible(gone & ambiguity.group):
                 self.found[ambiguity.id, letter] = ruling

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
 from attrs import evolve
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Event, Returned
-from missionfsm.kernel.readings import constrain
+from missionfsm.kernel.history import Called, Event, Returned, Settled
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton, Belief, Tally
 from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
 from missionfsm.tools.check.explain import violation
+from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 KEPT = 200
@@ -33,6 +32,7 @@ class Judge:
         head: the first line of the history.
         automaton: a belief automaton to walk; its own is made where none is given. Sharing one makes many judges fast.
         readings: the readings to assume, in an automaton of its own.
+        no_flagged: whether nothing may depart from the letter of the text.
         fingerprint, lost: see `missionfsm.oracle.transcript.Transcript`.
         keep: how many lines are kept to be shown.
         apart: whether what is exercised is counted apart from what other judges see who share the automaton.
@@ -41,6 +41,7 @@ class Judge:
         right: whether everything so far is explained, within the budget.
         exhausted: whether it was not within the budget.
         read, events, succeeded: how many lines and events were taken into account, and answers were OK.
+        answers: operation to status name to how often it was answered so.
     """
 
     def __init__(  # noqa: PLR0913 - all but the first two have a default
@@ -50,6 +51,7 @@ class Judge:
         automaton: Automaton | None = None,
         *,
         readings: Mapping[str, str] | None = None,
+        no_flagged: bool = False,
         fingerprint: Callable[[JSON], Hashable] = repr,
         lost: frozenset[int] = frozenset(),
         keep: int = KEPT,
@@ -62,8 +64,9 @@ class Judge:
             message = f"drives: {system.name} has no {unknown[0]!r}; it has {', '.join(system.spec.drives)}"
             raise UnreadableError(message)
         self.automaton = automaton or Automaton(
-            system.spec, head.drives, constrain(system.spec.ambiguities, readings or {})
+            system.spec, head.drives, assumed(system.spec, readings, no_flagged=no_flagged)
         )
+        self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
         self.belief = Belief(self.automaton, system.codec.world(head.world), self._tally)
         self.rulings = Rulings(self.belief)
@@ -73,8 +76,10 @@ class Judge:
         self.read = 0
         self.events = 0
         self.succeeded = 0
+        self.answers: dict[str, Counter[str]] = {name: Counter() for name in system.spec.operations}
         self.right = True
         self.exhausted = False
+        self._waits = self._unanswered = False
         self._unexplained: Event | None = None
         self._violation: Violation | None = None
         self._asked: Any = None
@@ -109,9 +114,20 @@ class Judge:
                 return False
             if belief.node not in self._seen:
                 self.rulings.notice(event, self.transcript.answered)
-            if type(event) is Returned and event.answer.code == OK:
-                self.succeeded += 1
+            kind = type(event)
+            if kind is Returned:
+                self._count(event.answer.code)  # type: ignore[union-attr]
+            elif kind is Settled:
+                self._unanswered = self._unanswered or self._waits or len(self.transcript.pending) > 0
+            elif kind is Called and event.lost:  # type: ignore[union-attr]
+                self._waits = True
         return True
+
+    def _count(self, code: str) -> None:
+        if code == OK:
+            self.succeeded += 1
+        if self.transcript.answered is not None:  # that of a cancel is no call
+            self.answers[self.system.spec.request_operation(self.transcript.answered)][code] += 1
 
     @property
     def violation(self) -> Violation | None:
@@ -138,43 +154,35 @@ class Judge:
             outcome, because = Outcome.INCONCLUSIVE, f"event {self.events} has too many explanations to decide"
         elif not exercised:
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
-        return Verdict(
+        spec, readings = self.system.spec, self.belief.readings
+        left_out = uncovered(spec, exercised, readings)
+        ways = [one.assumed for one in self.belief.node.explanations]
+        used = (name for name, codes in self.answers.items() if codes)
+        verdict = Verdict(
             outcome,
             self.system.name,
             events=self.events,
-            readings=self.belief.readings,
+            readings=readings,
             exercised=exercised,
-            uncovered=uncovered(self.system.spec, exercised, self.belief.readings),
+            uncovered=left_out,
             violation=self.violation,
             because=because,
-            flagged=flagged(self.system.spec, self.belief.readings),
-            ruled_out=by_ambiguity(self.system.spec.ambiguities, self.rulings.found),
+            flagged=(*flagged(spec, readings, self.rulings.found, ways), *self.oddities),
+            unchecked=unchecked(spec, (*used, *self.head.drives)),
+            untested=untested(spec, self.answers, self.head.drives, left_out),
+            ruled_out=by_ambiguity(spec.ambiguities, self.rulings.found),
         )
+        return held_to_the_text(verdict) if self._no_flagged else verdict
+
+    @property
+    def oddities(self) -> tuple[str, ...]:
+        """What is explained, and yet belongs to no reading: a line each."""
+        return ("a call was not answered, or only after everything had settled",) if self._unanswered else ()
 
     @property
     def exercised(self) -> dict[str, int]:
         """How often each rule was exercised: here, or by all that walk the automaton."""
         return self.automaton.exercised(self._tally)
-
-
-def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """The ids of the rules that were not exercised, though the readings that are followed have them."""
-    return tuple(
-        rule.id
-        for rule in spec.all_rules
-        if rule.id not in exercised
-        and (rule.under is None or set(rule.under.letters) & set(readings.get(rule.under.of.id, rule.under.letters)))
-    )
-
-
-def flagged(spec: Spec, readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Where the letter of the text is departed from for certain: the readings that may be followed there."""
-    return tuple(
-        f"{ambiguity.id}={'|'.join(letters)}: {ambiguity.question} "
-        + "; or: ".join(ambiguity.readings[letter] for letter in letters)
-        for ambiguity in spec.ambiguities
-        if (letters := readings.get(ambiguity.id, ())) and set(letters) <= ambiguity.flagged
-    )
 
 
 def check(system: System, head: Head, lines: Iterable[JSON], **options: Any) -> Verdict:  # noqa: ANN401 - see Judge

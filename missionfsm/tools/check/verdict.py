@@ -124,6 +124,25 @@ class Experiment:
 
 
 @frozen
+class Untested:
+    """What a judgement says nothing of.
+
+    Attributes:
+        calls: name of an operation to why nothing is known of it.
+        rules: id of a rule to why it was not put to the test.
+        drives: names of the drives that nobody commanded.
+    """
+
+    calls: Mapping[str, str] = field(factory=dict)
+    rules: Mapping[str, str] = field(factory=dict)
+    drives: tuple[str, ...] = ()
+
+    def to_json(self) -> JSON:
+        """The gaps as the command line writes them."""
+        return {"calls": dict(self.calls), "rules": dict(self.rules), "drives": list(self.drives)}
+
+
+@frozen
 class Verdict:
     """A judgement of one implementation or of one recorded history.
 
@@ -131,7 +150,9 @@ class Verdict:
         exercised: rule id to how often it was exercised.
         uncovered: ids of rules that were not.
         readings: ambiguity id to the readings that are still possible, for those that mattered.
-        flagged: readings among those followed that depart from the letter of the text.
+        flagged: what is explained, and yet departs from the letter of the text or from itself, a line each.
+        unchecked: what the specification waives and could have shown, a line each.
+        untested: what nothing can be said of.
         because: why it is inconclusive.
         ruled_out: ambiguity id to letter to the event that ruled it out, in words.
         experiments: for readings that are still open, what would tell them apart.
@@ -153,6 +174,8 @@ class Verdict:
     violation: Violation | None = None
     because: str = ""
     flagged: tuple[str, ...] = ()
+    unchecked: tuple[str, ...] = ()
+    untested: Untested = Untested()
     story: str = ""
     ruled_out: Mapping[str, Mapping[str, str]] = field(factory=dict)
     experiments: tuple[Experiment, ...] = ()
@@ -183,6 +206,9 @@ class Verdict:
                 "uncovered": list(self.uncovered),
                 "rare": dict(self.rare),
             },
+            "flagged": list(self.flagged),
+            "unchecked": list(self.unchecked),
+            "untested": self.untested.to_json(),
             "known": dict(self.known),
             "stale": list(self.stale),
             "notes": list(self.notes),
@@ -215,7 +241,7 @@ class Verdict:
         if self.readings:
             lines += ["", "readings followed:"]
             lines += [f"  {name} = {self._told(name, letters)}" for name, letters in self.readings.items()]
-        lines += [f"  departs from the text: {one}" for one in self.flagged]
+        lines += [f"  {one}" for one in self.flagged]
         for experiment in self.experiments:
             lines += ["", str(experiment)]
         total = len(self.exercised) + len(self.uncovered)

@@ -19,8 +19,8 @@ from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected, held_against
 from missionfsm.tools.check.eliminations import by_ambiguity
-from missionfsm.tools.check.judge import flagged, uncovered
 from missionfsm.tools.check.narrate import story, with_suspects
+from missionfsm.tools.check.scope import flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict
 from missionfsm.tools.conform.conversation import Conversation, Given, Picks
 from missionfsm.tools.conform.coverage import rare
@@ -64,6 +64,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     seed: int = 0,
     readings: Mapping[str, str] | None = None,
     bounds: Bounds | None = None,
+    no_flagged: bool = False,
     expected: Iterable[str] = (),
     distinguish: bool = False,
     advice: bool = True,
@@ -79,6 +80,7 @@ def conform(  # noqa: PLR0913 - every one has a default
             as many are had that the system's alphabet has written down.
         seed: the same seed asks the same of the same implementation.
         readings: readings that the implementation has to follow; the others are found out.
+        no_flagged: whether nothing may depart from the letter of the text, nor from itself.
         expected: ids of rules that are known to be broken: such a violation does not end the search, and one that is
             not met any more makes the verdict a bad one.
         distinguish: whether to try at the end what would tell readings apart that are still open.
@@ -92,12 +94,22 @@ def conform(  # noqa: PLR0913 - every one has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Expected(expected)
-    run = Run.of(system, subject, readings, bounds or BOUNDS, progress=progress, expects=known, enough=enough)
+    run = Run.of(
+        system,
+        subject,
+        readings,
+        bounds or BOUNDS,
+        no_flagged=no_flagged,
+        progress=progress,
+        expects=known,
+        enough=enough,
+    )
     ended = search(run, examples, steps, tours, seed)
     if distinguish and ended and run.found is None and run.contradiction is None:
         tell_apart(run)
     notes = () if ended else (f"it was stopped after {run.examples} conversations",)
-    return verdict_of(run, seed, known, notes, advice=advice)
+    verdict = verdict_of(run, seed, known, notes, advice=advice)
+    return held_to_the_text(verdict) if no_flagged else verdict
 
 
 def planned(system: System, examples: int = DEFAULT_EXAMPLES, tours: int = DEFAULT_TOURS) -> int:
@@ -160,6 +172,8 @@ def verdict_of(
     elif run.contradiction is not None:
         outcome, violation = Outcome.VIOLATES, run.inconsistency()
     spec = run.system.spec
+    left_out = uncovered(spec, exercised, followed)
+    used = (name for name, codes in run.answers.items() if codes)
     verdict = Verdict(
         outcome,
         run.system.name,
@@ -169,10 +183,12 @@ def verdict_of(
         run.events,
         followed,
         exercised,
-        uncovered(spec, exercised, followed),
+        left_out,
         violation,
         because,
-        flagged(spec, followed),
+        (*flagged(spec, followed, run.rulings), *run.oddities),
+        unchecked(spec, (*used, *run.about.drives)),
+        untested(spec, run.answers, run.about.drives, left_out),
         story(run.system, violation.history) if violation and run.found is not None else "",
         by_ambiguity(spec.ambiguities, run.rulings),
         tuple(trial.told(run.system) for trial in proposed(run)) if advice and not run.enough() else (),

@@ -13,6 +13,7 @@ from attrs import define
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected
+from missionfsm.tools.check.scope import held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import verdict_of
 from missionfsm.tools.conform.run import Run
@@ -37,6 +38,7 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
     *,
     seed: int = 0,
     readings: Mapping[str, str] | None = None,
+    no_flagged: bool = False,
     expected: tuple[str, ...] = (),
     enough: Callable[[], bool] = lambda: False,
     progress: Callable[[Run], None] = lambda _: None,
@@ -48,6 +50,7 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         system: the system, with what is to be tried on it in real time.
         conversations: how many, those that are written down among them.
         steps: calls and drives in a conversation, at most.
+        no_flagged: whether nothing may depart from the letter of the text, nor from itself.
         notes: what is to be said with the verdict.
 
     Raises:
@@ -55,7 +58,8 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Expected(expected)
-    run = _LiveRun.of(system, subject, readings, progress=progress, expects=known, enough=enough)
+    run = _LiveRun.of(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
     if run.play():
         run.tour(random.Random(seed), conversations - run.examples, steps)  # noqa: S311 - no secret
-    return verdict_of(run, seed, known, notes)
+    verdict = verdict_of(run, seed, known, notes)
+    return held_to_the_text(verdict) if no_flagged else verdict

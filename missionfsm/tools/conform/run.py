@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import random
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Self
 
@@ -11,11 +12,12 @@ from attrs import define, field
 
 from missionfsm.kernel.alphabet import Bounds, Line, Prompt
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import constrain, meet
+from missionfsm.kernel.readings import meet
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
 from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.contradiction import inconsistent
 from missionfsm.tools.conform.conversation import WRONG_NAME, Action, Conversation, Given, Introduced, Picks, introduce
@@ -53,6 +55,8 @@ class Run:
         found: the conversation that could not be explained.
         over: whether the last conversation ended in a violation that is known; what is done in it then is nothing.
         steps: calls and drives so far.
+        answers: operation to status name to how often it was answered so.
+        oddities: what is explained, and yet belongs to no reading: a line each.
         readings: the readings that every conversation so far can be explained by.
         settled_by: ambiguity and letter to the number of the first conversation that ruled it out.
         rulings: ambiguity and letter to the event in that conversation.
@@ -78,6 +82,8 @@ class Run:
     events: int = 0
     examples: int = 0
     succeeded: int = 0
+    answers: dict[str, Counter[str]] = field(factory=dict)
+    oddities: dict[str, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     settled_by: dict[tuple[str, str], Conversation] = field(factory=dict)
     rulings: dict[tuple[str, str], Ruling] = field(factory=dict)
@@ -94,19 +100,23 @@ class Run:
         subject: Subject,
         readings: Mapping[str, str] | None = None,
         bounds: Bounds = BOUNDS,
+        *,
+        no_flagged: bool = False,
         **options: Any,  # noqa: ANN401 - the other attributes
     ) -> Self:
         """A run against an implementation that nobody knows yet.
 
         Args:
             readings: readings that it has to follow.
+            no_flagged: whether nothing may depart from the letter of the text.
 
         Raises:
             SubjectError: the adapter failed.
             ValueError: `readings` names something that does not exist.
         """
+        decided = assumed(system.spec, readings, no_flagged=no_flagged)
         about = introduce(system, subject)
-        automaton = Automaton(system.spec, about.drives, constrain(system.spec.ambiguities, readings or {}))
+        automaton = Automaton(system.spec, about.drives, decided)
         return cls(system, subject, about, automaton, bounds, **options)
 
     def __attrs_post_init__(self) -> None:
@@ -222,6 +232,9 @@ class Run:
         done = self.last
         assert done is not None, "a conversation has ended"  # noqa: S101 - whoever gathers has had one
         self.events += done.judge.events
+        for name, codes in done.judge.answers.items():
+            self.answers.setdefault(name, Counter()).update(codes)
+        self.oddities.update(dict.fromkeys(done.judge.oddities))
         self.examples += 1
         self.succeeded += done.succeeded
         self.progress(self)

@@ -1,0 +1,160 @@
+"""What a judgement rests on: what departs from the text, what is not checked, what was not put to the test."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+from attrs import evolve
+
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, clashes, constrain, meet, unflagged
+from missionfsm.kernel.rules import OK, UNIMPLEMENTED
+from missionfsm.kernel.spec import Spec
+from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.verdict import Outcome, Untested, Verdict, Violation
+
+Rulings = Mapping[tuple[str, str], Ruling]
+"""Ambiguity id and letter to the event that ruled the letter out."""
+
+Answers = Mapping[str, Mapping[str, int]]
+"""Operation to status name to how often it was answered so."""
+
+
+def assumed(spec: Spec, readings: Mapping[str, str] | None, *, no_flagged: bool) -> int:
+    """What is assumed from the start.
+
+    Args:
+        readings: the readings that have to be followed.
+        no_flagged: whether nothing may depart from the letter of the text.
+
+    Raises:
+        ValueError: a reading does not exist, or departs from the text where nothing may.
+    """
+    wanted = constrain(spec.ambiguities, readings or {})
+    if not no_flagged:
+        return wanted
+    for one in spec.ambiguities:
+        if one.flagged.issuperset(one.possible(wanted)):
+            msg = f"{one.id}={'|'.join(one.possible(wanted))} departs from the text, and nothing that does is accepted"
+            raise ValueError(msg)
+    return wanted & unflagged(spec.ambiguities)
+
+
+def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
+    """The ids of the rules that were not exercised, though the readings that are followed have them."""
+    return tuple(
+        rule.id
+        for rule in spec.all_rules
+        if rule.id not in exercised
+        and (rule.under is None or set(rule.under.letters) & set(readings.get(rule.under.of.id, rule.under.letters)))
+    )
+
+
+def flagged(
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, ways: Iterable[int] = ()
+) -> tuple[str, ...]:
+    """What is explained, and yet departs from the letter of the text or from itself, a line each.
+
+    Args:
+        readings: ambiguity id to the readings that are left, for those that mattered.
+        ways: what each explanation that is left assumes; where there are several, the one that departs least speaks.
+    """
+    left = {one.id: readings.get(one.id, tuple(one.readings)) for one in spec.ambiguities}
+    departing = [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(left[one.id])]
+    followed = meet(ANYTHING, (one[left[one.id]] for one in spec.ambiguities if left[one.id]))
+    apart = list(clashes(spec.ambiguities, followed))
+    least = min(((_departing(spec, way), clashes(spec.ambiguities, way), way) for way in ways), key=_size, default=None)
+    if least is not None:
+        # Readings that are possible each by itself need not be so together.
+        departing += [one for one in least[0] if one not in departing]
+        apart += [pair for pair in least[1] if pair not in apart]
+        left = {one.id: one.possible(least[2]) for one in spec.ambiguities}
+    return (
+        *(_departure(one, left[one.id], rulings) for one in departing),
+        *_incoherences(apart, left, rulings),
+    )
+
+
+def _size(way: tuple[list[Ambiguity], tuple[tuple[Ambiguity, Ambiguity], ...], int]) -> int:
+    return len(way[0]) + len(way[1])
+
+
+def _departing(spec: Spec, assumed: int) -> list[Ambiguity]:
+    """The ambiguities that an execution with these assumptions reads against the letter of the text."""
+    return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(one.possible(assumed))]
+
+
+def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> str:
+    says = "; or: ".join(ambiguity.readings[letter] for letter in letters)
+    event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), rulings)
+    where = f" (seen where {event})" if event else ""
+    return f"{ambiguity.id}={'|'.join(letters)} departs from the text: {ambiguity.question} {says}{where}"
+
+
+def _incoherences(
+    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Rulings
+) -> Iterable[str]:
+    """A line for every question that is read differently where it is asked alike, with an event for each side."""
+    said: set[str | None] = set()
+    for one, other in apart:
+        if one.alike in said:
+            continue
+        said.add(one.alike)
+        sides = []
+        for side, against in ((one, other), (other, one)):
+            event = _event(side, left[against.id], rulings)
+            sides.append(f"{side.id}={'|'.join(left[side.id])}" + (f" (seen where {event})" if event else ""))
+        yield f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
+
+
+def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Rulings) -> str:
+    """The event that ruled out the last of some letters, as far as that is known."""
+    found = [rulings[ambiguity.id, letter] for letter in letters if (ambiguity.id, letter) in rulings]
+    return str(max(found, key=lambda ruling: ruling.at)) if found else ""
+
+
+def unchecked(spec: Spec, used: Iterable[str]) -> tuple[str, ...]:
+    """What the specification waives and could have shown, a line each.
+
+    Args:
+        used: names of the calls and drives that there were.
+    """
+    used = set(used)
+    return tuple(str(one) for one in spec.waived if not one.shown_by or used & set(one.shown_by))
+
+
+def untested(spec: Spec, answers: Answers, drives: Iterable[str], left_out: Iterable[str]) -> Untested:
+    """The calls and the rules that nothing can be said about, each with the reason.
+
+    Args:
+        answers: how calls were answered.
+        drives: the drives that were commanded.
+        left_out: ids of the rules that were not exercised.
+    """
+    missing = tuple(name for name in spec.drives if name not in drives)
+    calls = {name: why for name in spec.operations if (why := _why_not(answers.get(name, {})))}
+    rules = {}
+    for rule_id in left_out:
+        operation = rule_id.split("/")[1]
+        rules[rule_id] = f"{operation} {calls[operation]}" if operation in calls else "never came up"
+    return Untested(calls, rules, missing)
+
+
+def _why_not(codes: Mapping[str, int]) -> str:
+    """Why nothing is known of a call that was answered so; empty where something is."""
+    if not codes:
+        return "was not tried"
+    if codes.keys() == {UNIMPLEMENTED}:
+        return "is not there: UNIMPLEMENTED"
+    if OK in codes:
+        return ""
+    most = ", ".join(f"{code} {times} times" if times > 1 else code for code, times in Counter(codes).most_common(3))
+    return f"never succeeded: {most}"
+
+
+def held_to_the_text(verdict: Verdict) -> Verdict:
+    """The verdict where what is flagged is held against an implementation that conforms otherwise."""
+    if not verdict.conforms or not verdict.flagged:
+        return verdict
+    violation = Violation((), f"What was observed departs from the text: {verdict.flagged[0]}", (), verdict.flagged[1:])
+    return evolve(verdict, outcome=Outcome.VIOLATES, violation=violation)

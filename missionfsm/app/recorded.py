@@ -21,13 +21,13 @@ from missionfsm.adapters.historyfile import (
     placed,
     wrong_line,
 )
-from missionfsm.app.watched import UnplacedError, subscription, watch_messages
+from missionfsm.app.watched import subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
-from missionfsm.tools.check.judge import KEPT, Judge
+from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Verdict
 
@@ -44,9 +44,8 @@ def check_file(
 ) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot that a history speaks of, in the order of their first lines.
 
-    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a
-    subscription, or with the body of a webhook, has bare messages; what is wrong with one is told at once, and each
-    subscription has a verdict.
+    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a status
+    subscription is the bare messages of that subscription; what is wrong with one is told at once.
 
     Args:
         no_flagged: whether nothing may depart from the letter of the text.
@@ -103,12 +102,10 @@ def _judged(
             raise UnreadableError(message)
         with placed(path, number):
             line = texts.json(text)
-        if subscription(line):
+        watched = subscription(line)
+        if watched:
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
-            try:
-                return [(None, verdict) for verdict in watch_messages(messages, tell)]
-            except UnplacedError as error:
-                raise wrong_line(path, error.number, error) from None
+            return [(None, watch_messages(watched, messages, tell))]
         with placed(path, number):
             judges = _Judges(line, asked, lost, keep)
         judges.read(path, texts, numbered)
@@ -140,7 +137,7 @@ class _Judges:
         self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
         self.addresses.whose(line)
         decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
-        self._automaton = Automaton(self._system.spec, self._head.drives, decided)
+        self._automaton = Automaton(self._system.spec, self._head.drives, decided, PATIENCE)
         self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
@@ -175,8 +172,8 @@ class _Judges:
                 known = again(text) if read_again and not self.addresses.by_call else None
                 if known is None:
                     self._take(number, text, texts.json(text))
-                elif not take(known):  # it names neither a time nor a robot, as most lines
-                    self._stopped.setdefault(None, number)
+                elif not take(known, number):  # it names neither a time nor a robot, as most lines
+                    self._stopped.setdefault(None, nobody.place or number)
             except UnreadableError as error:
                 raise wrong_line(path, number, error) from None
 
@@ -189,8 +186,9 @@ class _Judges:
         if self._lost is None and robot is not None and not judge.read % LOOK:
             self._look(judge)
         comes_again = plain and not self._keep and robot is None
-        if not (judge.take(self._texts.read(text, line)) if comes_again else judge.feed(line)):
-            self._stopped.setdefault(robot, number)
+        right = judge.take(self._texts.read(text, line), number) if comes_again else judge.feed(line, number)
+        if not right:
+            self._stopped.setdefault(robot, judge.place or number)
 
     def _look(self, judge: Judge) -> None:
         """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""
@@ -204,7 +202,8 @@ class _Judges:
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
             raise _UndecidedError(by_params=self.addresses.by_call)
-        return [(robot, located(judge.verdict(), self._stopped.get(robot))) for robot, judge in judges.items()]
+        told = [(robot, judge, judge.verdict()) for robot, judge in judges.items()]
+        return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]
 
 
 def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) -> Verdict:

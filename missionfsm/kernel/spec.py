@@ -276,10 +276,12 @@ class Spec:
         decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
+        foresees: (state, its names, content, names of the content) to whether the state may come to be shown as the
+            content, by whatever steps; None where nothing is known of that. Names are numbers; one below -1 was not
+            seen yet and may be any. It has to be true wherever it is possible: it only saves a search the trouble.
         abstraction: how a search and an exploration look at its states.
         waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
-        transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
     """
 
     system: str
@@ -306,10 +308,10 @@ class Spec:
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
+    foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = Abstraction()
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
-    transport: bool = False
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

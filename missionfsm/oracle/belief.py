@@ -8,6 +8,7 @@ the order in which the explanations mention them, so that the same situation wit
 
 from __future__ import annotations
 
+import copy
 from collections import defaultdict
 from collections.abc import Hashable, Iterable
 from typing import Any
@@ -30,7 +31,7 @@ from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.subsumption import surviving_names
-from missionfsm.oracle.successors import Moves
+from missionfsm.oracle.successors import BUDGET, Moves, Sighting
 from missionfsm.oracle.transition import Oracle
 
 Tally = defaultdict[int, int]
@@ -82,15 +83,16 @@ class Automaton:
         spec: the system.
         driven: names of the drives that a tester commands.
         assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
+        budget: how many explanations a single event may cost.
 
     Attributes:
         tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
     """
 
-    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING) -> None:
+    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
         self.spec = spec
         self.assumed = assumed
-        self.moves = Moves(spec, driven, assumed)
+        self.moves = Moves(spec, driven, assumed, budget)
         self.oracle = Oracle(self.moves)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
@@ -122,7 +124,13 @@ class Automaton:
     def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
         kind, *what = symbol
-        sightings = self.oracle.step(node.explanations, kind, *what)
+        edge = self.arrive(node, self.oracle.step(node.explanations, kind, *what))
+        node.next[symbol] = edge
+        self._edges += 1
+        return edge
+
+    def arrive(self, node: Node, sightings: tuple[Sighting, ...]) -> Edge:
+        """Where explanations that were found lead from a node. An empty node means: no explanation is left."""
         explanations = tuple(sighting.explanation for sighting in sightings)
         new = surviving_names(explanations)
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
@@ -132,21 +140,25 @@ class Automaton:
         numbered = tuple(rename(one, new) for one in explanations)
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)
-        touched = self._touched({one.assumed for one in node.explanations}, {one.assumed for one in explanations})
         in_order = keep == tuple(range(len(keep)))
         rules = tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules))
-        edge = Edge(
+        return Edge(
             next_node,
             None if in_order and len(keep) == node.width and not retired else keep,
             retired,
-            self._rules.setdefault(rules, len(self._rules)),
-            touched,
+            self.numbered(rules),
+            self.touched(node.explanations, explanations),
             len(keep) > node.width and in_order and not retired,
             len(keep) < node.width and in_order and not retired,
         )
-        node.next[symbol] = edge
-        self._edges += 1
-        return edge
+
+    def numbered(self, rules: tuple[str, ...]) -> int:
+        """The number of a set of rules in a `Tally`."""
+        return self._rules.setdefault(rules, len(self._rules))
+
+    def touched(self, before: Iterable[Explanation], after: Iterable[Explanation]) -> int:
+        """The bits of the ambiguities on which it depends what explains an event."""
+        return self._touched({one.assumed for one in before}, {one.assumed for one in after})
 
     def _touched(self, before: set[int], after: set[int]) -> int:
         """The bits of the ambiguities of which other readings are possible now."""
@@ -177,6 +189,9 @@ class Belief:
     ``observe`` returns False once no explanation is left; from then on it stays so, and `node` is the last one that
     had explanations.
 
+    `unfollowed` has the bits of the readings that explanations may follow which a search has left aside; while it is
+    not 0, the explanations of the node are not all there are.
+
     Args:
         automaton: the automaton that it walks.
         world: where it begins.
@@ -185,6 +200,7 @@ class Belief:
 
     __slots__ = (
         "_given_up",
+        "_latest",
         "_marks",
         "_names",
         "_numbers",
@@ -195,6 +211,7 @@ class Belief:
         "broken",
         "node",
         "touched",
+        "unfollowed",
     )
 
     def __init__(self, automaton: Automaton, world: object, tally: Tally | None = None) -> None:
@@ -203,10 +220,12 @@ class Belief:
         self.node = automaton.start(world)
         self.broken = False
         self.touched = 0
+        self.unfollowed = 0
         self._names: list[Name] = []
         self._numbers: dict[Name, int] = {}
         self._retired: dict[Name, None] = {}
         self._given_up: dict[Name, None] = {}
+        self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
         self._renumbered: set[tuple[Name, Hashable]] = set()
 
@@ -229,20 +248,79 @@ class Belief:
         if not edge.node.explanations:
             self.broken = True
             return False
-        if kind is Received and event.marks:  # type: ignore[union-attr]
-            self._mark(event.channel, event.marks)  # type: ignore[union-attr]
         self.node = edge.node
         self.touched |= edge.touched
         if edge.keep is not None:
             self._rename(edge, edge.keep, new)
-        if kind is Driven:
-            self._start_over(event.event)  # type: ignore[union-attr]
-        elif kind is Cancelled:
-            self._given_up[event.channel] = None  # type: ignore[union-attr]
-            self._unmark(event.channel)  # type: ignore[union-attr]
+        if kind is Received or kind is Driven or kind is Cancelled:
+            self._note(event)
+        return True
+
+    def _note(self, event: Event) -> None:
+        """Remember what an event says of the numbers on a channel."""
+        if type(event) is Received:
+            self._latest[event.channel] = event
+            if event.marks:
+                self._mark(event.channel, event.marks)
+        elif type(event) is Driven:
+            self._start_over(event.event)
+        elif type(event) is Cancelled:
+            self._given_up[event.channel] = None
+            self._unmark(event.channel)
             if len(self._given_up) > REMEMBERED:
                 del self._given_up[next(iter(self._given_up))]
-        return True
+
+    # A window of events that are searched together.
+
+    def lookout(self) -> Belief:
+        """A belief at the same point to number events with, of which this one learns nothing."""
+        other = copy.copy(self)
+        other.node = Node(self.node.explanations, self.node.width)
+        other._names, other._numbers = self._names.copy(), self._numbers.copy()  # noqa: SLF001 - of the same class
+        other._retired, other._given_up = self._retired.copy(), self._given_up.copy()  # noqa: SLF001
+        other._marks = {channel: tracks.copy() for channel, tracks in self._marks.items()}  # noqa: SLF001
+        other._latest = self._latest.copy()  # noqa: SLF001
+        other._renumbered = self._renumbered.copy()  # noqa: SLF001
+        return other
+
+    @property
+    def latest(self) -> dict[int, tuple[Hashable, tuple[int, ...]]]:
+        """What each channel has shown last, with numbers for names."""
+        number = self._numbers.get
+        return {
+            number(channel, GONE): (event.content, tuple(number(name, GONE) for name in event.names))
+            for channel, event in self._latest.items()
+        }
+
+    def foresee(self, event: Event) -> tuple[Any, ...] | None:
+        """An event with numbers for names, and the new names numbered for good; None for one that means nothing."""
+        if type(event) in (Received, Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
+            return None
+        symbol, new = self.symbol(event)
+        for name in new:
+            self._numbers[name] = len(self._names)
+            self._names.append(name)
+        self.node.width = len(self._names)
+        self._note(event)
+        return symbol
+
+    def leap(self, lookout: Belief, found: tuple[Sighting, ...], exercised: Iterable[tuple[str, ...]]) -> None:
+        """Go to where a search has led that numbered its events with a lookout.
+
+        Args:
+            found: the explanations after the last event.
+            exercised: the sets of rules that were exercised on the way.
+        """
+        edge = self.automaton.arrive(lookout.node, found)
+        for rules in exercised:
+            self._tally[self.automaton.numbered(rules)] += 1
+        self._names, self._numbers = lookout._names, lookout._numbers
+        self._retired, self._given_up = lookout._retired, lookout._given_up
+        self._latest = lookout._latest
+        self._marks, self._renumbered = lookout._marks, lookout._renumbered
+        self.node = edge.node
+        if edge.keep is not None:
+            self._rename(edge, edge.keep, [])
 
     def symbol(self, event: Event) -> tuple[tuple[Any, ...], list[Name]]:
         """The event with numbers for names, as the automaton knows it, and the names that are new."""
@@ -319,6 +397,7 @@ class Belief:
 
     def _unmark(self, channel: Name) -> None:
         """A channel numbers nothing any more."""
+        self._latest.pop(channel, None)
         if self._renumbered:
             self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
         self._marks.pop(channel, None)
@@ -358,12 +437,18 @@ class Belief:
     def readings(self) -> dict[str, tuple[str, ...]]:
         """For every ambiguity that mattered so far: the readings that some explanation still follows."""
         found = {}
+        left = self.left
         for ambiguity in self.automaton.spec.ambiguities:
             if self.touched & ambiguity.group or any(
                 one.assumed & ambiguity.group != ambiguity.group for one in self.node.explanations
             ):
-                union = 0
-                for one in self.node.explanations:
-                    union |= one.assumed
-                found[ambiguity.id] = ambiguity.possible(union)
+                found[ambiguity.id] = ambiguity.possible(left)
         return found
+
+    @property
+    def left(self) -> int:
+        """The bits of all readings that some explanation still follows, as far as is known."""
+        left = self.unfollowed
+        for one in self.node.explanations:
+            left |= one.assumed
+        return left

@@ -11,7 +11,7 @@ from typing import Any
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, meet
-from missionfsm.kernel.spec import Match, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Failure, Match, Mismatch, Spec, Step
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
     GONE,
@@ -28,6 +28,7 @@ from missionfsm.oracle.explanation import (
     within,
     without_lost,
 )
+from missionfsm.oracle.lookahead import Lookahead
 
 _EQUAL = (Match(),)
 """The one way in which equal answers agree."""
@@ -78,6 +79,7 @@ class Moves:
         self._urgent: dict[Any, tuple[Step, ...]] = {}
         self._unseen: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
+        self.ahead: Lookahead | None = None
         self._spent = 0
 
     def reset(self) -> None:
@@ -181,13 +183,34 @@ class Moves:
         refs = tuple(explanation.ref(arg) for arg in call.args)
         for step in self.outcomes(explanation.state, call.request, refs):
             if step.answer is not None and step.applied and not changes(explanation.state, step):
-                yield Ready(step.answer, tuple(explanation.names[ref] for ref in step.refs), step.assumes, step.rules)
+                names = tuple(explanation.names[ref] for ref in step.refs)
+                if self.may_answer(call, step.answer, names):
+                    yield Ready(step.answer, names, step.assumes, step.rules)
+
+    def may_answer(self, call: InFlight, answer: Answer, names: Names) -> bool:
+        """Whether a call may come back with this answer, as far as it is known with which it does."""
+        known = self.ahead.answer(call.name) if self.ahead else None
+        if known is None:
+            return True
+        given, observed = known
+        if len(names) != len(observed) or not self.agreements(answer, given):
+            return False
+        if answer.unordered:
+            return all(name in observed for name in names if name > GONE)
+        return all(name == other or name < GONE for name, other in zip(names, observed, strict=True))
 
     def late_answers(self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]) -> Iterator[Ready]:
         """What a call may be answered that is given up although it takes effect, now or later."""
         for step in self.outcomes(explanation.state, call.request, refs):
-            if step.answer is not None and not step.applied:
+            if step.answer is not None and not step.applied and self.may_answer(call, step.answer, ()):
                 yield Ready(step.answer, (), step.assumes, step.rules)
+
+    def may_fail(self, call: InFlight, code: str) -> Failure | None:
+        """That a call may be answered with a code whatever the state is, without anybody's doing; None if not."""
+        failure = self.spec.failing(call.request, code)
+        if failure is None or (failure.driven and "fault" in self.driven):
+            return None
+        return failure
 
     def addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
         """The explanation with the positions of a request's names.
@@ -226,7 +249,9 @@ class Moves:
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
         taken = self.advance(explanation, step, besides=besides)
         if taken:
-            yield Sighting(tidy(taken[0]), step.rules)
+            after = tidy(taken[0])
+            if self.ahead is None or self.ahead.leads(after):
+                yield Sighting(after, step.rules)
 
     def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
         for where, refs in self.addressed(explanation, explanation.calls[position].args):
@@ -236,11 +261,37 @@ class Moves:
                 taken = self.advance(where, step, besides=besides)
                 if taken:
                     after, names = taken
+                    call = after.calls[position]
                     done = Ready(step.answer, names, (), step.rules)
-                    calls = list(after.calls)
                     late = () if step.opens else tuple(self.late_answers(where, where.calls[position], refs))
-                    calls[position] = InFlight(calls[position].name, calls[position].request, (), late, done)
-                    yield Sighting(tidy(after.but(calls=tuple(calls))), step.rules)
+                    calls = list(after.calls)
+                    calls[position] = InFlight(call.name, call.request, (), late, done)
+                    bound = self._foreseen(after.but(calls=tuple(calls)), calls[position], done)
+                    if bound:
+                        yield Sighting(tidy(bound), step.rules)
+
+    def _foreseen(self, explanation: Explanation, call: InFlight, done: Ready) -> Explanation | None:
+        """The explanation in which a call has taken effect, with the names that it is known to be answered with.
+
+        None where it is known to come back with something else, or where what is known of later is out of reach.
+        """
+        ahead = self.ahead
+        if ahead is None:
+            return explanation
+        known = ahead.answer(call.name)
+        if known:
+            answer, names = known
+            if self.may_answer(call, done.answer, done.names):
+                if not done.answer.unordered:
+                    bound = unify(explanation, zip(done.names, names, strict=True))
+                    if bound is None:
+                        return None
+                    explanation = bound
+            elif not call.ready:
+                failure = self.may_fail(call, answer.code)
+                if failure is None or not failure.open_ended:
+                    return None
+        return explanation if ahead.leads(explanation) else None
 
     def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:
         """Explanations and everything that they can silently become, nearest first.

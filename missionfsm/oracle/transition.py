@@ -53,8 +53,12 @@ class Oracle:
             ExhaustedError: the event costs more than the budget.
         """
         self.moves.reset()
+        return sift(self.moves, self.explained(explanations, kind, *what))
+
+    def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Sighting]:  # noqa: ANN401
+        """The same, one by one: the nearest first, some of them in several ways."""
         observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
-        return sift(self.moves, observe(self, explanations, *what))
+        return observe(self, explanations, *what)
 
     def _called(
         self,
@@ -78,9 +82,13 @@ class Oracle:
             position = _position(explanation, call)
             if position is None:
                 continue
-            yield from self._failed(explanation, position, answer, names)
+            failed = self._failed(explanation, position, answer, names)
+            if failed:
+                yield Sighting(tidy(failed))
             if explanation.calls[position].done is None:
-                undone.append(explanation)
+                # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
+                if not (failed and failed.lost != explanation.lost and failed.assumed == explanation.assumed):
+                    undone.append(explanation)
                 continue
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, answer, names):
@@ -91,27 +99,24 @@ class Oracle:
                 for after, rules in self._answered(sighting.explanation, position, answer, names):
                     yield Sighting(tidy(after), sighting.rules + rules)
 
-    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Sighting]:
+    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Explanation | None:
         """The explanation in which the call has failed without anybody's doing, which any state allows.
 
-        What is silent may as well come after it, so that this explanation is enough.
+        What is silent may as well come after it, so that this explanation is enough. None where it cannot have.
         """
         if names or answer.shape is not None:
-            return
+            return None
         one = explanation.calls[position]
-        failure = self.spec.failing(one.request, answer.code)
-        if (
-            failure is None
-            or (failure.driven and "fault" in self.moves.driven)
-            or (one.done and not failure.open_ended)
-        ):
-            return
+        failure = self.moves.may_fail(one, answer.code)
+        if failure is None or (one.done and not failure.open_ended):
+            return None
         assumed = meet(explanation.assumed, failure.assumes)
-        if assumed:
-            calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
-            late = failure.open_ended and not one.done
-            lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
-            yield Sighting(tidy(explanation.but(assumed=assumed, calls=calls, lost=lost)))
+        if not assumed:
+            return None
+        calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
+        late = failure.open_ended and not one.done
+        lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
+        return explanation.but(assumed=assumed, calls=calls, lost=lost)
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names

@@ -68,8 +68,8 @@ def test_one_mission_is_not_cleared_twice(tmp_path: Path, ids: list[str]) -> Non
     assert verdict.outcome is Outcome.VIOLATES
 
 
-@pytest.mark.parametrize(("count", "outcome"), [(3, Outcome.CONFORMS), (12, Outcome.INCONCLUSIVE)])
-def test_too_many_ways_to_name_missions_are_given_up(tmp_path: Path, count: int, outcome: Outcome) -> None:
+@pytest.mark.parametrize("count", [3, 12, 60])
+def test_one_way_to_name_missions_is_enough(tmp_path: Path, count: int) -> None:
     """What is cleared and was never named can be any of the missions that a lost batch created, in any order."""
     goal = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
     verdict = judged(
@@ -81,4 +81,4 @@ def test_too_many_ways_to_name_missions_are_given_up(tmp_path: Path, count: int,
         {"call": 3, "method": "ClearMissionStatus"},
         {"return": 3, "result": {"missionIds": [f"m-{number}" for number in range(count)]}},
     )
-    assert verdict.outcome is outcome
+    assert verdict.outcome is Outcome.CONFORMS

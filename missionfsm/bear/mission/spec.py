@@ -21,6 +21,7 @@ from missionfsm.bear.mission.effects import (
     target,
 )
 from missionfsm.bear.mission.events import Happening, by_itself, due, happens
+from missionfsm.bear.mission.foresight import foresees
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
@@ -304,6 +305,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         charts=(LIFECYCLE,),
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
+        foresees=foresees,
         abstraction=Abstraction(
             situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
             shape=_shape,

@@ -303,6 +303,15 @@ def _goals(mission: Mission, message: MissionState, where: str) -> None:
         raise _WrongError(GOALS, f"{where} has the goals {_told(message.goals)}, expected {_told(wanted)}")
 
 
+def has_goals(mission: Mission, message: MissionState) -> bool:
+    """Whether a message lists the goals of a mission."""
+    try:
+        _goals(mission, message, "")
+    except _WrongError:
+        return False
+    return True
+
+
 FLOAT_STEP = 1e-6
 """Poses travel as 32-bit floats: what comes back is as close to what was asked as that."""
 

@@ -79,6 +79,11 @@ class Rulings:
             for letter in ambiguity.possible(gone & ambiguity.group):
                 self.found[ambiguity.id, letter] = ruling
 
+    def skip(self) -> None:
+        """Many events together have ruled out what is gone since: none of them is held to have done it."""
+        self._left = self._belief.left
+        self.seen.add(self._belief.node)
+
 
 def _left(node: Node) -> int:
     left = 0

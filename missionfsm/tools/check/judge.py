@@ -13,15 +13,19 @@ from missionfsm.kernel.history import Called, Event, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton, Belief, Tally
-from missionfsm.oracle.successors import ExhaustedError
+from missionfsm.oracle.successors import BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
 from missionfsm.tools.check.explain import violation
+from missionfsm.tools.check.held import Held, HeldEvent
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 KEPT = 200
 """How many lines before a violation a verdict shows of a long history."""
+
+PATIENCE = 1_000
+"""How many explanations an event of a recorded history may cost before it waits for those that follow."""
 
 
 class Judge:
@@ -36,10 +40,13 @@ class Judge:
         fingerprint, lost: see `missionfsm.oracle.transcript.Transcript`.
         keep: how many lines are kept to be shown.
         apart: whether what is exercised is counted apart from what other judges see who share the automaton.
+        waits: whether an event that is too dear to explain at once may wait for those that follow; nobody who drives
+            an implementation can wait.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
         exhausted: whether it was not within the budget.
+        place: where the line is that nothing explains, if it was not the last one that came.
         read, events, succeeded: how many lines and events were taken into account, and answers were OK.
         answers: operation to status name to how often it was answered so.
     """
@@ -56,6 +63,7 @@ class Judge:
         lost: frozenset[int] = frozenset(),
         keep: int = KEPT,
         apart: bool = False,
+        waits: bool = True,
     ) -> None:
         self.system = system
         self.head = head
@@ -63,9 +71,8 @@ class Judge:
         if unknown:
             message = f"drives: {system.name} has no {unknown[0]!r}; it has {', '.join(system.spec.drives)}"
             raise UnreadableError(message)
-        self.automaton = automaton or Automaton(
-            system.spec, head.drives, assumed(system.spec, readings, no_flagged=no_flagged)
-        )
+        decided = assumed(system.spec, readings, no_flagged=no_flagged)
+        self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else BUDGET)
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
         self.belief = Belief(self.automaton, system.codec.world(head.world), self._tally)
@@ -83,9 +90,15 @@ class Judge:
         self._unexplained: Event | None = None
         self._violation: Violation | None = None
         self._asked: Any = None
+        self._patient = waits
+        self._held: Held | None = None
+        self.place: int | None = None
 
-    def feed(self, line: JSON) -> bool:
+    def feed(self, line: JSON, place: int = 0) -> bool:
         """Take a line into account; False once the verdict cannot get better.
+
+        Args:
+            place: where the line stands, for `place`.
 
         Raises:
             UnreadableError: the line is not of the format.
@@ -93,19 +106,29 @@ class Judge:
         events = self.transcript.read(line)
         if self.right:
             self.lines.append(line)
-        return self.take(events)
+        return self.take(events, place)
 
-    def take(self, events: tuple[Event, ...]) -> bool:
-        """Take the events of a line into account that was read already and need not be shown; see `feed`."""
+    def take(self, events: tuple[Event, ...], place: int = 0) -> bool:
+        """Take the events of a line into account that was read already and need not be shown; see `feed`.
+
+        Args:
+            place: where the line stands, for `place`.
+        """
         if not self.right:
             return False
         self.read += 1
+        if self._held is not None:
+            return self._hold(events, place)
         belief = self.belief
-        for event in events:
+        for position, event in enumerate(events):
             self.events += 1
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
+                if self._patient:
+                    self.events -= 1
+                    self._held = Held(belief)
+                    return self._hold(events[position:], place)
                 self.exhausted, self.right = True, False
                 return False
             if not explained:
@@ -115,19 +138,56 @@ class Judge:
             if belief.node not in self._seen:
                 self.rulings.notice(event, self.transcript.answered)
             kind = type(event)
-            if kind is Returned:
-                self._count(event.answer.code)  # type: ignore[union-attr]
-            elif kind is Settled:
-                self._unanswered = self._unanswered or self._waits or len(self.transcript.pending) > 0
-            elif kind is Called and event.lost:  # type: ignore[union-attr]
-                self._waits = True
+            if kind is Returned or kind is Settled or kind is Called:
+                self._count(event, self.transcript.answered, open_calls=len(self.transcript.pending) > 0)
         return True
 
-    def _count(self, code: str) -> None:
-        if code == OK:
-            self.succeeded += 1
-        if self.transcript.answered is not None:  # that of a cancel is no call
-            self.answers[self.system.spec.request_operation(self.transcript.answered)][code] += 1
+    def _count(self, event: Event, asked: Any, *, open_calls: bool) -> None:  # noqa: ANN401 - of any system
+        """Count an event that is explained: what was asked if it is an answer, and whether calls had none then."""
+        if type(event) is Returned:
+            if event.answer.code == OK:
+                self.succeeded += 1
+            if asked is not None:  # that of a cancel is no call
+                self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
+        elif type(event) is Settled:
+            self._unanswered = self._unanswered or self._waits or open_calls
+        elif type(event) is Called and event.lost:
+            self._waits = True
+
+    def _hold(self, events: tuple[Event, ...], place: int) -> bool:
+        """Events wait for those that follow."""
+        held = self._held
+        assert held is not None, "somebody has begun to hold events back"  # noqa: S101
+        for event in events:
+            open_calls = len(self.transcript.pending) > 0
+            held.add(HeldEvent(event, self.transcript.answered, self.read, place, open_calls))
+        return self._decide(held, whole=False) if held.due else True
+
+    def _decide(self, held: Held, *, whole: bool) -> bool:
+        """Explain the events that wait; those of a search that was not exhaustive go on waiting if more may come."""
+        try:
+            explained, exact = held.explain(whole=whole)
+        except ExhaustedError:
+            self.events += held.reached + 1
+            self.exhausted, self.right = True, False
+            return False
+        if explained and not (exact or whole):
+            held.wait()
+            return True
+        self._held = None
+        known = held.lines if explained else held.lines[: held.unexplained]
+        self.events += len(known)
+        for line in known:
+            self._count(line.event, line.asked, open_calls=line.open_calls)
+        self.rulings.skip()
+        if not explained:
+            line = held.lines[held.unexplained]
+            self.events += 1
+            for _ in range(min(self.read - line.read, len(self.lines))):
+                self.lines.pop()
+            self._unexplained, self._asked, self.read, self.place = line.event, line.asked, line.read, line.place
+            self.right = False
+        return self.right
 
     @property
     def violation(self) -> Violation | None:
@@ -147,6 +207,8 @@ class Judge:
 
     def verdict(self) -> Verdict:
         """The judgement of what was fed so far."""
+        if self._held is not None and self.right:
+            self._decide(self._held, whole=True)
         outcome, because, exercised = Outcome.CONFORMS, "", self.exercised
         if self._unexplained is not None:
             outcome = Outcome.VIOLATES

@@ -1,0 +1,158 @@
+"""What later events of a recorded conversation tell about the ones before them.
+
+Where a conversation is recorded nobody has to imagine every order at once: which answer a call comes back with, and
+what a stream shows next, stands further down. A `Lookahead` knows it up to a horizon, and says of an explanation
+whether it can still lead there. It only ever leaves out what cannot explain the events up to the horizon, so that a
+search that it leads finds an explanation exactly where there is one.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any
+
+from missionfsm.kernel.history import Answer, Cancelled, Ended, Received, Returned, Settled
+from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
+
+NEXT = 4
+"""How many of the messages that a stream shows next are compared with what it owes."""
+
+Symbol = tuple[Any, ...]
+"""An event with numbers for names, as the belief automaton knows it: its class and its fields."""
+
+
+Message = tuple[Hashable, Names]
+"""What a message shows: its content, and the names in it."""
+
+
+class Lookahead:
+    """What the events of a window say of those before them.
+
+    Args:
+        spec: the system.
+        symbols: the events.
+        horizon: how many of them may be known beforehand.
+        latest: what each channel showed last before the window.
+
+    Attributes:
+        at: how many of them have been observed.
+    """
+
+    def __init__(self, spec: Spec, symbols: Sequence[Symbol], horizon: int, latest: Mapping[int, Message]) -> None:
+        self.spec = spec
+        self.at = 0
+        self.answers: dict[int, tuple[Answer, Names]] = {}
+        self._messages: dict[int, tuple[list[int], list[Message]]] = {}
+        self._settled: list[int] = []
+        self._latest = latest
+        self._passed: dict[Any, bool] = {}
+        self._shows: dict[Any, bool] = {}
+        ended: set[int] = set()
+        for position, (kind, *what) in enumerate(symbols[:horizon]):
+            if kind is Returned:
+                answer, names, call = what
+                if call > GONE:
+                    self.answers[call] = answer, names
+            elif kind is Received:
+                content, names, _, channel = what
+                if channel > GONE and channel not in ended:
+                    positions, messages = self._messages.setdefault(channel, ([], []))
+                    positions.append(position)
+                    messages.append((content, names))
+            elif kind is Settled:
+                self._settled.append(position)
+            elif kind in (Cancelled, Ended):
+                ended.add(what[-1])
+                # What is still owed to it then is never shown, and nobody minds.
+                self._messages.pop(what[-1], None)
+        self._ended = ended
+
+    def answer(self, call: int) -> tuple[Answer, Names] | None:
+        """What a call in flight comes back with, and with which names; None where it is not known."""
+        return self.answers.get(call)
+
+    def leads(self, explanation: Explanation) -> bool:
+        """Whether the explanation may still come to show what the streams show next."""
+        if not (self._messages or self._settled):
+            return True
+        channels = [one for one in explanation.channels if one.name > GONE and one.name not in self._ended]
+        if len(channels) > 1 and len({channel.name for channel in channels}) < len(channels):
+            return True  # which of the channels that share a name a message is about, nobody knows beforehand
+        return all(self._channel_leads(explanation, channel) for channel in channels)
+
+    def _channel_leads(self, explanation: Explanation, channel: Channel) -> bool:
+        positions, messages = self._messages.get(channel.name, _NO_MESSAGES)
+        first = bisect.bisect_left(positions, self.at)
+        quiet = bisect.bisect_left(self._settled, self.at)
+        if first == len(positions) and quiet == len(self._settled):
+            return True
+        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet)
+        found = self._passed.get(key)
+        if found is None:
+            last = len(positions)
+            if quiet < len(self._settled):
+                last = bisect.bisect_left(positions, self._settled[quiet], first)
+            due = messages[first:last]
+            rests = quiet < len(self._settled) and len(due) <= NEXT
+            before = messages[first - 1] if first else self._latest.get(channel.name)
+            found = self._passed[key] = self._leads(explanation, channel, due[:NEXT], before, rests=rests)
+        return found
+
+    def _leads(
+        self,
+        explanation: Explanation,
+        channel: Channel,
+        messages: Sequence[Message],
+        before: Message | None,
+        *,
+        rests: bool,
+    ) -> bool:
+        """Whether the messages can be what is owed, in order, and after that what the state comes to show.
+
+        Args:
+            before: what the channel has shown last, if it is known.
+            rests: whether everything settles after the messages.
+        """
+        delivery = self.spec.delivery(channel.topic)
+        owed, last = channel.owed, channel.last
+        again = delivery.repeats is not None or delivery.echoes is not None
+        places = {0}
+        for message in messages:
+            shown = [self._may_show(one, message) for one in owed]
+            following = {
+                index if owed[index].stays else index + 1 for index in range(min(places), len(owed)) if shown[index]
+            }
+            if again and (any(shown) or (last is not None and self._may_show(last, message))):
+                following |= places
+            if not following:
+                return self._foresees(explanation, message)
+            places, before = following, message
+        if not rests or before is None:
+            return True
+        left = [one for one in owed[max(places) :] if not one.passing]
+        return not left or self._may_show(left[-1], before) or self._foresees(explanation, before)
+
+    def _foresees(self, explanation: Explanation, message: Message) -> bool:
+        """Whether the state may come to be shown so."""
+        content, names = message
+        if not set(explanation.gone).isdisjoint(names):
+            return False
+        foresees = self.spec.foresees
+        return foresees is None or foresees(explanation.state, explanation.names, content, names)
+
+    def _may_show(self, owed: Owed, message: Message) -> bool:
+        key = (owed.view, owed.names, message)
+        found = self._shows.get(key)
+        if found is None:
+            content, names = message
+            matches = self.spec.matches(owed.view, content)
+            found = self._shows[key] = not isinstance(matches, Mismatch) and any(
+                all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
+                for match in matches
+            )
+        return found
+
+
+_NO_MESSAGES: tuple[list[int], list[Message]] = ([], [])

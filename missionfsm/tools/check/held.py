@@ -1,0 +1,95 @@
+"""Events of a recorded history that wait for those that follow, since these show how they have to be explained."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.history import Event
+from missionfsm.oracle.belief import Belief
+from missionfsm.oracle.window import Window
+
+FIRST = 64
+"""How many events wait before they are looked at for the first time; then twice as many, and so on."""
+
+
+@frozen
+class HeldEvent:
+    """An event that waits.
+
+    Attributes:
+        asked: the request that it answers, if it is an answer.
+        read: how many lines were read with it.
+        place: where its line stands.
+        open_calls: whether calls had no answer then.
+    """
+
+    event: Event
+    asked: Any
+    read: int
+    place: int
+    open_calls: bool
+
+
+class Held:
+    """Events that wait to be explained together.
+
+    Attributes:
+        lines: the events.
+        unexplained: the position of the first one that nothing explains, once that is known.
+        reached: how many of them were explained before it became too much.
+    """
+
+    def __init__(self, belief: Belief) -> None:
+        self._belief = belief
+        self._window = Window(belief)
+        self._size = FIRST
+        self.lines: list[HeldEvent] = []
+        self.unexplained = 0
+        self.reached = 0
+
+    def add(self, line: HeldEvent) -> None:
+        """One event more waits."""
+        self._window.add(line.event)
+        self.lines.append(line)
+
+    @property
+    def due(self) -> bool:
+        """Whether it is time to look at them."""
+        return len(self.lines) >= self._size
+
+    def wait(self) -> None:
+        """Let as many more events come as there are."""
+        self._size = 2 * len(self.lines)
+
+    def explain(self, *, whole: bool) -> tuple[bool, bool]:
+        """Whether the events are explained, and whether all of their explanations are known then.
+
+        The belief goes on behind them, or before the first one that is not.
+
+        Args:
+            whole: whether no further events come.
+
+        Raises:
+            ExhaustedError: it costs too much.
+        """
+        window = self._window
+        search = window.search(whole=whole)
+        try:
+            found = search.first_unexplained()
+        finally:
+            self.reached = window.positions[search.reached] if search.reached < len(window.positions) else 0
+        if found is None:
+            if search.exact or whole:
+                window.close(search)
+            return True, search.exact
+        self.unexplained = window.positions[found]
+        before = Window(self._belief)
+        for line in self.lines[: self.unexplained]:
+            before.add(line.event)
+        search = before.search(whole=whole)
+        search.first_unexplained()
+        before.close(search)
+        self._belief.broken = True
+        return False, True

@@ -1,0 +1,81 @@
+"""A search through a window of events against the belief that takes them one by one."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from test_belief_bruteforce import ALPHABETS, Alphabet, Conversation, choices
+
+from missionfsm.kernel import history
+from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.search import Search
+from missionfsm.oracle.window import Window
+
+
+def walked(alphabet: Alphabet, automaton: Automaton, data: st.DataObject, steps: int) -> list[history.Event]:
+    """A history that is mostly explained: of many events one that is, and now and then any."""
+    world = data.draw(st.sampled_from(alphabet.worlds))
+    conversation = Conversation(alphabet)
+    belief = Belief(automaton, world)
+    events: list[history.Event] = []
+    for _ in range(steps):
+        sort = data.draw(st.sampled_from(conversation.sorts()))
+        some = data.draw(st.permutations(sort))[:12]
+        reckless = data.draw(st.integers(0, 30)) == 0
+        event = next((one for one in some if reckless or explained(automaton, world, [*events, one])), None)
+        if event is not None:
+            events.append(event)
+            conversation.note(event)
+            belief.observe(event)
+    return [world, *events]  # type: ignore[list-item]  # the world comes first
+
+
+def explained(automaton: Automaton, world: object, events: list[history.Event]) -> bool:
+    """Whether the belief explains a history."""
+    belief = Belief(automaton, world)
+    return all(belief.observe(event) for event in events)
+
+
+def searched(belief: Belief, events: list[history.Event], width: int, *, whole: bool) -> tuple[Window, Search]:
+    """A window of events, searched."""
+    window = Window(belief)
+    for event in events:
+        window.add(event)
+    search = window.search(whole=whole)
+    search.width = width
+    return window, search
+
+
+def compare(alphabet: Alphabet, automaton: Automaton, data: st.DataObject) -> None:
+    """One history, cut in two anywhere, searched from there."""
+    world, *events = walked(alphabet, automaton, data, 12)
+    cut = data.draw(st.integers(0, len(events)))
+    width = data.draw(st.sampled_from([1, 2, 16]))
+    whole = data.draw(st.booleans())
+    alone, before = Belief(automaton, world), Belief(automaton, world)
+    right = next((position for position, event in enumerate(events) if not alone.observe(event)), None)
+    if not all(before.observe(event) for event in events[:cut]):
+        return
+    window, search = searched(before, events[cut:], width, whole=whole)
+    found = search.first_unexplained()
+    assert (events, None if found is None else cut + window.positions[found]) == (events, right)
+    if right is None:
+        window.close(search)
+        assert choices(alphabet, before) <= choices(alphabet, alone)
+        assert choices(alphabet, alone) <= choices(alphabet, before) or not search.exact or whole
+        left = before.left
+        assert left | alone.left == left
+
+
+@pytest.mark.parametrize("alphabet", ALPHABETS, ids=lambda one: one.name)
+def test_a_search_finds_what_the_belief_finds(alphabet: Alphabet) -> None:
+    """A window that is searched has its first unexplained event where the belief has it; no reading is lost."""
+    automaton = Automaton(alphabet.spec, alphabet.driven)
+
+    @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+    @given(st.data())
+    def run(data: st.DataObject) -> None:
+        compare(alphabet, automaton, data)
+
+    run()

@@ -48,14 +48,15 @@ class Snapshot:
     Attributes:
         names: those of the state, in its order.
         minted: how many names have been given out.
-        numbered: how many messages have been numbered.
+        numbered: the number of the last event; 1 is that of the beginning. Every stream that shows an event shows it
+            under its number.
     """
 
     state: Any
     names: tuple[Name, ...] = ()
     channels: tuple[Open, ...] = ()
     minted: int = 0
-    numbered: int = 0
+    numbered: int = 1
 
 
 @frozen
@@ -226,37 +227,44 @@ class Model:
             after = evolve(after, channels=tuple(one for one in after.channels if one.topic not in step.closes))
         sent: list[Sent] = []
         passing = self.urgent(step.after) is not None if step.emits else False
+        concerns = self.system.spec.concerns
         for emission in step.emits:
-            for channel in after.channels:
-                if self.system.spec.concerns(channel.topic, emission.topic):
-                    after = self._send(after, channel, emission, pool, sent, passing=passing)
+            listening = [one for one in after.channels if concerns(one.topic, emission.topic)]
+            after = evolve(after, numbered=after.numbered + 1)
+            after = self._send(after, listening, emission, pool, sent, passing=passing)
         for opening in step.opens:
             channel = Open(pool[opening.ref], opening.topic)
             after = evolve(after, channels=(*after.channels, channel))
             for emission in opening.owed:
-                after = self._send(after, channel, emission, pool, sent, passing=False)
+                after = self._send(after, [channel], emission, pool, sent, passing=False)
         return after, sent, tuple(pool[ref] for ref in step.refs)
 
     def _send(  # noqa: PLR0913 - what a message is made of
         self,
         here: Snapshot,
-        channel: Open,
+        channels: list[Open],
         emission: Emission,
         pool: list[Name],
         sent: list[Sent],
         *,
         passing: bool,
     ) -> Snapshot:
+        """Show the last event on channels, under its number; what a reading repeats comes under the next one."""
         names = here.names if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
         if emission.only and not meet(self.choice, (emission.only,)):
             return here
         if passing and not emission.certain and not self._would_show(emission.view, names):
             return here
-        repeats = self.system.spec.delivery(channel.topic).repeats
-        for _ in range(2 if repeats and meet(self.choice, (repeats,)) else 1):
+        sent += (Sent(one.name, one.topic, here.numbered, emission.view, names) for one in channels)
+        again = [one for one in channels if self._repeats(one.topic)]
+        if again:
             here = evolve(here, numbered=here.numbered + 1)
-            sent.append(Sent(channel.name, channel.topic, here.numbered, emission.view, names))
+            sent += (Sent(one.name, one.topic, here.numbered, emission.view, names) for one in again)
         return here
+
+    def _repeats(self, topic: Hashable) -> bool:
+        repeats = self.system.spec.delivery(topic).repeats
+        return bool(repeats and meet(self.choice, (repeats,)))
 
     def _would_show(self, view: object, names: tuple[Name, ...]) -> bool:
         """Whether the readings allow that a state which does not last is shown."""

@@ -19,6 +19,10 @@ class Reference:
         system: the system.
         choice, twist: the readings that it follows, and what is broken; see `missionfsm.tools.reference.model.Model`.
         bend: a message to the one that is sent in its place; for one that is broken.
+        seconds: the number of an event to its timestamp, in seconds since the epoch.
+
+    Attributes:
+        rules: the ids of the rules that the last call was answered by.
     """
 
     def __init__(
@@ -27,9 +31,12 @@ class Reference:
         choice: Mapping[str, str] | None = None,
         twist: Twist = straight,
         bend: Callable[[JSON], JSON] = lambda message: message,
+        seconds: Callable[[int], float] = float,
     ) -> None:
         self.model = Model(system, choice, twist=twist)
+        self.rules: tuple[str, ...] = ()
         self._bend = bend
+        self._seconds = seconds
         self._here: Snapshot | None = None
         self._minted = 0
 
@@ -104,6 +111,7 @@ class Reference:
         names, rest = codec.split(method, params)
         self._here, reply = self.model.call(self._started(), codec.request(method, rest), names)
         self._minted = self._here.minted
+        self.rules = reply.rules
         answer = reply.answer
         assert answer is not None, "a call is answered"  # noqa: S101 - a model always answers
         if answer.code != OK:
@@ -117,7 +125,7 @@ class Reference:
 
     def _notification(self, sent: Sent) -> Notification:
         codec = self.model.system.codec
-        message = codec.write_message(sent.view, sent.names, self.model.choice, sent.number, float(sent.number))
+        message = codec.write_message(sent.view, sent.names, self.model.choice, sent.number, self._seconds(sent.number))
         message = self._bend(message)
         kind, number = _channel(sent.channel)
         if kind == "connection":

@@ -11,7 +11,7 @@ import sys
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
-from missionfsm.cli import diagram, isaac, judging, listing
+from missionfsm.cli import diagram, isaac, judging, listing, wire
 from missionfsm.cli.common import BAD_INPUT, complain
 from missionfsm.cli.signals import ended_like_ctrl_c
 from missionfsm.kernel.codec import UnreadableError
@@ -30,6 +30,8 @@ for _command in (
     judging.adapter,
     isaac.dispatch,
     isaac.robot,
+    wire.serve,
+    wire.proxy,
 ):
     app.command()(_command)
 

@@ -27,6 +27,7 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
+from missionfsm.cli.overgrpc import Force, GrpcAddress, SettleSeconds, TlsFile, TokenFile, WorldFile, over_grpc
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
@@ -36,6 +37,7 @@ from missionfsm.systems import names
 from missionfsm.tools.check.verdict import Verdict
 
 if TYPE_CHECKING:
+    from missionfsm.kernel.subject import Subject
     from missionfsm.tools.explore.explore import Exploration
     from missionfsm.tools.mutate.teeth import Teeth
 
@@ -55,6 +57,9 @@ KnownFile = Annotated[
     ),
 ]
 
+
+GRPC_EXAMPLES = 20
+"""Conversations over gRPC, where silence has to be waited for."""
 
 DAY = 24 * 60 * 60.0
 """Seconds that anything may be waited for."""
@@ -107,6 +112,12 @@ def conform(  # noqa: PLR0913 - options of the command
             help="Judge the robot that connects there; the command after -- starts it.",
         ),
     ] = None,
+    grpc: GrpcAddress = None,
+    world: WorldFile = None,
+    settle: SettleSeconds = None,
+    force: Force = False,
+    token: TokenFile = None,
+    tls: TlsFile = None,
     tolerance: Annotated[
         float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
     ] = 0.2,
@@ -132,12 +143,25 @@ def conform(  # noqa: PLR0913 - options of the command
     deadline = None if seconds is None else time.monotonic() + seconds
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
+    if grpc is None and any((world, settle, force, token, tls)):
+        stop("--world, --settle, --force, --token, --tls: they belong to --grpc", BAD_INPUT)
+    if grpc is not None and (sockets.wanted or command):
+        stop(
+            "--grpc: it is a server that is judged; it goes with no --tcp, --tcp-listen, --missions or command",
+            BAD_INPUT,
+        )
     with one_line_errors():
         try:
             bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
         except ValueError as error:
             stop(str(error), BAD_INPUT)
-        child = bridge.subject if bridge else Child(command or own, timeout)
+        if grpc is not None:
+            child: Subject = over_grpc(
+                system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
+            )
+            examples = examples or GRPC_EXAMPLES
+        else:
+            child = bridge.subject if bridge else Child(command or own, timeout)
         examples = examples or DEFAULT_EXAMPLES
         try:
             with Bar("conversations", bridge.conversations if bridge else planned(judged, examples)) as bar:

@@ -1,0 +1,358 @@
+"""A gRPC server of the Bear API as a subject: judged with no adapter.
+
+What the tester asks travels as binary protobuf; what streams show is collected in the background. A server that has the
+control service is driven and reset by it. Any other is left as it is: its world is the one that the user says, and a
+reset only ends what this tester has begun.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import grpc
+from attrs import evolve, field, frozen
+
+from missionfsm.adapters.grpc import control
+from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, methods, path, unknown
+from missionfsm.bear.wire.fields import Method
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.subject import Exchange, Notification, SubjectError
+from missionfsm.kernel.text import brief
+
+KEEPALIVE = (("grpc.keepalive_time_ms", 20_000), ("grpc.keepalive_timeout_ms", 10_000))
+"""A connection that is dead is noticed within half a minute."""
+ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
+"""States of missions that need not be ended any more."""
+MAX_ROUNDS = 100
+"""Missions that are cancelled in one reset before it is given up."""
+
+
+@frozen
+class Target:
+    """A gRPC server.
+
+    Attributes:
+        address: ``host:port``.
+        token: sent as ``authorization: Bearer TOKEN``; "" for none.
+        metadata: sent with every call besides.
+        certificate: a file in PEM with the authority that the server's certificate is checked against; "" for no TLS,
+            ``system`` for the authorities of the machine.
+        timeout: seconds that a call may take.
+        settle: seconds of silence after which everything that was caused has been seen.
+        settle_most: seconds after which that is so even without silence.
+    """
+
+    address: str
+    token: str = field(default="", repr=False)
+    metadata: tuple[tuple[str, str], ...] = ()
+    certificate: str = ""
+    timeout: float = 10.0
+    settle: float = 0.2
+    settle_most: float = 5.0
+
+    @property
+    def sent(self) -> tuple[tuple[str, str], ...]:
+        """The metadata of every call."""
+        return (*self.metadata, *((("authorization", f"Bearer {self.token}"),) if self.token else ()))
+
+    def channel(self) -> grpc.Channel:
+        """A connection. Raises OSError for a certificate that cannot be read."""
+        if not self.certificate:
+            return grpc.insecure_channel(self.address, KEEPALIVE)
+        roots = None if self.certificate == "system" else Path(self.certificate).read_bytes()
+        return grpc.secure_channel(self.address, grpc.ssl_channel_credentials(roots), KEEPALIVE)
+
+
+class GrpcSubject:
+    """A gRPC server behind the adapter protocol.
+
+    Args:
+        system: ``bear.mission`` or ``bear.status``.
+        target: where it is.
+        world: its world, as JSON, where the control service cannot change it.
+        force: whether a reset may end and clear missions that this tester did not create.
+        clock, sleep: seconds that pass, and how to wait.
+
+    Raises:
+        SubjectError: nobody answers there.
+    """
+
+    def __init__(  # noqa: PLR0913 - all but the first two have a default
+        self,
+        system: str,
+        target: Target,
+        world: JSON = None,
+        *,
+        force: bool = False,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.system = system
+        self.target = target
+        self.world = world or {}
+        self._force = force
+        self._clock, self._sleep = clock, sleep
+        self._methods = methods(system)
+        try:
+            self._channel = target.channel()
+        except OSError as error:
+            raise SubjectError(f"{target.certificate}: {error.strerror}") from None
+        self._lock = threading.Lock()
+        self._arrived: deque[Notification] = deque()
+        self._last = clock()
+        self._streams: dict[int, Any] = {}
+        self._serial = 0
+        self._created: set[str] = set()
+        self._control = self._described()
+        self.unknown: dict[str, int] = {}
+        """Fields that the table does not know, by call and path, and how often they came."""
+
+    @property
+    def driven(self) -> bool:
+        """Whether the server has the control service."""
+        return bool(self._control)
+
+    def settle_within(self, seconds: float) -> None:
+        """From now on so many seconds of silence mean that everything has been seen."""
+        self.target = evolve(self.target, settle=seconds)
+
+    def close(self) -> None:
+        """Give up every stream and let go of the connection."""
+        self._cancel_all()
+        self._channel.close()
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        """Answer one request of the adapter protocol. Raises SubjectError."""
+        earlier = self._taken()
+        if method == "initialize":
+            return Exchange(self._introduction())
+        if method == "reset":
+            self._reset(params.get("world", {}))
+            return Exchange({})
+        if method == "settle":
+            self._settle()
+            return Exchange({}, before=self._taken(), earlier=earlier)
+        if method == "drive":
+            return Exchange(self._asked_of_control("Drive", params), after=self._taken(), earlier=earlier)
+        if method == "cancel":
+            self._cancel(params.get("stream"))
+            return Exchange({}, earlier=earlier)
+        if method not in self._methods:
+            raise SubjectError(f"{brief(method)} is no method of {self.system}")
+        called = self._methods[method]
+        answer = self._subscribe(called, params) if called.streams else self._call(called, params)
+        return Exchange(answer.result, answer.error, answer.before, self._taken(), earlier)
+
+    def _introduction(self) -> JSON:
+        said: dict[str, JSON] = {
+            "implementation": {"name": f"grpc://{self.target.address}", "version": ""},
+            "drives": list(self._control.get("drives", ())) if self._control else [],
+            "concurrent": False,
+            "requests": "binary",
+        }
+        if not self._control:
+            said |= {"worlds": "fixed", "world": self.world, "reset": "soft"}
+        return said
+
+    # Calls.
+
+    def _call(self, method: Method, params: JSON) -> Exchange:
+        ask = self._channel.unary_unary(path(method))
+        self._last = self._clock()
+        try:
+            data = ask(self._encoded(method, params), timeout=self.target.timeout, metadata=self.target.sent)
+        except grpc.RpcError as error:
+            return Exchange(error=_error(error))
+        finally:
+            self._last = self._clock()
+        result = self._decoded(method, data)
+        if method.name.startswith(("Create", "Append", "Charge")):
+            self._created.update([result["missionId"]] if result.get("missionId") else result.get("missionIds", ()))
+        return Exchange(result)
+
+    def _encoded(self, method: Method, params: JSON) -> bytes:
+        try:
+            return encode(method.request, params)
+        except NotOnTheWireError as error:
+            raise SubjectError(f"{method.name}: binary protobuf cannot say {brief(params)}: {error}") from None
+
+    def _decoded(self, method: Method, data: bytes) -> JSON:
+        try:
+            found = decode(method.response, data)
+        except NotOnTheWireError as error:
+            return {"malformed": str(error)}
+        for place in unknown(method.response, data):
+            name = f"{method.name}: field {place}"
+            self.unknown[name] = self.unknown.get(name, 0) + 1
+        return found
+
+    def _subscribe(self, method: Method, params: JSON) -> Exchange:
+        call = self._channel.unary_stream(path(method))(self._encoded(method, params), metadata=self.target.sent)
+        first = _First(call)
+        thread = threading.Thread(target=first.wait, name="missionfsm-first", daemon=True)
+        thread.start()
+        thread.join(self.target.timeout)
+        if first.error is not None:
+            return Exchange(error=_error(first.error))
+        if thread.is_alive():
+            call.cancel()
+            return Exchange(error={"status": "DEADLINE_EXCEEDED", "message": "the stream did not begin in time"})
+        self._serial += 1
+        stream = self._serial
+        self._streams[stream] = call
+        threading.Thread(
+            target=self._listen, args=(method, stream, call), name=f"missionfsm-stream-{stream}", daemon=True
+        ).start()
+        return Exchange({"stream": stream})
+
+    def _listen(self, method: Method, stream: int, call: Any) -> None:  # noqa: ANN401 - a call of grpc
+        try:
+            for data in call:
+                self._arrive(Notification("message", {"stream": stream, "message": self._decoded(method, data)}))
+        except grpc.RpcError as error:
+            if stream in self._streams:
+                self._arrive(Notification("closed", {"stream": stream, "error": _error(error)}))
+        else:
+            if stream in self._streams:
+                self._arrive(Notification("closed", {"stream": stream}))
+
+    def _arrive(self, notification: Notification) -> None:
+        with self._lock:
+            if notification.params["stream"] in self._streams:
+                self._arrived.append(notification)
+                self._last = self._clock()
+
+    def _taken(self) -> tuple[Notification, ...]:
+        with self._lock:
+            taken = tuple(self._arrived)
+            self._arrived.clear()
+            return taken
+
+    def _cancel(self, stream: JSON) -> None:
+        with self._lock:
+            call = self._streams.pop(stream, None) if isinstance(stream, int) else None
+            self._arrived = deque(one for one in self._arrived if one.params["stream"] != stream)
+        if call is not None:
+            call.cancel()
+
+    def _cancel_all(self) -> None:
+        for stream in tuple(self._streams):
+            self._cancel(stream)
+
+    def _settle(self) -> None:
+        """Wait for a silence."""
+        begun = self._clock()
+        while True:
+            now = self._clock()
+            rest = min(self._last + self.target.settle, begun + self.target.settle_most) - now
+            if rest <= 0:
+                return
+            self._sleep(rest)
+
+    # The control service, and what is done without.
+
+    def _described(self) -> dict[str, JSON]:
+        """What the control service says; empty where there is none. Raises SubjectError where nobody answers."""
+        try:
+            grpc.channel_ready_future(self._channel).result(self.target.timeout)
+        except grpc.FutureTimeoutError:
+            raise SubjectError(f"nobody answers at {self.target.address} within {self.target.timeout:g} s") from None
+        try:
+            found: dict[str, JSON] = self._asked_of_control("Describe", {})
+        except SubjectError:
+            return {}
+        return found if found.get("system") == self.system else {}
+
+    def _asked_of_control(self, name: str, value: JSON) -> Any:  # noqa: ANN401 - JSON
+        call = self._channel.unary_unary(f"/{control.SERVICE}/{name}")
+        try:
+            return control.unpack(call(control.pack(value), timeout=self.target.timeout, metadata=self.target.sent))
+        except grpc.RpcError as error:
+            raise SubjectError(f"the control service answered {name} with {_words(error)}") from None
+
+    def _reset(self, world: JSON) -> None:
+        self._cancel_all()
+        if self._control:
+            self._asked_of_control("Reset", {"world": world})
+        elif self.system == "bear.mission":
+            self._end_missions()
+        self._taken()
+
+    def _end_missions(self) -> None:
+        """Cancel what is under way until nothing is, then clear the list."""
+        for _ in range(MAX_ROUNDS):
+            listed = self._listed()
+            if any(mission.get("state") not in ENDED for mission in listed):
+                self._may_touch(mission.get("missionId", "") for mission in listed)
+                active = self._active(listed)
+                self._must("UpdateMission", {"missionCommand": {"missionId": active, "command": "COMMAND_CANCEL"}})
+                self._settle()
+                continue
+            if listed:
+                self._may_touch(mission.get("missionId", "") for mission in listed)
+                self._must("ClearMissionStatus", {})
+            return
+        raise SubjectError(f"after {MAX_ROUNDS} cancellations there are still missions that have not ended")
+
+    def _listed(self) -> list[dict[str, JSON]]:
+        """The missions that a new subscription shows first."""
+        method = self._methods["SubscribeMissionStatus"]
+        call = self._channel.unary_stream(path(method))(b"", metadata=self.target.sent, timeout=self.target.timeout)
+        try:
+            message = self._decoded(method, next(call))
+        except (grpc.RpcError, StopIteration) as error:
+            raise SubjectError(f"SubscribeMissionStatus shows nothing: {_words(error)}") from None
+        finally:
+            call.cancel()
+        return list((message.get("missionStates") or {}).get("missions", ()))
+
+    @staticmethod
+    def _active(listed: Iterable[dict[str, JSON]]) -> str:
+        """The mission to cancel: the one that runs, else the first that waits."""
+        open_ones = [one for one in listed if one.get("state") not in ENDED]
+        running = [one for one in open_ones if one.get("state") in ("STATE_RUNNING", "STATE_PAUSED")]
+        return str((running or open_ones)[0].get("missionId", ""))
+
+    def _may_touch(self, missions: Iterable[str]) -> None:
+        others = [mission for mission in missions if mission not in self._created]
+        if others and not self._force:
+            raise SubjectError(
+                f"the robot has missions that this tester did not create, such as {brief(others[0])}; --force ends and "
+                "clears them"
+            )
+
+    def _must(self, name: str, params: JSON) -> None:
+        answer = self._call(self._methods[name], params)
+        if answer.error is not None:
+            said = f"{answer.error['status']}: {answer.error.get('message', '')}"
+            raise SubjectError(f"the robot cannot be reset: {name} was answered {brief(said)}")
+
+
+class _First:
+    """Waits until a stream begins or is refused."""
+
+    def __init__(self, call: Any) -> None:  # noqa: ANN401 - a call of grpc
+        self._call = call
+        self.error: grpc.RpcError | None = None
+
+    def wait(self) -> None:
+        """Take the initial metadata, which a refusal does not have."""
+        with contextlib.suppress(grpc.RpcError):
+            self._call.initial_metadata()
+        if self._call.done() and self._call.code() is not grpc.StatusCode.OK:
+            self.error = self._call
+
+
+def _error(error: Any) -> JSON:  # noqa: ANN401 - grpc's errors are calls as well
+    return {"status": error.code().name, "message": error.details() or ""}
+
+
+def _words(error: Any) -> str:  # noqa: ANN401 - as above
+    code = getattr(error, "code", None)
+    return f"{code().name}: {error.details()}" if callable(code) else "its end"

@@ -1,0 +1,369 @@
+"""The reference of a Bear system as a gRPC server.
+
+One event loop in one thread of its own serves all callers; the reference is asked under a lock and answers in
+microseconds. A stream costs a task and a queue, no thread.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import contextlib
+import threading
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, Self
+
+import grpc
+from attrs import frozen
+from grpc import aio
+from grpc_reflection.v1alpha import reflection
+
+from missionfsm.adapters.grpc import control
+from missionfsm.adapters.grpc.answers import Answered, Robots, Spoilt
+from missionfsm.adapters.grpc.descriptors import (
+    SERVICES,
+    NotOnTheWireError,
+    decode,
+    encode,
+    methods,
+    path,
+    pool,
+)
+from missionfsm.adapters.grpc.faults import Dice, Faults
+from missionfsm.bear.wire.fields import PACKAGE, Method
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.subject import SubjectError
+
+MAX_UNSENT_MESSAGES = 10_000
+"""Messages that wait for a subscriber who does not read; then its stream ends with RESOURCE_EXHAUSTED."""
+MAX_MESSAGE_BYTES = 4 * 1024 * 1024
+"""What gRPC takes of one message unless told otherwise."""
+STOP_SECONDS = 1.0
+"""How long calls that are under way may take when the server stops."""
+
+RULE_KEY, CITE_KEY = "missionfsm-rule", "missionfsm-cite"
+"""Trailing metadata of a refusal: the ids of the rules, and their places on the page."""
+
+Context = Any
+"""grpc.aio.ServicerContext, which has no type parameters that fit."""
+
+
+@frozen
+class Security:
+    """Who may call, and how it is hidden from others.
+
+    Attributes:
+        certificate, key: files in PEM; both or neither.
+        token: what a caller has to send as ``authorization: Bearer TOKEN``; "" for nothing.
+    """
+
+    certificate: str = ""
+    key: str = ""
+    token: str = ""
+
+    def credentials(self) -> grpc.ServerCredentials | None:
+        """The credentials of TLS; None without. Raises OSError for files that cannot be read."""
+        if not self.certificate:
+            return None
+        pair = (Path(self.key).read_bytes(), Path(self.certificate).read_bytes())
+        return grpc.ssl_server_credentials([pair])
+
+
+class _Tokens(aio.ServerInterceptor):
+    """Refuses whoever does not send the token."""
+
+    def __init__(self, token: str) -> None:
+        self._wanted = f"Bearer {token}"
+        self._refusal = grpc.unary_unary_rpc_method_handler(self._refuse)
+
+    @staticmethod
+    async def _refuse(_: bytes, context: Context) -> None:
+        await context.abort(grpc.StatusCode.UNAUTHENTICATED, "the token is missing or wrong")
+
+    async def intercept_service(
+        self,
+        continuation: Callable[[grpc.HandlerCallDetails], Awaitable[grpc.RpcMethodHandler]],
+        handler_call_details: grpc.HandlerCallDetails,
+    ) -> grpc.RpcMethodHandler:
+        """Let through what has the token."""
+        sent = dict(handler_call_details.invocation_metadata or ())
+        return await continuation(handler_call_details) if sent.get("authorization") == self._wanted else self._refusal
+
+
+class _Handlers(grpc.GenericRpcHandler):
+    """The calls of a system, and the control service."""
+
+    def __init__(self, live: Robots, dice: Dice, *, with_control: bool) -> None:
+        self._live = live
+        self._dice = dice
+        self._by_path = {path(one): self._handler(one) for one in methods(live.system.name).values()}
+        if with_control:
+            for name in control.UNARY:
+                self._by_path[f"/{control.SERVICE}/{name}"] = grpc.unary_unary_rpc_method_handler(
+                    getattr(self, f"_{name.lower()}")
+                )
+            self._by_path[f"/{control.SERVICE}/History"] = grpc.unary_stream_rpc_method_handler(self._history)
+
+    def service(self, handler_call_details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler | None:
+        """The handler of a call; None, which is UNIMPLEMENTED, for one that is not modelled."""
+        return self._by_path.get(handler_call_details.method)
+
+    def _handler(self, method: Method) -> grpc.RpcMethodHandler:
+        if method.streams:
+
+            async def stream(request: bytes, context: Context) -> AsyncIterator[bytes]:
+                async for one in self._stream(method, request, context):
+                    yield one
+
+            return grpc.unary_stream_rpc_method_handler(stream)
+
+        async def unary(request: bytes, context: Context) -> bytes:
+            return await self._unary(method, request, context)
+
+        return grpc.unary_unary_rpc_method_handler(unary)
+
+    @staticmethod
+    async def _read(method: Method, request: bytes, context: Context) -> JSON:
+        try:
+            return decode(method.request, request)
+        except NotOnTheWireError as error:
+            await context.abort(grpc.StatusCode.INVALID_ARGUMENT, f"{method.name}: {error}")
+
+    async def _unary(self, method: Method, request: bytes, context: Context) -> bytes:
+        params = await self._read(method, request, context)
+        spoilt = self._spoilt()
+        answered = self._live.call(method.name, params, spoilt)
+        if answered.error is not None:
+            await _refuse(context, answered)
+        return encode(method.response, answered.result)
+
+    def _spoilt(self) -> Spoilt | None:
+        if self._dice.unavailable():
+            return Spoilt({"status": "UNAVAILABLE", "message": "made up: the robot is not reached"}, applied=False)
+        deadline = self._dice.deadline()
+        if deadline:
+            error = {"status": "DEADLINE_EXCEEDED", "message": "made up: no confirmation in time"}
+            return Spoilt(error, applied=deadline == "applied")
+        return None
+
+    async def _stream(self, method: Method, request: bytes, context: Context) -> AsyncIterator[bytes]:
+        params = await self._read(method, request, context)
+        loop = asyncio.get_running_loop()
+        unsent: asyncio.Queue[JSON] = asyncio.Queue()
+        answered = self._live.subscribe(
+            method.name, params, lambda message: _hand_over(loop, unsent.put_nowait, message)
+        )
+        if answered.error is not None:
+            await _refuse(context, answered)
+        await context.send_initial_metadata(())  # a subscriber is not kept waiting for a first change
+        ends = None if self._dice.faults.ends is None else loop.time() + self._dice.faults.ends
+        first = True
+        try:
+            while True:
+                message = await _next(unsent, None if ends is None else ends - loop.time())
+                if message is None:
+                    return
+                if unsent.qsize() > MAX_UNSENT_MESSAGES:
+                    await context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, "the subscriber does not read")
+                data = encode(method.response, message)
+                for _ in range(self._dice.copies(first=first)):
+                    yield data
+                first = False
+        finally:
+            self._live.cancel(answered.result)
+
+    # The control service.
+
+    async def _describe(self, _: bytes, __: Context) -> bytes:
+        system = self._live.system
+        return control.pack({"system": system.name, "drives": list(system.spec.drives)})
+
+    async def _reset(self, request: bytes, context: Context) -> bytes:
+        try:
+            self._live.reset(control.unpack(request).get("world", {}))
+        except (UnreadableError, SubjectError) as error:
+            await context.abort(grpc.StatusCode.INVALID_ARGUMENT, str(error))
+        return control.pack({})
+
+    async def _drive(self, request: bytes, context: Context) -> bytes:
+        try:
+            return control.pack(self._live.drive(control.unpack(request)))
+        except (UnreadableError, SubjectError) as error:
+            await context.abort(grpc.StatusCode.INVALID_ARGUMENT, str(error))
+            raise
+
+    async def _history(self, _: bytes, __: Context) -> AsyncIterator[bytes]:
+        for line in self._live.history():
+            yield control.pack(line)
+
+
+def _hand_over(loop: asyncio.AbstractEventLoop, put: Callable[[JSON], None], message: JSON) -> None:
+    """Give a message to a queue of the loop, from whichever thread it comes."""
+    try:
+        here: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
+    except RuntimeError:
+        here = None
+    if here is loop:
+        put(message)
+    else:
+        with contextlib.suppress(RuntimeError):  # the server stops; nobody reads any more
+            loop.call_soon_threadsafe(put, message)
+
+
+async def _next(unsent: asyncio.Queue[JSON], seconds: float | None) -> JSON:
+    """The next message; None once so many seconds have passed."""
+    try:
+        return await asyncio.wait_for(unsent.get(), seconds)
+    except TimeoutError:
+        return None
+
+
+async def _refuse(context: Context, answered: Answered) -> None:
+    """End a call with a documented error; which rules demand it, and where they stand, goes along."""
+    assert answered.error is not None  # noqa: S101 - the caller has looked
+    context.set_trailing_metadata(
+        (
+            *((RULE_KEY, rule) for rule in answered.rules),
+            *((CITE_KEY, _ascii(cite)) for cite in answered.cites),
+        )
+    )
+    await context.abort(grpc.StatusCode[answered.error["status"]], answered.error.get("message", ""))
+
+
+def _ascii(text: str) -> str:
+    """Metadata is ASCII; the arrows of a citation are not."""
+    return text.replace("›", ">").encode("ascii", "replace").decode()
+
+
+class Server:
+    """A reference that is served.
+
+    Args:
+        live: the reference.
+        host, port: where it listens; port 0 takes a free one.
+        faults, seed: what goes wrong on the network, made up.
+        security: TLS and a token.
+        with_control: whether the control service is there.
+
+    Attributes:
+        port: where it really listens.
+
+    Raises:
+        OSError: it cannot listen there, or a file of `security` cannot be read.
+    """
+
+    def __init__(  # noqa: PLR0913 - each with a default
+        self,
+        live: Robots,
+        *,
+        host: str = "127.0.0.1",
+        port: int = 0,
+        faults: Faults = Faults(),  # noqa: B008 - a frozen value
+        seed: int = 0,
+        security: Security = Security(),
+        with_control: bool = True,
+    ) -> None:
+        self.live = live
+        self._host = f"[{host}]" if ":" in host else host
+        self._security = security
+        self._handlers = _Handlers(live, Dice(faults, seed), with_control=with_control)
+        self._with_control = with_control
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="missionfsm-grpc", daemon=True)
+        self._thread.start()
+        self._server: aio.Server | None = None
+        try:
+            self.port: int = self._run(self._start(port))
+        except BaseException:
+            self.stop()
+            raise
+
+    @property
+    def target(self) -> str:
+        """What a client connects to."""
+        return f"{self._host}:{self.port}"
+
+    def _run(self, work: Any) -> Any:  # noqa: ANN401 - what the coroutine gives
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
+
+    async def _start(self, port: int) -> int:
+        # SO_REUSEPORT would let two servers share a port, and calls would go to either.
+        options = (("grpc.so_reuseport", 0), ("grpc.max_receive_message_length", MAX_MESSAGE_BYTES))
+        interceptors = (_Tokens(self._security.token),) if self._security.token else ()
+        server = self._server = aio.server(options=options, interceptors=interceptors)
+        server.add_generic_rpc_handlers((self._handlers,))
+        descriptors = pool()
+        names = [f"{PACKAGE}.{SERVICES[self.live.system.name]}", reflection.SERVICE_NAME]
+        if self._with_control:
+            control.add_to(descriptors)
+            names.append(control.SERVICE)
+        reflection.enable_server_reflection(names, server, pool=descriptors)
+        credentials = self._security.credentials()
+        where = f"{self._host}:{port}"
+        try:
+            bound = (
+                server.add_insecure_port(where) if credentials is None else server.add_secure_port(where, credentials)
+            )
+        except RuntimeError as error:
+            raise OSError(f"{where}: {str(error).splitlines()[0]}") from None
+        if bound == 0:
+            raise OSError(f"{where}: the port cannot be had")
+        await server.start()
+        return bound
+
+    def stop(self) -> None:
+        """End what is under way and let go of the port; a second time does nothing."""
+        if self._loop.is_closed():
+            return
+        if self._server is not None:
+            with contextlib.suppress(concurrent.futures.CancelledError):
+                self._run(self._server.stop(STOP_SECONDS))
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+
+class Control:
+    """The control service from Python: of a server in this process or, by its address, of any.
+
+    Args:
+        target: ``host:port``.
+        token: see `Security`.
+    """
+
+    def __init__(self, target: str, token: str = "") -> None:
+        self._channel = grpc.insecure_channel(target)
+        self._metadata = (("authorization", f"Bearer {token}"),) if token else ()
+
+    def _ask(self, name: str, value: JSON) -> JSON:
+        call = self._channel.unary_unary(f"/{control.SERVICE}/{name}")
+        return control.unpack(call(control.pack(value), metadata=self._metadata, wait_for_ready=True))
+
+    def describe(self) -> Mapping[str, JSON]:
+        """The system, and the drives that it has."""
+        found: Mapping[str, JSON] = self._ask("Describe", {})
+        return found
+
+    def reset(self, world: JSON = None) -> None:
+        """Begin anew in a world; every stream is forgotten."""
+        self._ask("Reset", {"world": world or {}})
+
+    def drive(self, event: str, **fields: JSON) -> bool:
+        """Make something happen; False where it does not apply."""
+        return bool(self._ask("Drive", {"event": event, **fields})["happened"])
+
+    def history(self) -> Iterable[JSON]:
+        """All that was seen since the last reset, as lines of the history format."""
+        call = self._channel.unary_stream(f"/{control.SERVICE}/History")
+        return [control.unpack(one) for one in call(control.pack({}), metadata=self._metadata)]
+
+    def close(self) -> None:
+        """Let go of the connection."""
+        self._channel.close()

@@ -1,0 +1,315 @@
+"""The reference as a gRPC server: what a client sees, and what a test can do with it."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import queue
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import grpc
+import pytest
+from google.protobuf import descriptor_pool, message_factory
+from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
+
+from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
+from missionfsm.adapters.grpc.faults import Dice, Faults
+from missionfsm.adapters.grpc.server import Control
+from missionfsm.app.serve import Cue, Served, read_script, serve
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import check
+
+NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+WAIT = 10.0
+"""Seconds after which a message that does not come fails a test."""
+
+
+class Client:
+    """A client as generated code would be one: paths, bytes, and nothing of the server's."""
+
+    def __init__(self, target: str, name: str = "bear.mission", metadata: tuple[tuple[str, str], ...] = ()) -> None:
+        self.channel = grpc.insecure_channel(target)
+        self.methods = methods(name)
+        self.metadata = metadata
+
+    def call(self, name: str, request: JSON = None, timeout: float = WAIT) -> JSON:
+        """A unary call."""
+        method = self.methods[name]
+        ask = self.channel.unary_unary(path(method))
+        data = ask(encode(method.request, request or {}), metadata=self.metadata, timeout=timeout)
+        return decode(method.response, data)
+
+    def subscribe(self, name: str = "SubscribeMissionStatus", request: JSON = None) -> tuple[Any, queue.Queue[JSON]]:
+        """A stream: the call, and its messages as they come; None at its end."""
+        method = self.methods[name]
+        call = self.channel.unary_stream(path(method))(encode(method.request, request or {}), metadata=self.metadata)
+        found: queue.Queue[JSON] = queue.Queue()
+
+        def listen() -> None:
+            try:
+                for data in call:
+                    found.put(decode(method.response, data))
+            except grpc.RpcError:
+                pass
+            found.put(None)
+
+        threading.Thread(target=listen, daemon=True).start()
+        return call, found
+
+
+@pytest.fixture
+def robot() -> Iterator[Served]:
+    with serve("bear.mission") as served:
+        yield served
+
+
+@pytest.fixture
+def client(robot: Served) -> Iterator[Client]:
+    found = Client(robot.target)
+    yield found
+    found.channel.close()
+
+
+def refusal(client: Client, name: str, request: JSON = None) -> Any:
+    with pytest.raises(grpc.RpcError) as raised:
+        client.call(name, request)
+    return raised.value
+
+
+def test_a_mission_runs_from_its_creation_to_its_end(robot: Served, client: Client) -> None:
+    """A client creates a mission, the test says that its goal is reached, and the subscriber sees it succeed."""
+    _, messages = client.subscribe()
+    assert messages.get(timeout=WAIT)["missionStates"] == {"currentMissionIndex": -1}
+    mission = client.call("CreateMission", NAVIGATE)["missionId"]
+    running = messages.get(timeout=WAIT)["missionStates"]["missions"][0]
+    assert (running["missionId"], running["state"]) == (mission, "STATE_RUNNING")
+    assert robot.drive("goalReached")
+    assert messages.get(timeout=WAIT)["missionStates"]["missions"][0]["state"] == "STATE_SUCCEEDED"
+
+
+def test_two_subscribers_see_one_event_under_one_number(robot: Served, client: Client) -> None:
+    """Numbers and timestamps are those of events: every stream shows the same event alike."""
+    _, first = client.subscribe()
+    first.get(timeout=WAIT)
+    client.call("CreateMission", NAVIGATE)
+    latest = first.get(timeout=WAIT)
+    _, second = client.subscribe()
+    assert second.get(timeout=WAIT) == latest
+    robot.drive("goalReached")
+    assert second.get(timeout=WAIT) == first.get(timeout=WAIT)
+
+
+def test_a_refusal_names_its_rule_and_place(client: Client) -> None:
+    """A refused call has the documented code, and its rule and citation in the trailing metadata."""
+    client.call("CreateMission", NAVIGATE)
+    error = refusal(client, "CreateMission", NAVIGATE)
+    assert error.code() is grpc.StatusCode.FAILED_PRECONDITION
+    assert dict(error.trailing_metadata()) == {
+        "missionfsm-rule": "bear.mission/CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued",
+        "missionfsm-cite": "Mission > CreateMission > Errors",
+    }
+
+
+def test_bytes_that_are_no_message_are_an_invalid_argument(client: Client) -> None:
+    """What cannot be decoded is INVALID_ARGUMENT."""
+    ask = client.channel.unary_unary(path(client.methods["CreateMission"]))
+    with pytest.raises(grpc.RpcError) as raised:
+        ask(b"\xff\xff\xff", timeout=WAIT)
+    assert raised.value.code() is grpc.StatusCode.INVALID_ARGUMENT
+
+
+def test_calls_that_are_not_modelled_are_unimplemented(client: Client) -> None:
+    """Another call of the service, and another service, answer UNIMPLEMENTED."""
+    for name in ("/bearrobotics.api.v1.services.robot.APIService/GetMap", "/other.Service/Call"):
+        with pytest.raises(grpc.RpcError) as raised:
+            client.channel.unary_unary(name)(b"", timeout=WAIT)
+        assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
+
+
+def test_reflection_is_enough_to_call_every_method(robot: Served) -> None:
+    """A client that knows no definitions finds services and calls by reflection, and calls one."""
+    with grpc.insecure_channel(robot.target) as channel:
+        database = ProtoReflectionDescriptorDatabase(channel)
+        assert {"bearrobotics.api.v1.services.robot.APIService", "missionfsm.control.v1.Control"} <= set(
+            database.get_services()
+        )
+        pool = descriptor_pool.DescriptorPool(database)
+        service = pool.FindServiceByName("bearrobotics.api.v1.services.robot.APIService")
+        assert {one.name for one in service.methods} == set(methods("bear.mission"))
+        method = service.FindMethodByName("CreateMission")
+        request = message_factory.GetMessageClass(method.input_type)()
+        request.mission.base_mission.navigate_mission.goal.destination_id = "table-1"
+        answer = channel.unary_unary(f"/{service.full_name}/CreateMission")(request.SerializeToString(), timeout=WAIT)
+        assert message_factory.GetMessageClass(method.output_type).FromString(answer).mission_id
+
+
+def test_the_control_service_sets_the_scene(robot: Served, client: Client) -> None:
+    """By the control service a test in any language resets, drives and reads the history."""
+    control = Control(robot.target)
+    assert control.describe() == {"system": "bear.mission", "drives": list(system("bear.mission").spec.drives)}
+    control.reset({"family": "carti", "destinations": ["dock-7"]})
+    assert refusal(client, "CreateMission", NAVIGATE).code() is grpc.StatusCode.INVALID_ARGUMENT
+    assert control.drive("goalReached") is False
+    with pytest.raises(grpc.RpcError, match="INVALID_ARGUMENT"):
+        control.drive("noSuchDrive")
+    assert [line.get("method", line.get("system")) for line in control.history()][:2] == [
+        "bear.mission",
+        "CreateMission",
+    ]
+    control.close()
+
+
+def test_what_clients_did_is_a_history_that_conforms(robot: Served, client: Client) -> None:
+    """The history of several clients at once is judged as conforming."""
+    _, messages = client.subscribe()
+
+    def busy(number: int) -> None:
+        other = Client(robot.target)
+        for _ in range(5):
+            try:
+                other.call("AppendMission" if number % 2 else "CreateMission", NAVIGATE)
+            except grpc.RpcError:
+                robot.drive("goalReached")
+        other.channel.close()
+
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        list(pool.map(busy, range(4)))
+    first, *lines = robot.history()
+    verdict = check(system("bear.mission"), head(first), lines)
+    assert verdict.conforms, str(verdict)
+    assert len(lines) > 40
+    assert messages.get(timeout=WAIT) is not None
+
+
+def test_a_subscriber_that_goes_away_is_forgotten(robot: Served, client: Client) -> None:
+    """A cancelled stream is given up by the robot as well."""
+    call, messages = client.subscribe()
+    messages.get(timeout=WAIT)
+    call.cancel()
+    assert messages.get(timeout=WAIT) is None
+    for _ in range(200):
+        if any(line.get("method") == "cancel" for line in robot.history()):
+            return
+        threading.Event().wait(0.02)
+    pytest.fail("the robot still sends to a subscriber who has gone")
+
+
+def test_many_streams_need_no_thread_each(robot: Served, client: Client) -> None:
+    """A hundred subscribers all see the next event, and no thread was started for them by the server."""
+    method = client.methods["SubscribeMissionStatus"]
+    calls = [client.channel.unary_stream(path(method))(b"") for _ in range(100)]
+    for call in calls:
+        next(call)
+    before = threading.active_count()
+    client.call("CreateMission", NAVIGATE)
+    numbers = {decode(method.response, next(call))["metadata"]["sequenceNumber"] for call in calls}
+    assert len(numbers) == 1
+    assert threading.active_count() <= before + 1
+    for call in calls:
+        call.cancel()
+    assert robot.history()
+
+
+def test_a_token_is_asked_for() -> None:
+    """Without the token every call is UNAUTHENTICATED; with it calls are served."""
+    with serve("bear.mission", token="secret") as robot:  # noqa: S106 - it is nobody's
+        stranger, friend = Client(robot.target), Client(robot.target, metadata=(("authorization", "Bearer secret"),))
+        assert refusal(stranger, "ChargeRobot").code() is grpc.StatusCode.UNAUTHENTICATED
+        assert friend.call("ChargeRobot")["missionId"]
+
+
+def test_faults_are_the_same_for_the_same_seed() -> None:
+    """Faults are drawn from the seed alone; a deadline may have been too late or too early."""
+    faults = Faults.parse(["deadline:0.5", "lost:0.5", "doubled:0.25"])
+    drawn = [
+        [(dice.deadline(), dice.copies(first=False)) for _ in range(50)] for dice in (Dice(faults, 3), Dice(faults, 3))
+    ]
+    assert drawn[0] == drawn[1]
+    assert {one for one, _ in drawn[0]} == {"", "applied", "lost"}
+    assert {copies for _, copies in drawn[0]} == {0, 1, 2}
+    assert Dice(faults, 3).copies(first=True) >= 1
+
+
+@pytest.mark.parametrize(
+    "text", ["deadline", "deadline:2", "deadline:x", "ends:0", "ends:inf", "nothing:1", "lost:nan"]
+)
+def test_a_wrong_fault_is_refused_in_words(text: str) -> None:
+    """A fault that does not exist, or out of range, is named in the error."""
+    with pytest.raises(ValueError, match=r"^'"):
+        Faults.parse([text])
+
+
+def test_a_deadline_may_have_taken_effect() -> None:
+    """With the fault, some calls answer DEADLINE_EXCEEDED; of those some have created a mission."""
+    with serve("bear.mission", faults=["deadline:1"], seed=1) as robot:
+        client = Client(robot.target)
+        applied = set()
+        for _ in range(8):
+            robot.reset()
+            assert refusal(client, "CreateMission", NAVIGATE).code() is grpc.StatusCode.DEADLINE_EXCEEDED
+            _, messages = client.subscribe()
+            applied.add(bool(messages.get(timeout=WAIT)["missionStates"].get("missions")))
+        assert applied == {True, False}
+
+
+def test_a_stream_ends_when_it_is_told_to() -> None:
+    """``ends`` closes every stream cleanly after so many seconds."""
+    with serve("bear.mission", faults=["ends:0.05"]) as robot:
+        call, messages = Client(robot.target).subscribe()
+        assert messages.get(timeout=WAIT) is not None
+        assert messages.get(timeout=WAIT) is None
+        assert call.code() is grpc.StatusCode.OK
+
+
+def test_a_robot_that_drives_itself_reaches_its_goals() -> None:
+    """With ``auto`` a mission ends although nobody drives; a script comes first."""
+    cues = (Cue(0.0, {"event": "world", "destinations": ["table-1", "bar"]}),)
+    with serve("bear.mission", auto=0.01, script=cues) as robot:
+        client = Client(robot.target)
+        _, messages = client.subscribe()
+        client.call("CreateMission", NAVIGATE)
+        for _ in range(20):
+            missions = messages.get(timeout=WAIT)["missionStates"].get("missions", [{}])
+            if missions[0].get("state") == "STATE_SUCCEEDED":
+                return
+        pytest.fail("the mission did not end")
+
+
+@pytest.mark.parametrize(
+    "line", ["[]", "{}", '{"drive": {"event": "none"}}', '{"after": -1, "drive": {}}', "{", '{"x": 1}']
+)
+def test_a_wrong_script_is_refused_with_its_line(line: str) -> None:
+    """What is no cue is named with its line."""
+    with pytest.raises(UnreadableError, match=r"^line 2: "):
+        read_script(f'{{"drive": {{"event": "goalReached"}}}}\n{line}', system("bear.mission"))
+
+
+def test_a_fleet_is_served_behind_one_port() -> None:
+    """Of ``bear.status`` several robots are served, told apart by the selectors of the calls."""
+    world = {
+        "robots": [
+            {"robotId": name, "locationId": "L1", "owned": True, "state": {"battery": {"chargePercent": percent}}}
+            for name, percent in (("r1", 10), ("r2", 90))
+        ],
+        "locations": [{"locationId": "L1", "owned": True}],
+    }
+    with serve("bear.status", world=world) as fleet:
+        client = Client(fleet.target, "bear.status")
+        assert client.call("GetRobotStatus", {"robotId": "r2"})["robotState"]["battery"]["chargePercent"] == 90
+        _, messages = client.subscribe("SubscribeBatteryStatus", {"selector": {"locationId": "L1"}})
+        assert {messages.get(timeout=WAIT)["robotId"] for _ in range(2)} == {"r1", "r2"}
+
+
+def test_a_port_that_is_taken_is_an_error_with_its_name(robot: Served) -> None:
+    """A second server on the same port is refused, not mixed up with the first."""
+    with pytest.raises(OSError, match=str(robot.port)), serve("bear.mission", port=robot.port):
+        pytest.fail("two servers on one port")
+
+
+def test_only_bear_systems_are_served() -> None:
+    """Isaac's systems do not speak gRPC."""
+    with pytest.raises(ValueError, match=r"^'isaac.server' is not served over gRPC; bear.mission and bear.status are$"):
+        serve("isaac.server").__enter__()

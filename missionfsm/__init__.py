@@ -1,6 +1,10 @@
 """missionfsm: executable formal models of robot mission interfaces, and an oracle that judges implementations.
 
-The public names; each is loaded when it is asked for, so that ``import missionfsm`` costs nothing.
+Judging: `check` (a recorded history), `conform` (an implementation), `explore` (a system); each returns its verdict.
+Fakes for tests of clients: `Robot` and `Fleet` (Bear), with the messages that they take and the errors that they raise;
+`MissionServer` and `Mission` (Isaac), on real sockets. `systems` has what is modelled.
+
+Each name is loaded when it is asked for, so that ``import missionfsm`` costs nothing.
 """
 
 from __future__ import annotations
@@ -10,21 +14,60 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from missionfsm.bear.wire.messages import Command as Command
-    from missionfsm.bear.wire.messages import Goal as Goal
-    from missionfsm.bear.wire.messages import Pose as Pose
-    from missionfsm.bear.wire.messages import State as State
-    from missionfsm.fakes import missions as missions
-    from missionfsm.fakes import workflows as workflows
-    from missionfsm.fakes.errors import ApiError as ApiError
-    from missionfsm.fakes.errors import DeadlineExceeded as DeadlineExceeded
-    from missionfsm.fakes.errors import FailedPrecondition as FailedPrecondition
-    from missionfsm.fakes.errors import Internal as Internal
-    from missionfsm.fakes.errors import InvalidArgument as InvalidArgument
-    from missionfsm.fakes.errors import NotFound as NotFound
-    from missionfsm.fakes.robot import Robot as Robot
+    from missionfsm import systems
+    from missionfsm.adapters.isaac.missionserver import Mission, MissionServer
+    from missionfsm.api import check, check_robots, conform, explore
+    from missionfsm.bear.wire.messages import Command, Goal, Pose, State
+    from missionfsm.fakes import missions, workflows
+    from missionfsm.fakes.errors import (
+        ApiError,
+        DeadlineExceeded,
+        FailedPrecondition,
+        Internal,
+        InvalidArgument,
+        NotFound,
+    )
+    from missionfsm.fakes.fleet import Fleet
+    from missionfsm.fakes.robot import Robot
+    from missionfsm.kernel.codec import UnreadableError
+    from missionfsm.kernel.subject import SubjectError
+    from missionfsm.tools.check.verdict import Outcome, Verdict
+
+    __version__: str
+
+__all__ = [
+    "ApiError",
+    "Command",
+    "DeadlineExceeded",
+    "FailedPrecondition",
+    "Fleet",
+    "Goal",
+    "Internal",
+    "InvalidArgument",
+    "Mission",
+    "MissionServer",
+    "NotFound",
+    "Outcome",
+    "Pose",
+    "Robot",
+    "State",
+    "SubjectError",
+    "UnreadableError",
+    "Verdict",
+    "__version__",
+    "check",
+    "check_robots",
+    "conform",
+    "explore",
+    "missions",
+    "systems",
+    "workflows",
+]
 
 _PLACES: Mapping[str, tuple[str, ...]] = {
+    "missionfsm": ("systems",),
+    "missionfsm.adapters.isaac.missionserver": ("Mission", "MissionServer"),
+    "missionfsm.api": ("check", "check_robots", "conform", "explore"),
     "missionfsm.bear.wire.messages": ("Command", "Goal", "Pose", "State"),
     "missionfsm.fakes": ("missions", "workflows"),
     "missionfsm.fakes.errors": (
@@ -35,20 +78,31 @@ _PLACES: Mapping[str, tuple[str, ...]] = {
         "InvalidArgument",
         "NotFound",
     ),
+    "missionfsm.fakes.fleet": ("Fleet",),
     "missionfsm.fakes.robot": ("Robot",),
+    "missionfsm.kernel.codec": ("UnreadableError",),
+    "missionfsm.kernel.subject": ("SubjectError",),
+    "missionfsm.tools.check.verdict": ("Outcome", "Verdict"),
 }
+"""Where each name is; those of a package without names of its own are modules."""
+
 _PLACE = {name: place for place, names in _PLACES.items() for name in names}
 
+if not TYPE_CHECKING:  # a type checker that saw this would take any name for one that is there
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands for
-    place = _PLACE.get(name)
-    if place is None:
-        message = f"module 'missionfsm' has no attribute {name!r}"
-        raise AttributeError(message)
-    if place == "missionfsm.fakes":
-        return importlib.import_module(f"{place}.{name}")
-    return getattr(importlib.import_module(place), name)
+    def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands for
+        place = _PLACE.get(name)
+        if name == "__version__":
+            from importlib.metadata import version  # noqa: PLC0415 - seldom asked for
+
+            return version("missionfsm")
+        if place is None:
+            message = f"module 'missionfsm' has no attribute {name!r}"
+            raise AttributeError(message)
+        if place in ("missionfsm", "missionfsm.fakes"):
+            return importlib.import_module(f"{place}.{name}")
+        return getattr(importlib.import_module(place), name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_PLACE})
+    return sorted({*globals(), *__all__})

@@ -80,16 +80,11 @@ def as_pytest(history: tuple[JSON, ...], name: str) -> str:
 
     body = "\n".join(f"    {json.dumps(line, ensure_ascii=False)!r}," for line in history)
     return (
-        "import json\n\n"
-        "from missionfsm.oracle.transcript import head\n"
-        "from missionfsm.systems import system\n"
-        "from missionfsm.tools.check.judge import check\n\n"
+        "from missionfsm import check\n\n"
         f"HISTORY = (\n{body}\n)\n\n\n"
         f"def test_{name}() -> None:\n"
         '    """The recorded conversation can be explained."""\n'
-        "    first, *lines = map(json.loads, HISTORY)\n"
-        "    start = head(first)\n"
-        "    verdict = check(system(start.system), start, lines)\n"
+        "    verdict = check(HISTORY)\n"
         "    assert verdict.violation is None, str(verdict)\n"
     )
 

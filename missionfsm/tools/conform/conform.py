@@ -272,7 +272,7 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
 
         def teardown(self) -> None:
             # Where nothing was begun, what was begun last has been gathered before.
-            if hasattr(self, "world") and (run.over or self.conversation.right):
+            if hasattr(self, "world") and run.last is not None and (run.over or self.conversation.right):
                 self.act("settle")
                 if not run.gather():
                     raise _Found

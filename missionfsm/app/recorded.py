@@ -21,7 +21,7 @@ from missionfsm.adapters.historyfile import (
     placed,
     wrong_line,
 )
-from missionfsm.app.watched import subscription, watch_messages
+from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
@@ -44,8 +44,9 @@ def check_file(
 ) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot that a history speaks of, in the order of their first lines.
 
-    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a status
-    subscription is the bare messages of that subscription; what is wrong with one is told at once.
+    A line without a robot belongs to the one conversation of the file. A file that begins with a message of a
+    subscription, or with the body of a webhook, has bare messages; what is wrong with one is told at once, and each
+    subscription has a verdict.
 
     Args:
         no_flagged: whether nothing may depart from the letter of the text.
@@ -102,10 +103,12 @@ def _judged(
             raise UnreadableError(message)
         with placed(path, number):
             line = texts.json(text)
-        watched = subscription(line)
-        if watched:
+        if subscription(line):
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
-            return [(None, watch_messages(watched, messages, tell))]
+            try:
+                return [(None, verdict) for verdict in watch_messages(messages, tell)]
+            except UnplacedError as error:
+                raise wrong_line(path, error.number, error) from None
         with placed(path, number):
             judges = _Judges(line, asked, lost, keep)
         judges.read(path, texts, numbered)

@@ -1,54 +1,194 @@
-"""Judge the bare messages of one live subscription to a robot's status, a line each: what is wrong is told at once."""
+"""Judge bare messages of live subscriptions, or bodies of webhooks, a line each: what is wrong is told at once.
+
+One file may hold the messages of several subscriptions and robots: what a message carries tells them apart, and what
+comes on one is never compared with what comes on another.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from missionfsm.bear.status.monitor import Problem, StreamMonitor
-from missionfsm.bear.status.spec import SPEC
+from attrs import define, field
+
+from missionfsm.adapters.addresses import Addresses
+from missionfsm.bear.mission import monitor as mission_monitor
+from missionfsm.bear.mission.monitor import MissionMonitor
+from missionfsm.bear.mission.spec import SPEC as MISSION
+from missionfsm.bear.status.monitor import CHECKED, StreamMonitor
+from missionfsm.bear.status.spec import SPEC as STATUS
 from missionfsm.bear.status.state import MAPS, SINGLES, Endpoint
-from missionfsm.kernel.codec import JSON
+from missionfsm.bear.wire.problem import Problem
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.text import brief
+from missionfsm.kernel.transport import TR_02
 from missionfsm.tools.check.explain import told
 from missionfsm.tools.check.verdict import Allowed, Outcome, Verdict, Violation
 
 Numbered = tuple[int, JSON]
 
+MISSIONS = "SubscribeMissionStatus"
 _SNAKE = str.maketrans({capital: f"_{capital.lower()}" for capital in "ABCDEFGHIJKLMNOPQRSTUVWXYZ"})
-_FIELDS: dict[str, Endpoint] = {
-    name: endpoint for endpoint, field in (*MAPS.items(), *SINGLES.items()) for name in (field, field.translate(_SNAKE))
+_FIELDS: dict[str, str] = {
+    name: topic
+    for topic, carrier in (
+        (MISSIONS, "missionStates"),
+        *((endpoint.value, carrier) for endpoint, carrier in (*MAPS.items(), *SINGLES.items())),
+    )
+    for name in (carrier, carrier.translate(_SNAKE))
 }
 """The field that carries the states, in both of its spellings, to the subscription whose messages have it."""
+_MAPPED = frozenset(name for carrier in MAPS.values() for name in (carrier, carrier.translate(_SNAKE)))
+_ENVELOPE = frozenset({"metadata", "robotId", "robot_id"})
 _RIGHT = Allowed("a message that keeps the rule")
 
 
-def subscription(message: JSON) -> Endpoint | None:
-    """The subscription that a message is of; None for what is no status message."""
-    fields = message if isinstance(message, dict) and "missionfsm" not in message else ()
-    return next((_FIELDS[name] for name in fields if name in _FIELDS), None)
+def subscription(message: JSON) -> str | None:
+    """The subscription that a message, or the body of a webhook, is of; None for what is no such message."""
+    if not isinstance(message, dict) or "missionfsm" in message:
+        return None
+    if isinstance(message.get("state"), dict) and message.keys() & {"robot_id", "robotId"}:
+        state = message["state"]
+        return MISSIONS if "missions" in state else next((_FIELDS[name] for name in state if name in _FIELDS), None)
+    return next((_FIELDS[name] for name in message if name in _FIELDS), None)
 
 
-def watch_messages(endpoint: Endpoint, numbered: Iterable[Numbered], tell: Callable[[str], None]) -> Verdict:
-    """The verdict on the messages of one stream; every problem is told as soon as its message is there.
+def _unwrapped(message: JSON) -> tuple[str, JSON]:
+    """The robot that a message names outside of its documented fields, and the message as a subscription sends it.
+
+    The body of a webhook has what a message of the subscription says in its `state`.
+    """
+    robot = message.get("robot_id") or message.get("robotId") or ""
+    state = message.get("state")
+    if not isinstance(state, dict):
+        topic = subscription(message)
+        if topic == MISSIONS and isinstance(robot, str):  # a message of a mission stream names no robot
+            return robot, {name: value for name, value in message.items() if name not in ("robotId", "robot_id")}
+        return "", message
+    known = {name: value for name, value in state.items() if name not in ("current_mission", "current_goal")}
+    metadata = {"metadata": known.pop("metadata")} if "metadata" in known else {}
+    if "missions" in known:
+        return str(robot), {**metadata, "missionStates": known}
+    name = next((name for name in known if name in _MAPPED), None)
+    if name is not None:
+        entry = known[name] if isinstance(known[name], dict) else {name: known[name]}
+        return "", {name: {robot: {**metadata, **entry}}}
+    return "", {**metadata, "robotId": robot, **known}
+
+
+@define
+class _Subscription:
+    """What came of one subscription so far."""
+
+    topic: str
+    strict: bool
+    status: StreamMonitor | None = None
+    missions: dict[str, MissionMonitor] = field(factory=dict)
+    events: int = 0
+    problems: int = 0
+    flagged: int = 0
+    first: tuple[int, Problem] | None = None
+
+    def __attrs_post_init__(self) -> None:
+        if self.topic != MISSIONS:
+            self.status = StreamMonitor(Endpoint(self.topic), strict=self.strict)
+
+    def feed(self, robot: str, message: JSON) -> tuple[Problem, ...]:
+        """What is wrong with the next message."""
+        self.events += 1
+        if self.status is not None:
+            return self.status.feed(message)
+        monitor = self.missions.get(robot)
+        if monitor is None:
+            monitor = self.missions[robot] = MissionMonitor(robot, strict=self.strict)
+        return monitor.feed(message)
+
+    def verdict(self) -> Verdict:
+        """The judgement of what came."""
+        spec: Spec = STATUS if self.status else MISSION
+        checked = CHECKED if self.status else mission_monitor.CHECKED
+        monitors = (self.status,) if self.status else tuple(self.missions.values())
+        robots = self.status.robots if self.status else len(self.missions)
+        repeats, redelivered = (sum(getattr(one, name) for one in monitors) for name in ("repeats", "redelivered"))
+        notes = [f"{robots} robots, {repeats} messages that say nothing new, {self.flagged} tolerated oddities"]
+        if self.problems > 1:
+            notes.append(f"{self.problems - 1} more problems in this stream")
+        violation = None
+        if self.first is not None:
+            number, problem = self.first
+            rules = told(spec, (problem.rule,))
+            violation = Violation(rules, str(problem), (_RIGHT,), at=number, where=f"line {number}: ")
+        return Verdict(
+            Outcome.CONFORMS if violation is None else Outcome.VIOLATES,
+            spec.system,
+            f"a stream of {self.topic}",
+            events=self.events,
+            violation=violation,
+            readings={TR_02.id: ("b",)} if redelivered else {},
+            flagged=(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}",) if redelivered else (),
+            unchecked=tuple(rule.id for rule in _concerned(spec, self.topic) if rule not in checked),
+            notes=tuple(notes),
+        )
+
+
+def _concerned(spec: Spec, topic: str) -> tuple[Rule, ...]:
+    """The rules about a subscription and what it shows."""
+    operation = spec.operations[topic]
+    others = {f"{spec.system}/{name}/" for name in spec.operations if name != topic}
+    shared = (rule for rule in spec.rules if not rule.id.startswith(tuple(others)))
+    return tuple(dict.fromkeys((*operation.refusals, *operation.promises, *shared)))
+
+
+def watch_messages(
+    numbered: Iterable[Numbered], tell: Callable[[str], None], *, strict: bool = False
+) -> list[Verdict]:
+    """The verdict on each subscription; every problem is told as soon as its message is there.
 
     What only departs from the letter of the page, in a way that a reading tolerates, is told, but breaks nothing.
+
+    Args:
+        strict: whether a message that is only delivered twice is wrong.
+
+    Raises:
+        UnreadableError: a line is no message, with the number of the line first.
     """
-    monitor = StreamMonitor(endpoint)
-    first: tuple[int, Problem] | None = None
-    problems = flagged = 0
-    for number, message in numbered:
-        for problem in monitor.feed(message):
+    found: dict[str, _Subscription] = {}
+    addresses = Addresses()
+    for number, line in numbered:
+        try:
+            robot, message = addresses.whose(line)
+            topic = _topic(message, found)
+        except UnreadableError as error:
+            raise UnplacedError(number, str(error)) from None
+        one = found.get(topic)
+        if one is None:
+            one = found[topic] = _Subscription(topic, strict)
+        named, message = _unwrapped({name: value for name, value in message.items() if name not in ("at", "robot")})
+        for problem in one.feed(robot or named, message):
             tell(f"line {number}: {problem}" + (" (tolerated)" if problem.flagged else ""))
-            flagged += problem.flagged
+            one.flagged += problem.flagged
             if not problem.flagged:
-                problems += 1
-                first = first or (number, problem)
-    notes = (f"{monitor.robots} robots, {monitor.repeats} messages that say nothing new, {flagged} tolerated oddities",)
-    about = f"a stream of {endpoint.value}"
-    if first is None:
-        return Verdict(Outcome.CONFORMS, SPEC.system, about, events=monitor.messages, notes=notes)
-    number, problem = first
-    more = (f"{problems - 1} more problems in this stream",) if problems > 1 else ()
-    violation = Violation(
-        told(SPEC, (problem.rule,)), str(problem), (_RIGHT,), more, at=number, where=f"line {number}: "
-    )
-    return Verdict(Outcome.VIOLATES, SPEC.system, about, events=monitor.messages, violation=violation, notes=notes)
+                one.problems += 1
+                one.first = one.first or (number, problem)
+    return [one.verdict() for one in found.values()]
+
+
+class UnplacedError(UnreadableError):
+    """A line is no message; who knows the file says where."""
+
+    def __init__(self, number: int, says: str) -> None:
+        super().__init__(says)
+        self.number = number
+
+
+def _topic(message: JSON, known: Iterable[str]) -> str:
+    """The subscription of a message; one without a payload is of the only subscription that there is."""
+    topic = subscription(message)
+    if topic is not None:
+        return topic
+    topics = tuple(known)
+    if len(topics) == 1 and (not message or message.keys() & _ENVELOPE):
+        return topics[0]
+    says = f"{brief(message)} is no message of a subscription: it has none of {', '.join(tuple(_FIELDS)[::2])}"
+    raise UnreadableError(says)

@@ -12,6 +12,7 @@ from attrs import evolve, field, frozen
 from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
 
 OK = "OK"
+UNKNOWN = "UNKNOWN"
 CANCELLED = "CANCELLED"
 INVALID_ARGUMENT = "INVALID_ARGUMENT"
 DEADLINE_EXCEEDED = "DEADLINE_EXCEEDED"
@@ -27,7 +28,7 @@ UNAUTHENTICATED = "UNAUTHENTICATED"
 STATUS_NUMBERS: Mapping[str, int] = {
     OK: 0,
     CANCELLED: 1,
-    "UNKNOWN": 2,
+    UNKNOWN: 2,
     INVALID_ARGUMENT: 3,
     DEADLINE_EXCEEDED: 4,
     NOT_FOUND: 5,

@@ -282,6 +282,7 @@ class Spec:
         abstraction: how a search and an exploration look at its states.
         waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
+        transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
     """
 
     system: str
@@ -312,6 +313,7 @@ class Spec:
     abstraction: Abstraction = Abstraction()
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
+    transport: bool = False
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

@@ -17,14 +17,13 @@ import marshal
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
-from attrs import frozen
-
 from missionfsm.bear.status.codec import map_value, metadata_of, read_state, single_value
 from missionfsm.bear.status.spec import sequence
 from missionfsm.bear.status.state import MAPS, PARTS, SINGLES, WIFI, Endpoint, Value
-from missionfsm.bear.status.stream import SELECTED, WELL_FORMED
-from missionfsm.bear.status.values import Fault, a_stuck_state_is_known, faults, reserved_reasons_are_not_used
+from missionfsm.bear.status.stream import SELECTED, SEQUENCE, WELL_FORMED
+from missionfsm.bear.status.values import CHECKS, Fault, a_stuck_state_is_known, faults, reserved_reasons_are_not_used
 from missionfsm.bear.wire.messages import EventMetadata
+from missionfsm.bear.wire.problem import Problem
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.sequence import relation
@@ -35,28 +34,8 @@ REMEMBERED = 50_000
 """How many different payloads a monitor remembers before it starts to remember anew."""
 
 
-@frozen
-class Problem:
-    """Something wrong with a message.
-
-    Attributes:
-        message: which message of the stream it is, counted from 1.
-        robot: whom it is about; empty where it does not say.
-        rule: the id of the rule that it breaks.
-        says: what is wrong, in a line.
-        flagged: it departs from the letter of the page in a way that a reading tolerates.
-    """
-
-    message: int
-    robot: str
-    rule: str
-    says: str
-    flagged: bool = False
-
-    def __str__(self) -> str:
-        about = f" about {self.robot}" if self.robot else ""
-        return f"message {self.message}{about}: {self.says} [{self.rule}]"
-
+CHECKED = (WELL_FORMED, SEQUENCE, SELECTED, *(one.rule for one in CHECKS))
+"""The rules that a bare message can break."""
 
 Verdict = tuple[Fault, ...]
 _USUAL_TIMESTAMP = re.compile(USUAL_TIMESTAMP)
@@ -68,12 +47,14 @@ _MOVING = frozenset({"pose", "twist"})
 
 
 class _Track:
-    """What is remembered of a robot: its last number, its last payload, and what was wrong with it."""
+    """What is remembered of a robot: its last number, when that was, its last payload, and what was wrong with it."""
 
-    __slots__ = ("number", "payload", "verdict")
+    __slots__ = ("given", "number", "payload", "timestamp", "verdict")
 
     def __init__(self) -> None:
         self.number: int | None = None
+        self.timestamp: JSON = None
+        self.given: JSON = None
         self.payload: bytes = b""
         self.verdict: Verdict | None = None
 
@@ -84,17 +65,23 @@ class StreamMonitor:
     Args:
         endpoint: the subscription, as an `Endpoint` or by its name.
         robots: the robots that were selected, where that is known; another one is a problem.
+        strict: whether a message that comes twice is wrong, though it was only delivered twice.
 
     Attributes:
         messages: how many messages came.
+        redelivered: how many times what is said of a robot was its last, number, timestamp and all.
         repeats: how many times a robot's payload was that of its message before: tolerated in event mode, but counted;
             of whole states, which come again by design, pose and velocity are not compared.
     """
 
-    def __init__(self, endpoint: Endpoint | str, robots: Collection[str] | None = None) -> None:
+    def __init__(
+        self, endpoint: Endpoint | str, robots: Collection[str] | None = None, *, strict: bool = False
+    ) -> None:
         self.endpoint = Endpoint(endpoint)
         self.messages = 0
         self.repeats = 0
+        self.redelivered = 0
+        self._strict = strict
         self._selected = None if robots is None else frozenset(robots)
         self._tracks: dict[str, _Track] = {}
         self._verdicts: dict[bytes, Verdict] = {}
@@ -152,7 +139,7 @@ class StreamMonitor:
             verdict = self._judge(payload, key)
         if verdict or track.verdict:
             return self._slowly(robot, metadata, payload)
-        track.number = number
+        track.number, track.timestamp, track.given = number, metadata["timestamp"], payload
         track.payload = key
         return ()
 
@@ -204,11 +191,15 @@ class StreamMonitor:
             problems.append((WELL_FORMED.id, str(error), False))
         else:
             compared = relation(track.number, known.sequence_number)
+            if compared in ("equal", "zero") and not self._strict and _came_twice(track, metadata, payload):
+                self.redelivered += 1
+                return ()
             wrong = sequence(compared)
             echo = compared in ("equal", "zero") and self._map is not None and key == track.payload
             if isinstance(wrong, Mismatch) and not echo:
                 problems.append((wrong.rule, f"{wrong.says} ({known.sequence_number} after {track.number})", False))
-            track.number = known.sequence_number
+            track.number, track.timestamp = known.sequence_number, metadata.get("timestamp")
+        track.given = payload
         verdict = self._judge(payload, key) if isinstance(payload, dict) else _verdict(lambda: self._value(payload))
         problems += self._told(verdict, track.verdict)
         track.payload, track.verdict = key, verdict
@@ -250,6 +241,16 @@ class StreamMonitor:
         if not isinstance(robot, str) or not robot:
             raise MalformedError(f"{brief(robot)} is not the id of a robot", "robotId")
         return self._slowly(robot, message.get("metadata"), {} if payload is None else payload)
+
+
+def _came_twice(track: _Track, metadata: JSON, payload: JSON) -> bool:
+    """Whether the last message about a robot has come again: its number has, but is everything else as it was."""
+    given = track.given
+    if track.number is None or track.timestamp != metadata.get("timestamp"):
+        return False
+    if isinstance(given, dict):
+        given = {name: value for name, value in given.items() if name != "metadata"}  # an entry of a map has its own
+    return bool(given == payload and track.number == metadata_of(metadata).sequence_number)
 
 
 def watch(

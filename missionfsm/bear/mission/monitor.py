@@ -1,0 +1,187 @@
+"""A monitor that stands alone: the messages of one live mission subscription in, what is wrong with each of them out.
+
+Nothing is known of the robot but what the messages say, nor of what anybody asked it: a message is held to what it
+shows by itself, and to the one before it. Rules and lifecycle are those of the specification. What only a call could
+tell, no bare message breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from missionfsm.bear.mission.codec import content, strip
+from missionfsm.bear.mission.state import ENDED, LIFECYCLE
+from missionfsm.bear.mission.stream import (
+    ALL_LISTED,
+    CURRENT,
+    FEEDBACK,
+    GOAL_INDEX,
+    GOALS,
+    SEQUENCE,
+    STATE,
+    TYPE,
+    WELL_FORMED,
+    Seen,
+)
+from missionfsm.bear.wire.messages import BaseType, CartiType, MissionState, MissionType, ServiType, State
+from missionfsm.bear.wire.problem import Problem
+from missionfsm.kernel.codec import JSON, Garbled
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.sequence import relation
+
+CHECKED = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE)
+"""The rules that a bare message can break."""
+
+Found = tuple[Rule, str]
+_ACTIVE = frozenset({State.STATE_RUNNING, State.STATE_PAUSED})
+_WAITING = frozenset({State.STATE_DEFAULT, State.STATE_UNKNOWN})
+_AUTOMATIC = (
+    MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),
+    MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE_AUTO),
+    MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE_AUTO),
+)
+"""The types of missions that select their goal themselves, some time after they have started."""
+
+
+def _reached() -> dict[State, frozenset[State]]:
+    """For each state of a mission those in which it may be seen next, whatever was not seen in between."""
+    found: dict[State, frozenset[State]] = {}
+    for state in LIFECYCLE.states:
+        reached, todo = {state}, [state]
+        while todo:
+            here = todo.pop()
+            later = {after for _, before, after in LIFECYCLE.table if before is here} - reached
+            reached |= later
+            todo += later
+        found[state] = frozenset(reached)
+    return found
+
+
+_REACHED = _reached()
+
+
+class MissionMonitor:
+    """Judges the messages of one robot's stream as they come.
+
+    Args:
+        robot: the robot that they are about, where that is known.
+        strict: whether a message that comes twice is wrong, though it was only delivered twice.
+
+    Attributes:
+        messages: how many messages came.
+        repeats: how many of them list the same missions in the same way as the one before.
+        redelivered: how many were the one before, number, timestamp and all.
+    """
+
+    def __init__(self, robot: str = "", *, strict: bool = False) -> None:
+        self.robot = robot
+        self.messages = 0
+        self.repeats = 0
+        self.redelivered = 0
+        self._strict = strict
+        self._number: int | None = None
+        self._last: JSON = None
+        self._missions: dict[object, MissionState] = {}
+
+    def feed(self, message: JSON) -> tuple[Problem, ...]:
+        """What is wrong with the next message; nothing, usually."""
+        self.messages += 1
+        ((names, marks, rest),) = strip(message)
+        if marks and marks[0][1] == self._number and message == self._last and not self._strict:
+            self.redelivered += 1
+            return ()
+        found = list(self._numbered(marks[0][1])) if marks else []
+        self._last = message
+        seen = content(rest)
+        if isinstance(seen, Garbled):
+            found.append((WELL_FORMED, seen.says))
+        elif isinstance(seen, Seen):
+            missions = dict(zip(names, seen.states.missions, strict=False))
+            self.repeats += missions == self._missions and self.messages > 1
+            found += _listed(seen, names)
+            found += self._goes_on(missions)
+            self._missions = missions
+        return tuple(Problem(self.messages, self.robot, rule.id, says) for rule, says in found)
+
+    def _numbered(self, number: int) -> Iterator[Found]:
+        compared = relation(self._number, number)
+        if compared not in ("first", "larger", "zero"):
+            yield SEQUENCE, f"the sequence number is {compared} ({number} after {self._number})"
+        self._number = number
+
+    def _goes_on(self, missions: dict[object, MissionState]) -> Iterator[Found]:
+        """What cannot have become of the missions that were listed before."""
+        both = [name for name in missions if name in self._missions]
+        if both != [name for name in self._missions if name in missions]:
+            yield ALL_LISTED, "the missions have changed places"
+        for name in both:
+            before, after = self._missions[name], missions[name]
+            if before.mission_type != after.mission_type:
+                yield TYPE, f"mission {name} has another type than before"
+            if before.goals != after.goals:
+                yield GOALS, f"mission {name} has other goals than before"
+            allowed = _REACHED.get(_stage(before))
+            if allowed and isinstance(after.state, State) and _stage(after) not in allowed:
+                yield STATE, f"mission {name} is {after.state.name}, and was {_name(before.state)} before"
+
+
+def _stage(mission: MissionState) -> State:
+    """The state of the lifecycle that a message shows; AM-08: one that waits may be shown as unknown."""
+    state = mission.state
+    return State(state) if isinstance(state, State) and state not in _WAITING else State.STATE_DEFAULT
+
+
+def _name(state: int) -> str:
+    return state.name if isinstance(state, State) else f"state {state}"
+
+
+def _listed(seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
+    """What is wrong with a list of missions by itself."""
+    missions = seen.states.missions
+    placeholder = len(missions) == 1 and not seen.named[0] and _stage(missions[0]) is State.STATE_DEFAULT
+    if not placeholder:  # AM-35, AM-36: one without an id stands for an empty list
+        if not all(seen.named):
+            yield ALL_LISTED, f"mission {seen.named.index(False)} has no id"
+        if len(set(names)) < len(names):
+            yield ALL_LISTED, "a mission is listed twice"
+    for index, mission in enumerate(missions):
+        if not isinstance(mission.state, State):
+            yield STATE, f"mission {index} is {_name(mission.state)}"
+        yield from _one(index, mission)
+    yield from _ordered(missions, seen.states.current_mission_index)
+
+
+def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
+    """Whether the ended come first, then the active one, then those that wait, and whether the index says which."""
+    stages = [0 if one.state in ENDED else 1 if one.state in _ACTIVE else 2 for one in missions]
+    # AM-08: one that waits may be shown as paused, the first of those is the one that is.
+    active = next((place for place, stage in enumerate(stages) if stage == 1), None)
+    if active is not None:
+        later = missions[active + 1 :]
+        stages[active + 1 :] = [
+            2 if stage == 1 and one.state is State.STATE_PAUSED else stage
+            for one, stage in zip(later, stages[active + 1 :], strict=True)
+        ]
+    if any(before > after for before, after in pairwise(stages)) or stages.count(1) > 1:
+        yield STATE, "the missions are not in the order ended, active, waiting"
+        return
+    ended = stages.count(0)
+    allowed = {-1, ended - 1, ended} if ended < len(missions) else {-1, ended - 1} if ended else {-1, 0}
+    if active is not None:
+        allowed = {active} if missions[active].state is State.STATE_RUNNING else {active, -1, ended - 1}
+    if index not in allowed:
+        values = " or ".join(str(value) for value in sorted(allowed))
+        yield CURRENT, f"current_mission_index is {index}, expected {values}"
+
+
+def _one(index: int, mission: MissionState) -> Iterator[Found]:
+    """What is wrong with the goal index and the feedback of one mission."""
+    goal, goals = mission.current_goal_index, len(mission.goals)
+    chooses = goals < 2 or mission.mission_type in _AUTOMATIC
+    if not -1 <= goal <= goals or (mission.state in _ACTIVE and not chooses and not 0 <= goal < goals):
+        yield GOAL_INDEX, f"mission {index} has current_goal_index {goal} and {goals} goals"
+    feedback = mission.mission_feedback
+    statuses = (feedback.base_feedback, feedback.servi_feedback, feedback.carti_feedback) if feedback else ()
+    if mission.state in _WAITING and any(one is not None and one.status for one in statuses):
+        yield FEEDBACK, f"mission {index} waits and has feedback"

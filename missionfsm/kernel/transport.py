@@ -1,0 +1,78 @@
+"""What lies between an implementation and a log of it: a transport that loses, repeats and ends things by itself.
+
+A page says what a robot does; a log holds what came through. Each way in which the two differ is an ambiguity of its
+own, with the reading "a" (it did not happen) and the reading "b" (it did), which is flagged. The oracle takes to "b" only
+where nothing else explains an event, and a verdict says where that was. Whoever judges without a transport in between,
+as over stdin and stdout, judges by the plain specification, which has none of this.
+"""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.rules import (
+    CANCELLED,
+    DEADLINE_EXCEEDED,
+    OK,
+    RESOURCE_EXHAUSTED,
+    UNAUTHENTICATED,
+    UNAVAILABLE,
+    UNKNOWN,
+)
+from missionfsm.kernel.spec import Spec
+
+
+def _reading(number: int, question: str, happened: str) -> Ambiguity:
+    readings = {"a": "no", "b": happened}
+    return Ambiguity(f"TR-{number:02}", question, readings, default="a", flagged=frozenset("b"))
+
+
+TR_01 = _reading(
+    1,
+    "Did a stream end that nothing on the page ends?",
+    "yes, cleanly or with the client's own DEADLINE_EXCEEDED, as streams do that have lasted long enough",
+)
+TR_02 = _reading(
+    2, "Did a message come twice?", "yes, the same number, timestamp and content again: that is a redelivery"
+)
+TR_03 = _reading(
+    3, "Was a message lost?", "yes, one that was owed never came; never the first of a stream, which shows the state"
+)
+TR_04 = _reading(
+    4,
+    "Did a client or a gateway make the status of an answer by itself?",
+    "yes, so the call may have taken effect or not, at once or later",
+)
+TR_05 = _reading(5, "Did the robot restart?", "yes: its list is empty, and its numbers start over at 0")
+TRANSPORT = (TR_01, TR_02, TR_03, TR_04, TR_05)
+"""All of them, in the order of their numbers."""
+
+MADE_BY_CLIENTS = frozenset(
+    {
+        DEADLINE_EXCEEDED,
+        CANCELLED,
+        UNAVAILABLE,
+        UNAUTHENTICATED,
+        RESOURCE_EXHAUSTED,
+        UNKNOWN,
+    }
+)
+"""The statuses that any gRPC client or gateway makes by itself, on every call."""
+ENDS = frozenset({OK, DEADLINE_EXCEEDED})
+"""How a transport ends a stream that has lasted long enough."""
+
+
+def over_transport(spec: Spec) -> Spec:
+    """The same system, seen through a transport that is not perfect."""
+    decided = spec.decided
+    return evolve(
+        spec,
+        transport=True,
+        ambiguities=(*spec.ambiguities, *TRANSPORT),
+        decided=None if decided is None else lambda assumed: over_transport(decided(assumed)),
+        rebuilt=None,
+    )
+
+
+__all__ = ["ENDS", "MADE_BY_CLIENTS", "TRANSPORT", "over_transport"]

@@ -40,11 +40,11 @@ def test_right_messages_conform(command_line: CommandLine, tmp_path: Path) -> No
     ("second", "rule"),
     [
         (battery(2, 150), "the-charge-is-a-percentage"),
-        (battery(1), "sequence-numbers-grow"),
+        (battery(1, 49), "sequence-numbers-grow"),
         ({"robotId": "a"}, "messages-are-well-formed"),
-        (7, "messages-are-well-formed"),
+        ({**battery(2), "robotId": ""}, "messages-are-well-formed"),
     ],
-    ids=["a charge of 150", "the same number again", "no metadata", "no object"],
+    ids=["a charge of 150", "the same number again", "no metadata", "an empty id"],
 )
 def test_a_wrong_message_is_a_violation(command_line: CommandLine, tmp_path: Path, second: Any, rule: str) -> None:
     """What is wrong with message 2 is told with its line and its rule, and what follows is judged as well."""
@@ -68,3 +68,61 @@ def test_a_live_stream_is_judged_as_it_comes() -> None:
         assert child.stdout.readline().startswith("line 1: message 1 about a: charge_percent is 150")
         child.stdin.close()
         assert child.wait(30) == 1
+
+
+def navigation(number: int, robot: str = "a") -> Any:
+    metadata = {"timestamp": "2025-01-01T00:00:00Z", "sequenceNumber": number}
+    return {"metadata": metadata, "robotId": robot, "navigationState": {"stuckState": {"state": "STATE_NOT_STUCK"}}}
+
+
+def missions(number: int, *listed: Any) -> Any:
+    metadata = {"timestamp": "2025-01-01T00:00:00Z", "sequence_number": number}
+    return {"metadata": metadata, "missions": list(listed), "current_mission_index": -1, "current_mission": None}
+
+
+def verdicts(command_line: CommandLine, path: Path) -> Any:
+    ended = command_line("check", path, "--json", "-")
+    assert ended.err == ""
+    return [(one["implementation"], one["verdict"], one["events"]) for one in json.loads(ended.out)]
+
+
+def test_topics_of_one_file_are_told_apart(command_line: CommandLine, tmp_path: Path) -> None:
+    """Messages of several subscriptions and robots in one file are judged apart; their numbers are never compared."""
+    webhook = {"robot_id": "r1", "state": missions(1)}
+    other = {"robot_id": "r2", "state": missions(9)}
+    lines = [battery(10), navigation(3), webhook, other, battery(11), navigation(4), {**webhook, "state": missions(2)}]
+    assert verdicts(command_line, written(tmp_path / "s.jsonl", *lines)) == [
+        ("a stream of SubscribeBatteryStatus", "conforms", 2),
+        ("a stream of SubscribeNavigationStatus", "conforms", 2),
+        ("a stream of SubscribeMissionStatus", "conforms", 3),
+    ]
+
+
+def test_what_is_wrong_with_a_webhook_is_told(command_line: CommandLine, tmp_path: Path) -> None:
+    """The body of a webhook is judged as a message of the subscription is, by its robot, with its line."""
+    bodies = [{"robot_id": "r1", "state": missions(number)} for number in (2, 1)]
+    charge = {"metadata": battery(1)["metadata"], "battery_state": battery(1, 150)["batteryState"]}
+    ended = command_line("check", written(tmp_path / "s.jsonl", *bodies, {"robot_id": "r1", "state": charge}))
+    lines = ended.out.splitlines()
+    assert ended.status == 1
+    assert lines[0].startswith("line 2: message 2 about r1: the sequence number is smaller (1 after 2)")
+    assert lines[1].startswith("line 3: message 1 about r1: charge_percent is 150")
+
+
+@pytest.mark.parametrize("line", [7, "text", [battery(2)], {"level": "info"}, {"metadata": {}, "payload": {}}])
+def test_a_line_that_is_no_message_is_bad_input(command_line: CommandLine, tmp_path: Path, line: Any) -> None:
+    """A line that is no message of a subscription is the author's fault, not the robot's: status 2 and its number."""
+    path = written(tmp_path / "s.jsonl", battery(1), navigation(1), line)
+    ended = command_line("check", path)
+    assert (ended.status, ended.out, ended.err.count("\n")) == (2, "", 1)
+    assert ended.err.startswith(f"missionfsm: {path}:3: ")
+
+
+def test_a_message_that_came_twice_is_flagged(command_line: CommandLine, tmp_path: Path) -> None:
+    """The same message again is a redelivery (TR-02), and what no bare message can break is listed as not checked."""
+    path = written(tmp_path / "s.jsonl", battery(1), battery(2, 49), battery(2, 49), battery(3))
+    found = json.loads(command_line("check", path, "--json", "-").out)
+    assert (found["verdict"], found["readings"], len(found["flagged"])) == ("conforms", {"TR-02": ["b"]}, 1)
+    assert found["flagged"][0].startswith("TR-02=b: Did a message come twice?")
+    assert "bear.status/messages/updates-follow-the-state: no bare message can break it" in found["unchecked"]
+    assert not any("sequence-numbers-grow" in one for one in found["unchecked"])

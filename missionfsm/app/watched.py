@@ -112,6 +112,8 @@ class _Subscription:
         robots = self.status.robots if self.status else len(self.missions)
         repeats, redelivered = (sum(getattr(one, name) for one in monitors) for name in ("repeats", "redelivered"))
         notes = [f"{robots} robots, {repeats} messages that say nothing new, {self.flagged} tolerated oddities"]
+        unchecked = [rule for rule in _concerned(spec, self.topic) if rule not in checked]
+        notes.append(f"not checked, since no bare message can break them: {len(unchecked)} rules")
         if self.problems > 1:
             notes.append(f"{self.problems - 1} more problems in this stream")
         violation = None
@@ -127,7 +129,7 @@ class _Subscription:
             violation=violation,
             readings={TR_02.id: ("b",)} if redelivered else {},
             flagged=(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}",) if redelivered else (),
-            unchecked=tuple(rule.id for rule in _concerned(spec, self.topic) if rule not in checked),
+            unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
             notes=tuple(notes),
         )
 
@@ -140,9 +142,7 @@ def _concerned(spec: Spec, topic: str) -> tuple[Rule, ...]:
     return tuple(dict.fromkeys((*operation.refusals, *operation.promises, *shared)))
 
 
-def watch_messages(
-    numbered: Iterable[Numbered], tell: Callable[[str], None], *, strict: bool = False
-) -> list[Verdict]:
+def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *, strict: bool = False) -> list[Verdict]:
     """The verdict on each subscription; every problem is told as soon as its message is there.
 
     What only departs from the letter of the page, in a way that a reading tolerates, is told, but breaks nothing.

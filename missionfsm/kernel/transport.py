@@ -1,9 +1,9 @@
 """What lies between an implementation and a log of it: a transport that loses, repeats and ends things by itself.
 
 A page says what a robot does; a log holds what came through. Each way in which the two differ is an ambiguity of its
-own, with the reading "a" (it did not happen) and the reading "b" (it did), which is flagged. The oracle takes to "b" only
-where nothing else explains an event, and a verdict says where that was. Whoever judges without a transport in between,
-as over stdin and stdout, judges by the plain specification, which has none of this.
+own: it did not happen (a), or it did (b), which is flagged. The oracle reads "b" only where nothing else explains an
+event, and a verdict says where that was. Whoever judges without a transport in between, as over stdin and stdout,
+judges by the plain specification, which has none of this.
 """
 
 from __future__ import annotations

@@ -34,7 +34,6 @@ CHECKED = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX,
 """The rules that a bare message can break."""
 
 Found = tuple[Rule, str]
-_ACTIVE = frozenset({State.STATE_RUNNING, State.STATE_PAUSED})
 _WAITING = frozenset({State.STATE_DEFAULT, State.STATE_UNKNOWN})
 _AUTOMATIC = (
     MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),
@@ -55,6 +54,8 @@ def _reached() -> dict[State, frozenset[State]]:
             reached |= later
             todo += later
         found[state] = frozenset(reached)
+    # AM-08: one that waits may be shown as paused as long as the index does not point at it.
+    found[State.STATE_PAUSED] |= {State.STATE_DEFAULT}
     return found
 
 
@@ -153,23 +154,16 @@ def _listed(seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
 
 
 def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
-    """Whether the ended come first, then the active one, then those that wait, and whether the index says which."""
-    stages = [0 if one.state in ENDED else 1 if one.state in _ACTIVE else 2 for one in missions]
-    # AM-08: one that waits may be shown as paused, the first of those is the one that is.
-    active = next((place for place, stage in enumerate(stages) if stage == 1), None)
-    if active is not None:
-        later = missions[active + 1 :]
-        stages[active + 1 :] = [
-            2 if stage == 1 and one.state is State.STATE_PAUSED else stage
-            for one, stage in zip(later, stages[active + 1 :], strict=True)
-        ]
+    """Whether the ended come first, then a running one, then the others, and whether the index says which is active.
+
+    One that is shown as paused is the active one, or (AM-08) one that waits.
+    """
+    stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
     if any(before > after for before, after in pairwise(stages)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return
     ended = stages.count(0)
-    allowed = {-1, ended - 1, ended} if ended < len(missions) else {-1, ended - 1} if ended else {-1, 0}
-    if active is not None:
-        allowed = {active} if missions[active].state is State.STATE_RUNNING else {active, -1, ended - 1}
+    allowed = {ended} if 1 in stages else {-1, ended - 1, ended} if ended < len(missions) else {-1, max(ended - 1, 0)}
     if index not in allowed:
         values = " or ".join(str(value) for value in sorted(allowed))
         yield CURRENT, f"current_mission_index is {index}, expected {values}"
@@ -179,7 +173,7 @@ def _one(index: int, mission: MissionState) -> Iterator[Found]:
     """What is wrong with the goal index and the feedback of one mission."""
     goal, goals = mission.current_goal_index, len(mission.goals)
     chooses = goals < 2 or mission.mission_type in _AUTOMATIC
-    if not -1 <= goal <= goals or (mission.state in _ACTIVE and not chooses and not 0 <= goal < goals):
+    if not -1 <= goal <= goals or (mission.state is State.STATE_RUNNING and not chooses and not 0 <= goal < goals):
         yield GOAL_INDEX, f"mission {index} has current_goal_index {goal} and {goals} goals"
     feedback = mission.mission_feedback
     statuses = (feedback.base_feedback, feedback.servi_feedback, feedback.carti_feedback) if feedback else ()

@@ -105,8 +105,10 @@ class StreamMonitor:
         """What is wrong with the next message; nothing, usually."""
         self.messages += 1
         try:
-            if self._map is None:
+            if self._map is None and message["robotId"]:
                 return self._one(message["robotId"], message["metadata"], message[self._field])
+            if self._map is None:
+                return self._careful(message)
             found: tuple[Problem, ...] = ()
             for robot, entry in message[self._map].items():
                 metadata = entry.pop("metadata")

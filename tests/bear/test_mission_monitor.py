@@ -1,0 +1,93 @@
+"""The monitor of bare mission messages: what no message may show, whatever was asked of the robot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from traffic import readings_at_random, walk
+
+from missionfsm.bear.mission.monitor import CHECKED, MissionMonitor
+
+
+def mission(name: str = "A", state: str = "STATE_RUNNING", **more: Any) -> Any:
+    goals = [{"destinationId": "table-1"}, {"destinationId": "table-2"}]
+    shown = {"missionId": name, "state": state, "goals": goals, "currentGoalIndex": 0}
+    return {**shown, "missionType": {"serviType": "SERVI_TYPE_SERVING"}, "owner": "api", **more}
+
+
+def message(number: int, *missions: Any, index: int = 0, **more: Any) -> Any:
+    metadata = {"timestamp": f"2025-04-01T17:05:00.{number:03}Z", "sequenceNumber": number}
+    return {"metadata": metadata, "missionStates": {"missions": list(missions), "currentMissionIndex": index}, **more}
+
+
+ENDED = mission(state="STATE_SUCCEEDED")
+WAITS = mission("B", "STATE_DEFAULT")
+WRONG: dict[str, tuple[list[Any], str]] = {
+    "a number that goes back": ([message(2, mission()), message(1, ENDED, index=-1)], "sequence-numbers-grow"),
+    "a number twice": ([message(2, mission()), message(2, ENDED, index=-1)], "sequence-numbers-grow"),
+    "no metadata": ([{"missionStates": {}}], "messages-are-well-formed"),
+    "a list for the missions": ([{**message(1), "missionStates": []}], "messages-are-well-formed"),
+    "no id": ([message(1, mission(""))], "all-missions-are-listed"),
+    "an id twice": ([message(1, ENDED, mission(), index=1)], "all-missions-are-listed"),
+    "an index of nothing": ([message(1, mission(), index=3)], "the-current-mission-index-is-the-active-mission"),
+    "an index where nothing runs": (
+        [message(1, ENDED, mission("B", "STATE_FAILED"), index=0)],
+        "the-current-mission-index-is-the-active-mission",
+    ),
+    "two that run": ([message(1, mission(), mission("B"))], "the-state-is-reported"),
+    "one that waits before one that runs": ([message(1, WAITS, mission(), index=1)], "the-state-is-reported"),
+    "a state that does not exist": ([message(1, mission(state=77), index=-1)], "the-state-is-reported"),
+    "one that ended and runs": ([message(1, ENDED, index=-1), message(2, mission())], "the-state-is-reported"),
+    "one that ran and waits": (
+        [message(1, mission()), message(2, mission(state="STATE_DEFAULT"), index=-1)],
+        "the-state-is-reported",
+    ),
+    "places that change": (
+        [message(1, mission(), WAITS), message(2, mission("B", "STATE_FAILED"), mission(), index=1)],
+        "all-missions-are-listed",
+    ),
+    "a goal that vanishes": (
+        [message(1, mission()), message(2, mission(goals=[{"destinationId": "table-1"}]))],
+        "the-goals-are-those-requested",
+    ),
+    "another type": ([message(1, mission()), message(2, mission(missionType={}))], "the-type-is-that-requested"),
+    "a goal index of nothing": ([message(1, mission(currentGoalIndex=2))], "the-current-goal-index-is-the-active-goal"),
+    "feedback of one that waits": (
+        [message(1, mission(), {**WAITS, "missionFeedback": {"baseFeedback": {"status": "STATUS_NAVIGATING"}}})],
+        "the-feedback-fits-the-mission",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_no_robot_shows_is_told(case: str) -> None:
+    """Of messages with one thing wrong, the last is told by the rule that it breaks, and by no other."""
+    messages, rule = WRONG[case]
+    monitor = MissionMonitor()
+    found = [[problem.rule.rpartition("/")[2] for problem in monitor.feed(one)] for one in messages]
+    assert found == [[]] * (len(messages) - 1) + [[rule]]
+
+
+def test_every_rule_that_is_said_to_be_checked_can_be_broken() -> None:
+    """Each rule that the monitor counts as checked is broken by one of the wrong messages."""
+    assert {rule for _, rule in WRONG.values()} == {rule.id.rpartition("/")[2] for rule in CHECKED}
+
+
+def test_a_redelivery_is_counted() -> None:
+    """The same message again, number, timestamp and content, is no problem unless the transport is strict."""
+    monitor, strict = MissionMonitor(), MissionMonitor(strict=True)
+    again = [message(7, mission()), message(7, mission()), message(8, ENDED, index=-1)]
+    assert [monitor.feed(one) for one in again] == [(), (), ()]
+    assert [len(strict.feed(one)) for one in again] == [0, 1, 0]
+    assert (monitor.redelivered, monitor.repeats, monitor.messages) == (1, 0, 3)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_the_reference_shows_is_right(seed: int) -> None:
+    """Whatever the readings, no message of the reference is told, on any of its streams."""
+    log = walk(seed, 40, readings_at_random(seed))
+    monitors = {stream: MissionMonitor() for stream in log.streams}
+    shown = [line for line in log.lines if "message" in line]
+    assert [problem for one in shown for problem in monitors[one["stream"]].feed(one["message"])] == []
+    assert sum(monitor.messages for monitor in monitors.values()) == len(shown) > 0

@@ -1,0 +1,264 @@
+"""A proxy between clients and a robot: what passes, what is recorded, and what never holds traffic up."""
+
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import json
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import grpc
+import pytest
+
+from missionfsm.adapters.grpc.client import Target
+from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
+from missionfsm.adapters.grpc.proxy import Proxy
+from missionfsm.app.recorded import check_file
+from missionfsm.app.recorder import Recorder
+from missionfsm.app.serve import Served, serve
+from missionfsm.kernel.codec import JSON
+from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import check
+
+NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
+WAIT = 10.0
+"""Seconds after which an answer that does not come fails a test."""
+METHODS = methods("bear.mission")
+
+
+class Relay:
+    """A proxy that runs in a loop of its own."""
+
+    def __init__(self, target: str, record: Any) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
+        self.proxy = Proxy("bear.mission", Target(target), record)
+        asyncio.run_coroutine_threadsafe(self.proxy.start("127.0.0.1", 0), self.loop).result(WAIT)
+        self.channel = grpc.insecure_channel(f"127.0.0.1:{self.proxy.port}")
+
+    def call(self, name: str, request: JSON = None, **options: Any) -> JSON:
+        method = METHODS[name]
+        ask = self.channel.unary_unary(path(method))
+        return decode(method.response, ask(encode(method.request, request or {}), **{"timeout": WAIT, **options}))
+
+    def close(self) -> None:
+        self.channel.close()
+        asyncio.run_coroutine_threadsafe(self.proxy.stop(), self.loop).result(WAIT)
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self.thread.join()
+        self.loop.close()
+
+
+@pytest.fixture
+def robot() -> Iterator[Served]:
+    with serve("bear.mission") as served:
+        yield served
+
+
+@pytest.fixture
+def lines() -> list[JSON]:
+    return []
+
+
+@pytest.fixture
+def relay(robot: Served, lines: list[JSON]) -> Iterator[Relay]:
+    found = Relay(robot.target, lines.append)
+    yield found
+    found.close()
+
+
+def without_times(lines: list[JSON]) -> list[JSON]:
+    return [{key: value for key, value in line.items() if key != "at"} for line in lines]
+
+
+def eventually(holds: Any) -> bool:
+    """Whether something comes to hold within the time."""
+    end = time.monotonic() + WAIT
+    while time.monotonic() < end:
+        if holds():
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def test_an_answer_and_a_refusal_pass_as_they_are(relay: Relay, lines: list[JSON]) -> None:
+    """Answers, codes, messages and trailing metadata are those of the robot, and both are recorded."""
+    mission = relay.call("CreateMission", NAVIGATE)["missionId"]
+    with pytest.raises(grpc.RpcError) as refused:
+        relay.call("CreateMission", NAVIGATE)
+    assert refused.value.code() is grpc.StatusCode.FAILED_PRECONDITION
+    assert "missionfsm-rule" in dict(refused.value.trailing_metadata())
+    assert without_times(lines) == [
+        {"call": 1, "method": "CreateMission", "params": NAVIGATE},
+        {"return": 1, "result": {"missionId": mission}},
+        {"call": 2, "method": "CreateMission", "params": NAVIGATE},
+        {"return": 2, "error": {"status": "FAILED_PRECONDITION", "message": refused.value.details()}},
+    ]
+
+
+def test_a_stream_passes_message_by_message(relay: Relay, robot: Served, lines: list[JSON]) -> None:
+    """A subscriber behind the proxy sees what the robot sends when it sends it; giving up is recorded."""
+    method = METHODS["SubscribeMissionStatus"]
+    call = relay.channel.unary_stream(path(method))(b"")
+    first = decode(method.response, next(call))
+    mission = relay.call("CreateMission", NAVIGATE)["missionId"]
+    second = decode(method.response, next(call))
+    call.cancel()
+    assert eventually(lambda: lines[-1].get("result") == {})
+    assert [line for line in without_times(lines) if "message" in line] == [
+        {"stream": 1, "message": first},
+        {"stream": 1, "message": second},
+    ]
+    assert second["missionStates"]["missions"][0]["missionId"] == mission
+    assert [line["method"] for line in lines if "method" in line] == [
+        "SubscribeMissionStatus",
+        "CreateMission",
+        "cancel",
+    ]
+    assert eventually(lambda: any(line.get("method") == "cancel" for line in robot.history()))
+
+
+def test_calls_that_nobody_knows_pass_and_leave_no_line(relay: Relay, lines: list[JSON]) -> None:
+    """What is not modelled is passed on as well; the robot says UNIMPLEMENTED, and nothing is recorded."""
+    for _ in range(5):
+        with pytest.raises(grpc.RpcError) as refused:
+            relay.channel.unary_unary("/other.Service/Call")(b"\x00\x01", timeout=WAIT)
+        assert refused.value.code() is grpc.StatusCode.UNIMPLEMENTED
+    assert lines == []
+
+
+def test_metadata_passes_but_is_not_recorded() -> None:
+    """A token reaches the robot, and stands in no line of the history."""
+    lines: list[JSON] = []
+    with serve("bear.mission", token="sesame") as robot:  # noqa: S106 - it is nobody's
+        relay = Relay(robot.target, lines.append)
+        with pytest.raises(grpc.RpcError) as refused:
+            relay.call("ChargeRobot")
+        assert refused.value.code() is grpc.StatusCode.UNAUTHENTICATED
+        assert relay.call("ChargeRobot", metadata=(("authorization", "Bearer sesame"),))["missionId"]
+        relay.close()
+    assert "sesame" not in json.dumps(lines)
+
+
+def test_a_deadline_of_the_client_reaches_the_robot(relay: Relay, lines: list[JSON]) -> None:
+    """A call whose time is up ends for the client; in the history it has no answer or that of the deadline."""
+    method = METHODS["SubscribeMissionStatus"]
+    call = relay.channel.unary_stream(path(method))(b"", timeout=0.3)
+    with pytest.raises(grpc.RpcError) as ended:
+        for _ in call:
+            pass
+    assert ended.value.code() is grpc.StatusCode.DEADLINE_EXCEEDED
+    assert eventually(lambda: lines[-1].get("closed") or lines[-1].get("result") == {})
+
+
+def test_bytes_that_are_no_message_pass_and_are_recorded_as_such(relay: Relay, lines: list[JSON]) -> None:
+    """The proxy judges nothing: rubbish reaches the robot, whose refusal comes back."""
+    ask = relay.channel.unary_unary(path(METHODS["CreateMission"]))
+    with pytest.raises(grpc.RpcError) as refused:
+        ask(b"\xff\xff", timeout=WAIT)
+    assert refused.value.code() is grpc.StatusCode.INVALID_ARGUMENT
+    assert lines[0]["params"].startswith("(malformed: ")
+    verdict = check(system("bear.mission"), head(HEAD), without_times(lines))
+    assert verdict.violation is None
+
+
+def test_a_robot_that_is_away_is_unavailable(lines: list[JSON]) -> None:
+    """Where the robot cannot be reached the client is told so, and the proxy lives on."""
+    with serve("bear.mission") as robot:
+        relay = Relay(robot.target, lines.append)
+        relay.call("ChargeRobot")
+    with pytest.raises(grpc.RpcError) as refused:
+        relay.call("ChargeRobot")
+    assert refused.value.code() is grpc.StatusCode.UNAVAILABLE
+    relay.close()
+
+
+def test_busy_clients_lose_nothing(relay: Relay, robot: Served, lines: list[JSON], tmp_path: Path) -> None:
+    """Four clients at once: every call is recorded once with its answer, and the record conforms."""
+
+    def busy(_: int) -> int:
+        done = 0
+        for name in ("CreateMission", "AppendMission", "SkipGoal"):
+            try:
+                relay.call(name, NAVIGATE if name.endswith("Mission") else None)
+            except grpc.RpcError:
+                robot.drive("goalReached")
+            done += 1
+        return done
+
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        total = sum(pool.map(busy, range(4)))
+    assert eventually(lambda: sum("return" in line for line in lines) == total)
+    called, returned = ([line[key] for line in lines if key in line] for key in ("call", "return"))
+    assert sorted(called) == sorted(returned) == list(range(1, total + 1))
+    file = tmp_path / "busy.jsonl"
+    file.write_text("".join(f"{json.dumps(line)}\n" for line in (HEAD, *without_times(lines))))
+    ((_, verdict),) = check_file(str(file), {}, lambda _: None)
+    assert verdict.violation is None, str(verdict)
+
+
+# The recorder.
+
+
+def record(lines: list[JSON], file: Path | None = None, **options: Any) -> tuple[Recorder, list[str]]:
+    told: list[str] = []
+    recorder = Recorder(HEAD, file=str(file or ""), tell=told.append, **options)
+    for line in lines:
+        recorder.record(line)
+    return recorder, told
+
+
+GOOD: list[JSON] = [
+    {"call": 1, "method": "CreateMission", "params": NAVIGATE},
+    {"return": 1, "result": {"missionId": "m"}},
+]
+BAD: list[JSON] = [
+    {"call": 2, "method": "CreateMission", "params": NAVIGATE},
+    {"return": 2, "result": {"missionId": "n"}},
+    {"settled": True},
+    {"call": 3, "method": "CreateMission", "params": NAVIGATE},
+    {"return": 3, "error": {"status": "NOT_FOUND", "message": ""}},
+]
+
+
+def test_what_was_recorded_is_judged_while_it_comes(tmp_path: Path) -> None:
+    """The file has every line after the first one, and the judge's verdict is that of ``check``."""
+    file = tmp_path / "day.jsonl"
+    recorder, told = record(GOOD, file)
+    judged = recorder.close()
+    assert [json.loads(line) for line in file.read_text().splitlines()] == [HEAD, *GOOD]
+    assert judged is not None
+    assert judged.conforms
+    assert judged.verdict["verdict"] == "conforms"
+    assert told == []
+
+
+def test_what_breaks_is_told_before_the_end() -> None:
+    """A violation is told as soon as its line is there; lines that follow are recorded all the same."""
+    recorder, told = record([*GOOD, *BAD])
+    assert eventually(lambda: told)
+    assert told[0].startswith("violates: bear.mission")
+    recorder.record({"settled": True})
+    judged = recorder.close()
+    assert judged is not None
+    assert not judged.conforms
+    assert len(told) == 1
+
+
+def test_a_full_disk_ends_the_file_and_nothing_else() -> None:
+    """Where the file cannot be written any more that is said once, and judging goes on."""
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("this system has no /dev/full")
+    recorder, told = record(GOOD, full)
+    judged = recorder.close()
+    assert told == ["/dev/full: No space left on device; nothing more is recorded, traffic goes on"]
+    assert judged is not None
+    assert judged.conforms

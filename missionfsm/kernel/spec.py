@@ -82,6 +82,8 @@ class Step:
         emits: what subscribers come to see, in order.
         opens: channels that come into being.
         closes: topics whose channels are gone, with what was still owed to them.
+        clears: topics whose channels owe nothing any more, and offer nothing: what was on its way is lost.
+        withdraws: topics whose channels offer nothing any more; what they owe stays.
         rules: ids of the rules that justify it.
         assumes: the readings without which it does not happen.
         answer: for the outcome of a call, what is answered.
@@ -96,6 +98,8 @@ class Step:
     emits: tuple[Emission, ...] = ()
     opens: tuple[Opening, ...] = ()
     closes: tuple[Hashable, ...] = ()
+    clears: tuple[Hashable, ...] = ()
+    withdraws: tuple[Hashable, ...] = ()
     rules: tuple[str, ...] = ()
     assumes: tuple[Assumption, ...] = ()
     answer: Answer | None = None

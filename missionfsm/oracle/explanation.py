@@ -273,6 +273,16 @@ def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
     return Channel(channel.name, channel.topic, channel.last, owed)
 
 
+def _relieved(channel: Channel, step: Step) -> Channel:
+    """The channel without what a step makes void."""
+    if channel.topic in step.clears:
+        return Channel(channel.name, channel.topic, channel.last)
+    if channel.topic in step.withdraws and channel.owed:
+        owed = tuple(one for one in channel.owed if not one.optional)
+        return Channel(channel.name, channel.topic, channel.last, owed)
+    return channel
+
+
 def take(
     explanation: Explanation,
     step: Step,
@@ -309,6 +319,8 @@ def take(
     if step.closes:
         gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.closes and one.name > GONE)}))
         channels = tuple(channel for channel in channels if channel.topic not in step.closes)
+    if step.clears or step.withdraws:
+        channels = tuple(_relieved(channel, step) for channel in channels)
     if step.emits:
         channels = tuple(
             _owing(
@@ -340,4 +352,6 @@ def take(
 
 def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
-    return step.after is not state or bool(step.emits or step.opens or step.closes)
+    return step.after is not state or bool(
+        step.emits or step.opens or step.closes or step.clears or step.withdraws
+    )

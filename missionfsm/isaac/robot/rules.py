@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.robot.state import SYSTEM
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
-from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.rules import Citation, Rule, promise
 
-SYSTEM = "isaac.robot"
 CODELET = PAGE["Mission Codelet"]
 CLIENT = PAGE["JsonTcpClient Codelet"]
 
@@ -76,11 +75,39 @@ CHANNEL = _promise(
     'A MissionStatusProto is sent on the status channel, "mission_status" unless something else is said.',
     PAGE["Sample Usage", "status_channel"],
 )
+NAMED = _promise(
+    "connection",
+    "the-name-is-said-again-and-again",
+    "The robot says its name on the name channel, again and again: on every connection, whether a mission runs or not.",
+    PAGE["JsonMockup"],
+    "No period is documented; at the latest it comes within the bound that the tester keeps to.",
+)
+LINKED = _promise(
+    "connection",
+    "nothing-is-said-without-a-connection",
+    "While there is no connection nothing arrives and nothing is said.",
+    CLIENT,
+    "AI-15: what becomes of the mission that runs and of its statuses.",
+)
 ENVELOPE = _promise(
     "line",
     "a-line-is-one-message",
     "Every line is one JSON object with a header and a payload, of a type that is documented.",
     CLIENT,
+)
+TYPES = _promise(
+    "line",
+    "a-type-id-is-signed",
+    "The type id in a header is the payload's, as a signed 64-bit integer.",
+    CLIENT,
+    "A fact of the wire; a header that has none is understood by its payload (AI-27).",
+)
+OWN = _promise(
+    "line",
+    "a-header-has-a-uuid-of-its-own",
+    "The uuid in a header is the message's own, not the mission's, and another one for the next message.",
+    CLIENT,
+    "AI-27.uuid.",
 )
 INTEGERS = _promise(
     "line",
@@ -100,21 +127,10 @@ RULES = (
     FAILURE,
     ABOUT,
     CHANNEL,
+    NAMED,
+    LINKED,
     ENVELOPE,
+    TYPES,
+    OWN,
     INTEGERS,
 )
-
-LIFECYCLE: Chart[str] = Chart(
-    "codelet",
-    "IDLE",
-    (
-        ("a mission arrives", "IDLE", "RUNNING"),
-        ("a mission arrives", "RUNNING", "RUNNING"),
-        ("an unusable mission arrives", "IDLE", "IDLE"),
-        ("an unusable mission arrives", "RUNNING", "IDLE"),
-        ("the tree reports success", "RUNNING", "IDLE"),
-        ("the tree reports failure", "RUNNING", "IDLE"),
-    ),
-    {"an unusable mission arrives": "AI-33.unusable"},
-)
-"""Whether a behavior tree runs."""

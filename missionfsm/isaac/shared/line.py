@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from attrs import frozen
+from attrs import astuple, frozen
 
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line
@@ -38,6 +38,9 @@ class Said:
         named: whether it carries a mission's identifier.
         header_named: whether the header carries an identifier that counts (only where the caller asked for it).
         bare: paths of 64-bit integers that came as numbers.
+        stamped: whether the header has a uuid.
+        borrowed: whether that is the mission's.
+        unsigned: whether the type id is an unsigned one that has to be sent as its signed value.
     """
 
     kind: str
@@ -47,6 +50,9 @@ class Said:
     named: bool = False
     header_named: bool = False
     bare: tuple[str, ...] = ()
+    stamped: bool = False
+    borrowed: bool = False
+    unsigned: bool = False
 
 
 def uuid_name(uuid: Uuid) -> Name:
@@ -104,12 +110,27 @@ def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], Said |
     return _named(first, raw, header=header)
 
 
+def stamp(line: object) -> int | None:
+    """The uuid in the header of a line, as a number; None where there is none that could be one."""
+    try:
+        raw = json.loads(line)["header"]["uuid"]  # type: ignore[arg-type]
+        return Uuid(int(raw["lower"]), int(raw["upper"])).value or None
+    except (ValueError, TypeError, KeyError, RecursionError):
+        return None
+
+
 def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], Said | Garbled]:
     payload = message.payload
-    bare = _bare(raw)
+    own = message.header.uuid if message.header.uuid is not None and message.header.uuid.value else None
+    marks = {
+        "bare": _bare(raw),
+        "stamped": own is not None,
+        "borrowed": own is not None and not isinstance(payload, TextProto) and own == payload.uuid,
+        "unsigned": str(raw["header"].get("proto")).isdecimal() and int(raw["header"]["proto"]) >= 1 << 63,
+    }
     channel = message.header.channel
     if isinstance(payload, TextProto):
-        return (), Said("text", channel, payload.text, bare=bare)
+        return (), Said("text", channel, payload.text, **marks)
     names: list[Name] = []
     named = payload.uuid is not None and payload.uuid.value != 0
     if named and payload.uuid is not None:
@@ -118,15 +139,19 @@ def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ..
     if header_named and message.header.uuid is not None:
         names.append(uuid_name(message.header.uuid))
     if isinstance(payload, MissionProto):
+        if raw["payload"].get("config") is None:
+            return tuple(names), Garbled("payload.config is missing: a MissionProto carries its configuration")
         what = canonical(payload.config)
         if what is None:
             return tuple(names), Garbled("the configuration is no JSON object")
         form = "text" if isinstance((raw["payload"].get("config") or {}).get("serialized"), str) else "object"
-        return tuple(names), Said("mission", channel, what, form, named, header_named, bare)
+        return tuple(names), Said("mission", channel, what, form, named, header_named, **marks)
     assert isinstance(payload, MissionStatusProto)  # noqa: S101 - the only kind that is left
     written = raw["payload"].get("missionStatus")
     form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
-    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, bare)
+    if form == "upper" and written != written.upper():
+        return tuple(names), Garbled(f"payload.missionStatus is written {strictjson.shown(written)}")
+    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, **marks)
 
 
 def _bare(raw: JSON) -> tuple[str, ...]:
@@ -143,20 +168,12 @@ def to_json(said: Said | Garbled) -> JSON:
     """What is left of a line once its names are apart, as JSON; `from_json` undoes it."""
     if isinstance(said, Garbled):
         return {"garbled": said.says}
-    return [
-        said.kind,
-        said.channel,
-        said.what,
-        said.form,
-        said.named,
-        said.header_named,
-        list(said.bare),
-    ]
+    return [*astuple(said)]
 
 
 def from_json(rest: JSON) -> Said | Garbled:
     """What `to_json` was made of."""
     if isinstance(rest, dict):
         return Garbled(rest["garbled"])
-    *first, bare = rest
-    return Said(*first, bare=tuple(bare))  # type: ignore[misc]  # the rest are those before it
+    kind, channel, what, form, named, header_named, bare, *marks = rest
+    return Said(kind, channel, what, form, named, header_named, tuple(bare), *marks)

@@ -1,0 +1,61 @@
+"""The values of a robot in words, for people."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives, Connection, Passes, Stops
+from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.shared.line import MICROSECONDS, Said
+from missionfsm.kernel.codec import Garbled
+
+_CONFIGURED = dict(
+    zip(
+        CONFIGURATIONS,
+        (
+            "a mission",
+            "a mission with the configuration null",
+            "a mission with a configuration in which something is no node",
+            "a mission with a configuration that is no object",
+            "a mission with a configuration that is no JSON",
+        ),
+        strict=True,
+    )
+)
+_HAPPENS = {
+    "behaviorSucceeded": "the behavior tree reports success",
+    "behaviorFailed": "the behavior tree reports failure",
+    "connect": "the connection is there again",
+    "disconnect": "the connection drops",
+}
+
+
+def describe(value: object) -> str:
+    """A state, an event, a view or a line in a few words."""
+    if isinstance(value, Codelet):
+        where = "" if value.connected else ", without a connection"
+        return ("a mission runs" if value.running else "no mission runs") + where
+    if isinstance(value, Report):
+        return f"{value.status.upper()} of its mission on {value.channel}"
+    if isinstance(value, Introduction):
+        return f"the name{'' if value.name is None else f' {value.name!r}'} on {value.channel}"
+    if isinstance(value, Said):
+        return _said(value)
+    if isinstance(value, Garbled):
+        return f"a malformed line: {value.says}"
+    if isinstance(value, Arrives):
+        return _arrives(value)
+    if isinstance(value, Passes):
+        return f"{value.time / MICROSECONDS:g} s pass"
+    return _HAPPENS[value.name] if isinstance(value, Stops | Connection) else str(value)
+
+
+def _said(line: Said) -> str:
+    if line.kind == "status":
+        return f"{line.what.upper()} on {line.channel}"
+    return f"the text {line.what!r} on {line.channel}" if line.kind == "text" else f"a mission on {line.channel}"
+
+
+def _arrives(event: Arrives) -> str:
+    if event.mission is not None:
+        return f"{_CONFIGURED[event.mission]} arrives on {event.channel}"
+    where = f" on {event.channel}" if event.channel else ""
+    return f"a message that is no mission arrives{where}" if event.channel else "a line arrives that is no message"

@@ -1,0 +1,359 @@
+"""What becomes of a robot when something happens to it: the steps of its drives.
+
+Time passes only where the tester says so. No period is documented: RUNNING and the name may come at any time, and have
+to come within their bounds. Of a time that is shorter it is asked whether they came in it, and what they may still say
+then counts from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from attrs import evolve, frozen
+
+from missionfsm.isaac.robot import rules
+from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives, Connection, Passes, Stops
+from missionfsm.isaac.robot.readings import (
+    AI_15_MISSION,
+    AI_15_STATUS,
+    AI_25_TAKEN,
+    AI_27_TYPE,
+    AI_31_END,
+    AI_31_PREEMPTED,
+    AI_31_UNUSABLE,
+    AI_32_SAME,
+    AI_33_NODE,
+    AI_33_NULL,
+    AI_33_PREEMPTS,
+    AI_33_RUNNING,
+    AI_33_UNUSABLE,
+    AI_33_VALUE,
+)
+from missionfsm.isaac.robot.state import (
+    LIFECYCLE,
+    NAME_BOUND,
+    RUNNING_BOUND,
+    TICK,
+    Codelet,
+    Introduction,
+    Report,
+    World,
+)
+from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.spec import Emission, Opening, Step
+
+Refs = tuple[int | None, ...]
+STATUSES, NAMES = "statuses", "names"
+"""The two topics of the one connection: statuses and names come in any order among one another."""
+
+NEW = -1
+"""The reference to the identifier that a line brings along."""
+
+FINAL = {"success": rules.SUCCESS, "failure": rules.FAILURE}
+
+
+@frozen
+class Due:
+    """A status that is due: what it says, of the mission with which identifier (None for none), and when it is sent."""
+
+    status: str
+    about: int | None
+    when: Ambiguity
+    offered: bool = False
+    """Whether RUNNING may come before it."""
+
+
+def _emission(world: World, status: str, about: int | None, *, offer: bool = False) -> Emission:
+    view = Report(status, about is not None, world.status_channel)
+    return Emission(STATUSES, view, () if about is None else (about,), stays=offer, certain=not offer)
+
+
+def introduction(world: World, *, offer: bool = False) -> Emission:
+    """The name that is owed, or may be said."""
+    return Emission(NAMES, Introduction(world.name, world.name_channel), (), stays=offer, certain=not offer)
+
+
+def moved(here: Codelet, trigger: str, *, runs: bool | None = None) -> Codelet:
+    """A codelet moves on its chart; `runs` tells two moves of one trigger apart."""
+    after = (LIFECYCLE.after(trigger, here.state) == "RUNNING") if runs is None else runs
+    return evolve(here, running=after, named=here.named and after, used=True, quiet=0)
+
+
+def _waiting_names(here: Codelet) -> tuple[int, ...]:
+    return tuple(range(here.identifiers - len(here.mission)))
+
+
+def told(here: Codelet) -> Iterator[Emission]:
+    """The statuses that waited, in order."""
+    at = 0
+    for report in here.waiting:
+        yield Emission(STATUSES, report, (at,) if report.named else (), certain=True)
+        at += report.named
+
+
+def _concluded(
+    here: Codelet, after: Codelet, mission: int | None, due: tuple[Due, ...], because: tuple[Rule, ...]
+) -> Iterator[Step]:
+    """The ways in which statuses become due: each is sent at once, or with those before it waits for the tick.
+
+    Args:
+        after: the codelet after it, what waits left out.
+        mission: the reference to the identifier of the mission that runs then; None for none.
+        due: the statuses, in order.
+    """
+    runs = () if mission is None else (mission,)
+    offers = (_emission(here.world, "running", mission, offer=True),) if after.running else ()
+    ids = tuple(one.id for one in because)
+    if not here.connected:
+        yield from _unconnected(here, after, runs, due, ids)
+        return
+    for sent in range(len(due), -1, -1):
+        # Those up to `sent` are sent at once, the others wait: one that waits holds up those behind it.
+        now, later = due[:sent], due[sent:]
+        assumes = tuple({one.when: one.when["a"] for one in now[-1:]}.values())
+        if later:
+            assumes = (*assumes, later[0].when["b"])
+        if len({one.of for one in assumes}) < len(assumes):
+            continue
+        flushed = bool(now) or not (here.waiting or later)
+        kept = () if flushed else here.waiting
+        emits: list[Emission] = list(told(here)) if flushed else []
+        for one in now:
+            if one.offered:
+                emits.append(_emission(here.world, "running", one.about, offer=True))
+            emits.append(_emission(here.world, one.status, one.about))
+        waiting = (*kept, *(Report(one.status, one.about is not None, here.world.status_channel) for one in later))
+        if not waiting:
+            emits += offers
+        names = (
+            *(_waiting_names(here) if kept else ()),
+            *(one.about for one in later if one.about is not None),
+            *runs,
+        )
+        yield Step(
+            evolve(after, waiting=waiting, waited=here.waited if kept else 0),
+            names=names,
+            emits=tuple(emits),
+            rules=ids,
+            assumes=assumes,
+        )
+
+
+def _unconnected(
+    here: Codelet, after: Codelet, runs: tuple[int, ...], due: tuple[Due, ...], ids: tuple[str, ...]
+) -> Iterator[Step]:
+    ids = (*ids, rules.LINKED.id)
+    before = _waiting_names(here)
+    yield Step(evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(AI_15_STATUS["a"],))
+    reports = tuple(Report(one.status, one.about is not None, here.world.status_channel) for one in due)
+    names = (*before, *(one.about for one in due if one.about is not None), *runs)
+    kept = evolve(after, waiting=(*here.waiting, *reports))
+    yield Step(kept, names=names, rules=ids, assumes=(AI_15_STATUS["b"],))
+
+
+# Lines.
+
+
+def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
+    """A line arrives."""
+    if not here.connected:
+        return ()
+    ignored = Step(here, rules=(rules.IGNORES.id,))
+    if event.channel != here.world.channel:
+        return (ignored,)
+    if event.foreign:
+        return (
+            evolve(ignored, assumes=(AI_27_TYPE["a"],)),
+            *_all(_starts(here, event), (AI_27_TYPE["b"],)),
+        )
+    if event.mission is None:
+        return (ignored,)
+    found = tuple(_mission(here, event, refs))
+    if not event.numeric:
+        return found
+    return (*_all(found, (AI_25_TAKEN["a"],)), evolve(ignored, assumes=(AI_25_TAKEN["b"],)))
+
+
+def _all(steps: Iterator[Step] | tuple[Step, ...], assumes: tuple[Assumption, ...]) -> tuple[Step, ...]:
+    return tuple(evolve(step, assumes=(*assumes, *step.assumes)) for step in steps)
+
+
+_USES: dict[str, tuple[tuple[bool, tuple[Assumption, ...]], ...]] = {
+    USABLE: ((True, ()),),
+    NULL: ((True, (AI_33_NULL["a"],)), (False, (AI_33_NULL["b"],))),
+    SHALLOW: ((True, (AI_33_NODE["a"],)), (False, (AI_33_NODE["b"],))),
+    ODD: ((False, (AI_33_VALUE["a"],)), (True, (AI_33_VALUE["b"],))),
+}
+"""Whether a configuration can be used, with what is assumed; one that is not here cannot."""
+
+
+def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
+    """A MissionProto arrives."""
+    same: tuple[Assumption, ...] = ()
+    if event.named and here.mission and refs[:1] == here.mission:
+        same = (AI_32_SAME["a"],)
+        yield Step(here, rules=(rules.IGNORES.id,), assumes=(AI_32_SAME["b"],))
+    for usable, assumes in _USES.get(event.mission or "", ((False, ()),)):
+        if usable:
+            yield from _all(_starts(here, event), (*same, *assumes))
+            continue
+        yield from _all(_fails(here, event), (*same, *assumes, AI_33_UNUSABLE["a"]))
+        yield from _all(_starts(here, event), (*same, *assumes, AI_33_UNUSABLE["b"]))
+
+
+def _old(here: Codelet) -> int | None:
+    return here.mission[0] if here.mission else None
+
+
+def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
+    """A mission arrives that can be run."""
+    new = NEW if event.named else None
+    after = moved(evolve(here, named=event.named), "a mission arrives")
+    because: tuple[Rule, ...] = (rules.STARTS,)
+    due: tuple[Due, ...] = ()
+    if here.running:
+        due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True),)
+        because += (rules.PREEMPTS,)
+    elif here.used:
+        because += (rules.LISTENS,)
+    yield from _concluded(here, after, new, due, because)
+
+
+def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
+    """A mission arrives whose configuration cannot be used."""
+    new = NEW if event.named else None
+    for offered, said in ((False, AI_33_RUNNING["a"]), (True, AI_33_RUNNING["b"])):
+        failure = Due("failure", new, AI_31_UNUSABLE, offered)
+        if not here.running:
+            after = moved(evolve(here, named=False), "an unusable mission arrives")
+            because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
+            yield from _all(_concluded(here, after, None, (failure,), because), (said,))
+            continue
+        ended = moved(here, "an unusable mission arrives", runs=False)
+        due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True), failure)
+        preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
+        yield from _all(preempts, (said, AI_33_PREEMPTS["a"]))
+        goes_on = _concluded(here, here, _old(here), (failure,), (rules.UNUSABLE,))
+        yield from _all(goes_on, (said, AI_33_PREEMPTS["b"]))
+
+
+# The behavior tree.
+
+_STOPS = {
+    "behaviorSucceeded": ("the tree reports success", "success"),
+    "behaviorFailed": ("the tree reports failure", "failure"),
+}
+
+
+def stops(here: Codelet, event: Stops, _: Refs) -> tuple[Step, ...]:
+    """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
+    trigger, status = _STOPS[event.name]
+    if not here.running:
+        return ()
+    due = (Due(status, _old(here), AI_31_END, offered=True),)
+    return tuple(_concluded(here, moved(here, trigger), None, due, (FINAL[status],)))
+
+
+def ticks(here: Codelet) -> tuple[Step, ...]:
+    """The codelet's own tick: the statuses that waited are sent."""
+    if not (here.connected and here.waiting):
+        return ()
+    because = dict.fromkeys(FINAL[report.status].id for report in here.waiting)
+    offers = (_emission(here.world, "running", _old(here), offer=True),) if here.running else ()
+    after = evolve(here, waiting=(), waited=0)
+    return (Step(after, names=here.mission, emits=(*told(here), *offers), rules=tuple(because)),)
+
+
+# Time.
+
+
+def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
+    """Time passes: what has to be said within a bound was said by now, or may have been."""
+    if not here.connected:
+        return (Step(here),)
+    starts: tuple[Step, ...] = (Step(here),)
+    if here.waiting:
+        # What waits is sent in this time, or waits on.
+        starts = ticks(here)
+        if here.waited + event.time < TICK:
+            starts += (Step(evolve(here, waited=here.waited + event.time)),)
+    reported = (step for start in starts for step in _reports(start, _old(here), event.time))
+    return tuple(step for one in reported for step in _introduces(one, event.time))
+
+
+def _reports(step: Step, about: int | None, time: int) -> Iterator[Step]:
+    """RUNNING of a mission with an identifier is reported in some time, or, if it is short enough, is not."""
+    here: Codelet = step.after
+    if not here.running or here.waiting:
+        yield step
+        return
+    said = (_emission(here.world, "running", about), _emission(here.world, "running", about, offer=True))
+    reported = evolve(here, quiet=0)
+    yield evolve(step, after=reported, emits=step.emits + said, rules=(*step.rules, rules.RUNNING.id))
+    if here.quiet + time < RUNNING_BOUND and not step.emits:
+        yield evolve(step, after=evolve(here, quiet=here.quiet + time), withdraws=(STATUSES,))
+
+
+def _introduces(step: Step, time: int) -> Iterator[Step]:
+    """The name is said in some time, or, if it is short enough, is not."""
+    here: Codelet = step.after
+    said = (introduction(here.world), introduction(here.world, offer=True))
+    introduced = evolve(here, nameless=0)
+    yield evolve(step, after=introduced, emits=step.emits + said, rules=(*step.rules, rules.NAMED.id))
+    if here.nameless + time < NAME_BOUND:
+        silent = evolve(here, nameless=here.nameless + time)
+        yield evolve(step, after=silent, withdraws=(*step.withdraws, NAMES))
+
+
+# The connection.
+
+
+def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
+    """The connection drops, with all that was on its way, or is there again."""
+    if event.name == "connect":
+        return () if here.connected else (_connected(here),)
+    if not here.connected:
+        return ()
+    gone = Step(evolve(here, connected=False), clears=(STATUSES, NAMES), rules=(rules.LINKED.id,))
+    ways = (evolve(gone, assumes=(AI_15_STATUS["b"],)), _forgetful(gone)) if here.waiting else (gone,)
+    if not here.running:
+        return ways
+    return (
+        *(evolve(way, assumes=(*way.assumes, AI_15_MISSION["a"])) for way in ways),
+        *(_given_up(way) for way in ways),
+    )
+
+
+def _forgetful(gone: Step) -> Step:
+    """The statuses that waited are lost with the connection (AI-15.status a)."""
+    here: Codelet = gone.after
+    after = evolve(here, waiting=(), waited=0)
+    return evolve(gone, after=after, names=here.mission, assumes=(AI_15_STATUS["a"],))
+
+
+def _given_up(gone: Step) -> Step:
+    """The mission that runs is given up with the connection (AI-15.mission b)."""
+    here: Codelet = gone.after
+    names = tuple(range(here.identifiers - len(here.mission)))
+    after = moved(here, "the connection drops")
+    return evolve(gone, after=after, names=names, assumes=(*gone.assumes, AI_15_MISSION["b"]))
+
+
+def _connected(here: Codelet) -> Step:
+    after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
+    emits = [introduction(here.world, offer=True)]
+    if here.running and not here.waiting:
+        emits.append(_emission(here.world, "running", _old(here), offer=True))
+    return Step(after, emits=tuple(emits), rules=(rules.NAMED.id,))
+
+
+def begins(here: Codelet) -> tuple[Step, ...]:
+    """The connection, which is there from the start, is opened like any other."""
+    if here.begun:
+        return ()
+    openings = (
+        Opening(STATUSES, 0, kind="connection"),
+        Opening(NAMES, 0, (introduction(here.world, offer=True),), kind="connection"),
+    )
+    return (Step(evolve(here, begun=True, connected=True), opens=openings),)

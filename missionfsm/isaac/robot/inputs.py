@@ -1,0 +1,49 @@
+"""What happens to a robot, as values: lines that arrive, the behavior tree that stops, the connection, time."""
+
+from __future__ import annotations
+
+from attrs import frozen
+
+USABLE, NULL, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = ("usable", "null", "shallow", "odd", "unusable")
+"""What a configuration is: an object of nodes; ``null``; an object in which something is no node with components;
+any other JSON, or none at all; no JSON."""
+
+
+@frozen(cache_hash=True)
+class Arrives:
+    """A line arrives: a mission with a configuration of one of the `CONFIGURATIONS`, or something else (None).
+
+    `numeric` says that 64-bit integers in it are numbers, `foreign` that it is a message of another type.
+    """
+
+    mission: str | None = None
+    named: bool = False
+    numeric: bool = False
+    foreign: bool = False
+    channel: str = ""
+    name: str = "line"
+
+
+@frozen(cache_hash=True)
+class Stops:
+    """The behavior tree stops, as ``behaviorSucceeded`` or ``behaviorFailed``."""
+
+    name: str
+
+
+@frozen(cache_hash=True)
+class Passes:
+    """Time passes, in microseconds."""
+
+    time: int
+    name: str = "advance"
+
+
+@frozen(cache_hash=True)
+class Connection:
+    """The connection drops (``disconnect``) or is there again (``connect``)."""
+
+    name: str
+
+
+Event = Arrives | Stops | Passes | Connection

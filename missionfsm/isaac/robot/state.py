@@ -1,0 +1,106 @@
+"""The mission client as a state: whether it is connected, what it runs, what it has yet to say."""
+
+from __future__ import annotations
+
+from attrs import frozen
+
+from missionfsm.isaac.shared.line import MICROSECONDS
+from missionfsm.kernel.chart import Chart
+
+SYSTEM = "isaac.robot"
+
+RUNNING_BOUND = 5 * MICROSECONDS
+"""Time within which RUNNING has to be reported at least once, in microseconds. The tester's choice (AI-31)."""
+
+NAME_BOUND = 20 * MICROSECONDS
+"""Time within which the name has to be said at least once, in microseconds. The tester's choice."""
+
+TICK = MICROSECONDS
+"""How long a status may wait for the codelet's own tick at most, in microseconds. The tester's choice (AI-31)."""
+
+LIFECYCLE: Chart[str] = Chart(
+    "codelet",
+    "IDLE",
+    (
+        ("a mission arrives", "IDLE", "RUNNING"),
+        ("a mission arrives", "RUNNING", "RUNNING"),
+        ("an unusable mission arrives", "IDLE", "IDLE"),
+        ("an unusable mission arrives", "RUNNING", "IDLE"),
+        ("an unusable mission arrives", "RUNNING", "RUNNING"),
+        ("the tree reports success", "RUNNING", "IDLE"),
+        ("the tree reports failure", "RUNNING", "IDLE"),
+        ("the connection drops", "RUNNING", "IDLE"),
+    ),
+    {"an unusable mission arrives": "AI-33.preempts", "the connection drops": "AI-15.mission b"},
+)
+"""Whether a behavior tree runs. Where an unusable mission arrives during another one there are two ways (AI-33)."""
+
+
+@frozen(cache_hash=True)
+class World:
+    """What a robot is configured with: its name, None where that is not told, and its channels."""
+
+    name: str | None = None
+    channel: str = "mission"
+    status_channel: str = "mission_status"
+    name_channel: str = "name"
+
+
+@frozen(cache_hash=True)
+class Report:
+    """A status that is owed: ``running``, ``success`` or ``failure``, of a mission with or without an identifier."""
+
+    status: str
+    named: bool
+    channel: str = "mission_status"
+
+
+@frozen(cache_hash=True)
+class Introduction:
+    """The name that is owed, on the name channel; any name where it is None."""
+
+    name: str | None
+    channel: str
+
+
+@frozen(cache_hash=True)
+class Codelet:
+    """A robot's mission client.
+
+    Attributes:
+        begun: whether it was ever connected, which it is at the very start.
+        connected: whether its connection is there.
+        running: whether a behavior tree runs.
+        named: whether its mission has an identifier.
+        used: whether a mission was ended before.
+        waiting: the statuses that wait for the codelet's own tick, or for the connection to be back.
+        waited: microseconds for which they have waited while connected.
+        quiet: microseconds for which RUNNING may not have been reported though a tree ran.
+        nameless: microseconds for which the name may not have been said though it was connected.
+    """
+
+    world: World = World()
+    begun: bool = False
+    connected: bool = False
+    running: bool = False
+    named: bool = False
+    used: bool = False
+    waiting: tuple[Report, ...] = ()
+    waited: int = 0
+    quiet: int = 0
+    nameless: int = 0
+
+    @property
+    def state(self) -> str:
+        """Where it is on the chart."""
+        return "RUNNING" if self.running else "IDLE"
+
+    @property
+    def mission(self) -> tuple[int, ...]:
+        """The position of the identifier of the mission that runs, among the names: none where it has none."""
+        return (sum(one.named for one in self.waiting),) if self.running and self.named else ()
+
+    @property
+    def identifiers(self) -> int:
+        """How many identifiers it has: those of the statuses that wait, then that of the mission that runs."""
+        return sum(one.named for one in self.waiting) + len(self.mission)

@@ -1,0 +1,75 @@
+"""How a line shows what a robot owes: which status, which name, and what is wrong with one that does not."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.robot import rules
+from missionfsm.isaac.robot.effects import FINAL
+from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
+from missionfsm.isaac.robot.state import Introduction, Report
+from missionfsm.isaac.shared.line import Said
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.spec import Delivery, Match, Mismatch
+
+RULES = {"running": rules.RUNNING, **FINAL}
+_FORMS = {"upper": "c", "lower": "d", "number": "e"}
+
+
+def matches(view: Report | Introduction, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:
+    """The ways in which a line shows what is owed, or why it does not."""
+    if isinstance(content, Garbled):
+        return Mismatch(rules.ENVELOPE.id, content.says)
+    if content.unsigned:
+        return Mismatch(rules.TYPES.id, "header.proto is the unsigned type id; it is sent as its signed value")
+    wrong = [path for path in content.bare if path != "header.uuid"]
+    if wrong:
+        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number")
+    assumes = (AI_25_HEADER["n" if content.bare else "s"],) if content.stamped else ()
+    if content.borrowed:
+        assumes = (*assumes, AI_27_UUID["b"])
+    told = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id, rules.OWN.id)
+    if isinstance(view, Introduction):
+        return _introduces(view, content, assumes, told)
+    return _reports(view, content, assumes, told)
+
+
+def _introduces(
+    view: Introduction, content: Said, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+) -> tuple[Match, ...] | Mismatch:
+    if content.kind != "text":
+        return Mismatch(rules.NAMED.id, f"the robot's name is due, not a {content.kind} message")
+    if content.channel != view.channel:
+        return Mismatch(rules.NAMED.id, f"the name came on channel {content.channel!r}, not {view.channel!r}")
+    if not content.what or view.name not in (None, content.what):
+        return Mismatch(rules.NAMED.id, f"the robot is called {view.name!r}, not {content.what!r}")
+    return (Match(assumes, rules=(rules.NAMED.id, *told)),)
+
+
+def _reports(
+    view: Report, content: Said, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+) -> tuple[Match, ...] | Mismatch:
+    rule = RULES[view.status]
+    if content.kind != "status":
+        return Mismatch(rule.id, f"{view.status} is due, not a {content.kind} message")
+    if content.channel != view.channel:
+        return Mismatch(rules.CHANNEL.id, f"the status came on channel {content.channel!r}, not {view.channel!r}")
+    if content.what != view.status:
+        return Mismatch(rule.id, f"{view.status.upper()} is due, not {content.what.upper()}")
+    assumes = (AI_28_STATUS[_FORMS[content.form]], *assumes)
+    if not view.named:
+        return (Match(assumes, rules=(rule.id, *told)),)
+    if not content.named:
+        return (Match((*assumes, AI_10["a"]), rules=(rule.id, *told)),)
+    return (Match((*assumes, AI_10["b"]), ((0, 0),), (rule.id, rules.ABOUT.id, rules.CHANNEL.id, *told)),)
+
+
+def sequence(relation: str) -> tuple[Assumption, ...]:
+    """How the uuid in a header compares with the one before: it is another one, or (AI-27.uuid b) the same."""
+    return (AI_27_UUID["b"],) if relation == "equal" else ()
+
+
+def delivery(topic: str) -> Delivery:
+    """What is broken by a line that nothing owes, or by one that does not come."""
+    if topic == "names":
+        return Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,))
+    return Delivery(unowed=(rules.RUNNING.id,), unending=(rules.ENVELOPE.id,))

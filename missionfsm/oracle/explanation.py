@@ -352,6 +352,4 @@ def take(
 
 def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
-    return step.after is not state or bool(
-        step.emits or step.opens or step.closes or step.clears or step.withdraws
-    )
+    return step.after is not state or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)

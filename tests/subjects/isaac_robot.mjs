@@ -15,8 +15,8 @@ const NAME_PERIOD = microseconds(1);
 /** After this many RUNNING the break `success-spontaneous` loses patience. */
 const PATIENCE = 3;
 
-/** The adapter protocol gives this system no world: these are the page's channels, and some name. */
-const DEFAULT_WORLD = { robot: 'robot', channel: 'mission', statusChannel: 'mission_status', nameChannel: 'name' };
+/** The channels are the page's. */
+const DEFAULT_WORLD = { name: 'robot', channel: 'mission', statusChannel: 'mission_status', nameChannel: 'name' };
 
 const NO_UUID = { lower: '0', upper: '0' };
 
@@ -30,6 +30,7 @@ class MissionClient {
   #firstUuid = null;
   #lingering = null;
   #isDeaf = false;
+  #isConnected = true;
 
   constructor(world, notify) {
     this.#world = { ...DEFAULT_WORLD, ...world };
@@ -40,6 +41,7 @@ class MissionClient {
 
   /** Lines that are no messages, or whose channel is not that of missions, are skipped. */
   line({ line }) {
+    if (!this.#isConnected) return false;
     const message = decode(line);
     if (message?.header.channel !== this.#world.channel) return true;
     const mission = missionFrom(message);
@@ -121,6 +123,20 @@ class MissionClient {
     return true;
   }
 
+  /** What the robot would say while the connection is down is lost; its mission goes on. */
+  disconnect() {
+    if (!this.#isConnected) return false;
+    this.#isConnected = false;
+    return true;
+  }
+
+  connect() {
+    if (this.#isConnected) return false;
+    this.#isConnected = true;
+    this.#announceName();
+    return true;
+  }
+
   #nextDue() {
     return Math.min(this.#nextRunning, this.#nextName);
   }
@@ -132,7 +148,7 @@ class MissionClient {
 
   #announceName() {
     this.#nextName = this.#now + NAME_PERIOD;
-    this.#send(this.#world.nameChannel, TEXT_PROTO, { text: this.#world.robot });
+    this.#send(this.#world.nameChannel, TEXT_PROTO, { text: this.#world.name });
   }
 
   #reportRunning() {
@@ -155,6 +171,7 @@ class MissionClient {
   }
 
   #send(channel, proto, payload) {
+    if (!this.#isConnected) return;
     const line = encode({ channel, proto, payload, now: this.#now });
     this.#notify('line', { line: lineAsSent(line, broken) });
   }
@@ -209,5 +226,7 @@ await serveInstances('isaac.robot', {
     behaviorSucceeded: (client) => client.behaviorSucceeded(),
     behaviorFailed: (client) => client.behaviorFailed(),
     advance: (client, event) => client.advance(event),
+    disconnect: (client) => client.disconnect(),
+    connect: (client) => client.connect(),
   },
 });

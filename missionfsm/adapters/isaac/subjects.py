@@ -12,7 +12,14 @@ from collections.abc import Iterable
 
 from missionfsm.isaac.runtime import missionfile
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
-from missionfsm.isaac.runtime.missions import Close, Effect, Refused, Send
+from missionfsm.isaac.runtime.missions import (
+    DEFAULT_CHANNEL,
+    DEFAULT_STATUS_CHANNEL,
+    Close,
+    Effect,
+    Refused,
+    Send,
+)
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.runtime.robot import RobotCore, RobotEffect, Transmit
 from missionfsm.isaac.runtime.server import MissionServerCore, elapse
@@ -86,21 +93,32 @@ class RobotSubject(_InProcess):
 
     system = "isaac.robot"
     name = "missionfsm robot"
-    drives = ("line", "behaviorSucceeded", "behaviorFailed", "advance")
+    drives = ("line", "behaviorSucceeded", "behaviorFailed", "advance", "disconnect", "connect")
 
     def __init__(self) -> None:
         self.reset({})
 
-    def reset(self, _: JSON) -> None:
+    def reset(self, world: JSON) -> None:
         self._now = 0.0
         self._fresh = _Identifiers()
         self._decoder = Decoder()
-        self._core = RobotCore("robot")
+        self._core = RobotCore(
+            world.get("name", "robot"),
+            channel=world.get("channel", DEFAULT_CHANNEL),
+            status_channel=world.get("statusChannel", DEFAULT_STATUS_CHANNEL),
+            name_channel=world.get("nameChannel", "name"),
+        )
+        self._is_connected = True
         self._core.connected(self._now)
 
     def drive(self, event: str, params: JSON) -> Exchange:
         effects: list[RobotEffect] = []
-        if event == "line":
+        if (event in ("line", "disconnect") and not self._is_connected) or (event == "connect" and self._is_connected):
+            return Exchange({"happened": False})
+        if event in ("connect", "disconnect"):
+            self._is_connected = event == "connect"
+            effects += (self._core.connected if self._is_connected else self._core.disconnected)(self._now)
+        elif event == "line":
             for message in self._decoder.feed(params["line"].encode(errors="replace") + b"\n"):
                 effects += self._core.received(message, self._now)
         elif event == "advance":
@@ -230,6 +248,7 @@ class ServerSubject(_InProcess):
         for effect in effects:
             if isinstance(effect, Close):
                 self._decoders.pop(effect.connection, None)
+                found.append(Notification("closed", {"connection": effect.connection}))
             elif isinstance(effect, Send):
                 bare = self.profile.header_uuid_as_numbers
                 line = _line(effect.payload, effect.channel, self._now, self._fresh(), bare=bare)

@@ -1,56 +1,50 @@
-"""The system ``isaac.robot``: its specification, its JSON, and what is worth trying on it."""
+"""What is worth trying on a robot: lines that arrive, a behavior tree that stops, a connection that drops, time."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from missionfsm.isaac.robot.codec import CODEC
-from missionfsm.isaac.robot.mutations import BENDS, TWISTS
-from missionfsm.isaac.robot.pictures import SKETCHES
-from missionfsm.isaac.robot.spec import SPEC
+from missionfsm.isaac.robot.inputs import USABLE, Arrives
 from missionfsm.isaac.shared.line import new_uuid
-from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, new, pick
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Line, as_text, new, pick
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import System
 
 _CONFIGS = ('{"goals.path":{"FollowPath":{"tolerance":0.25}}}', "{}", '{"a":{"b":{"c":[1,2.5,null,"é"]}}}')
-_UNUSABLE = ("no json", "[1,2]", "{", "17")
+_UNUSABLE = ("no json", "[1,2]", "{", "17", '{"a":1}')
 _HEADER_UUID = {"lower": "12297829382473034411", "upper": "6148914691236517206"}
+_WORLDS: tuple[JSON, ...] = (
+    {"name": "carter-01"},
+    {"name": "fork 2", "channel": "lift", "statusChannel": "lift-status", "nameChannel": "names"},
+)
 
 
-def _mission(config: JSON, uuid: JSON, channel: str = "mission", **header: JSON) -> JSON:
-    return {
-        "event": "line",
-        "line": as_text(
-            {
-                "header": {
-                    "channel": channel,
-                    "pubtime": "1700000000000000000",
-                    "acqtime": "1700000000000000000",
-                    "proto": str(signed(TYPE_IDS[MissionProto])),
-                    "uuid": _HEADER_UUID,
-                    **header,
-                },
-                "payload": {"uuid": uuid, "config": config},
-            }
-        ),
+def _mission(config: JSON, uuid: JSON, channel: str, **payload: JSON) -> JSON:
+    header = {
+        "channel": channel,
+        "pubtime": "1700000000000000000",
+        "acqtime": "1700000000000000000",
+        "proto": str(signed(TYPE_IDS[MissionProto])),
+        "uuid": _HEADER_UUID,
     }
+    line = {"header": header, "payload": {"uuid": uuid, "config": config, **payload}}
+    return {"event": "line", "line": as_text(line)}
 
 
-def _drives() -> Iterator[JSON]:
+def _drives(channel: str, status_channel: str) -> Iterator[JSON]:
     for config in _CONFIGS:
-        yield from (_mission({"serialized": config}, new("uuid")) for _ in range(3))
-    yield _mission({"serialized": "{}"}, pick("uuid"))
-    yield from (_mission({"serialized": config}, new("uuid")) for config in _UNUSABLE)
-    yield _mission({"serialized": "null"}, new("uuid"))
-    yield _mission({"serialized": "{}"}, new("uuid"), channel="mission_status")
-    yield _mission({"serialized": "{}"}, new("uuid"), channel="elsewhere")
-    yield _mission({"serialized": "{}"}, {"lower": 77, "upper": 99})
+        yield from (_mission({"serialized": config}, new("uuid"), channel) for _ in range(3))
+    yield _mission({"serialized": "{}"}, pick("uuid"), channel)
+    yield from (_mission({"serialized": config}, new("uuid"), channel) for config in _UNUSABLE)
+    yield _mission({"serialized": "null"}, new("uuid"), channel)
+    for other in dict.fromkeys((status_channel, "elsewhere", "mission")):
+        if other != channel:
+            yield _mission({"serialized": "{}"}, new("uuid"), other)
+    yield _mission({"serialized": "{}"}, {"lower": 77, "upper": 99}, channel)
     yield from ({"event": "line", "line": line} for line in ("", "no json", "{}", "[]", '{"header":{}}'))
     for kind, payload in ((TextProto, {"text": "robot"}), (MissionStatusProto, {"missionStatus": "success"})):
-        header = {"channel": "mission", "proto": str(signed(TYPE_IDS[kind]))}
+        header = {"channel": channel, "proto": str(signed(TYPE_IDS[kind]))}
         yield {"event": "line", "line": as_text({"header": header, "payload": payload})}
     yield from _EVENTS
 
@@ -61,29 +55,48 @@ _EVENTS: tuple[JSON, ...] = (
     {"event": "advance", "seconds": 0.05},
     {"event": "advance", "seconds": 1},
     {"event": "advance", "seconds": 5},
-    {"event": "advance", "seconds": 10},
+    {"event": "advance", "seconds": 20},
+    {"event": "disconnect"},
+    {"event": "connect"},
 )
 
 
-def alphabet(_: JSON, __: Bounds) -> Alphabet:
-    """What is worth trying on a robot."""
+def alphabet(world: JSON, _: Bounds) -> Alphabet:
+    """What is worth trying on a robot in a world."""
+    here = CODEC.world(world)
+    plain = {
+        "event": "line",
+        "line": CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))["line"],
+    }
     return Alphabet(
         prompts=(),
         plain=(),
-        drives=tuple(_drives()),
-        plain_drives=(
-            {"event": "line", "line": CODEC.write_drive(CODEC.drive(_PLAIN)[0], (new_uuid(1),))["line"]},
-            *_EVENTS[:2],
-            _EVENTS[4],
-        ),
-        worlds=({},),
+        drives=tuple(_drives(here.channel, here.status_channel)),
+        plain_drives=(plain, *_EVENTS[:2], _EVENTS[5], *_EVENTS[6:]),
+        worlds=_WORLDS,
+        scripts=_scripts(),
     )
 
 
-_PLAIN: JSON = {
-    "event": "line",
-    "line": (
-        '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"{}"}}}'
-    ),
-}
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, sketches=SKETCHES)
+_SCRIPTS = (
+    # The mission that runs arrives again; it ends, and arrives once more.
+    "mission 1s settle again settle 1s settle succeeds 1s settle again 1s settle fails 1s settle",
+    # Missions that cannot be used, with and without one that runs, and what runs then ends.
+    "unusable settle 1s settle mission 1s settle unusable settle 1s settle succeeds settle 1s settle",
+    # Missions preempt one another faster than a tick.
+    "mission tick mission mission settle 1s settle fails mission settle 1s settle",
+    # A connection drops while nothing runs, while a mission runs, and while it ends.
+    "20s settle drops settle connects settle 20s settle mission 1s settle drops settle 1s settle connects settle 20s "
+    "settle drops succeeds settle connects settle 20s settle mission settle 20s settle fails settle 20s settle",
+)
+
+
+def _scripts() -> tuple[tuple[Line, ...], ...]:
+    """Conversations that go where chance seldom does, in the usual world."""
+    words = ("succeeds", "fails", "tick", "1s", "5s", "20s", "drops", "connects")
+    known = {word: Line("drive", event) for word, event in zip(words, _EVENTS, strict=True)}
+    known["settle"] = Line("settle")
+    known["mission"] = Line("drive", _mission({"serialized": "{}"}, new("uuid"), "mission"))
+    known["again"] = Line("drive", _mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
+    known["unusable"] = Line("drive", _mission({"serialized": "no json"}, new("uuid"), "mission"))
+    return tuple(tuple(known[word] for word in script.split()) for script in _SCRIPTS)

@@ -1,23 +1,26 @@
-"""The JSON of ``isaac.robot``: lines in both directions and the drives of the adapter protocol."""
+"""The JSON of ``isaac.robot``: its world, lines in both directions and the drives of the adapter protocol."""
 
 from __future__ import annotations
 
 import json
 
-from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_28_STATUS
-from missionfsm.isaac.robot.spec import (
+from missionfsm.isaac.robot.inputs import (
     NULL,
-    SPEC,
-    STATUS_CHANNEL,
+    ODD,
+    SHALLOW,
     UNUSABLE,
     USABLE,
     Arrives,
+    Connection,
+    Event,
     Passes,
-    Report,
     Stops,
 )
+from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
+from missionfsm.isaac.robot.spec import SPEC
+from missionfsm.isaac.robot.state import Introduction, Report, World
 from missionfsm.isaac.shared.drives import seconds, text_line
-from missionfsm.isaac.shared.line import MICROSECONDS, Said, from_json, new_uuid, see, to_json, uuid_name
+from missionfsm.isaac.shared.line import MICROSECONDS, from_json, new_uuid, see, stamp, to_json, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -34,86 +37,125 @@ from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.text import brief
 
-NAME_CHANNEL = "name"
-MISSION_CHANNEL = "mission"
+ANY_NAME = "robot"
+"""What a robot is called of which the world tells no name."""
+
+_WORLD = {"name": "name", "channel": "channel", "statusChannel": "status_channel", "nameChannel": "name_channel"}
 
 
 def _refuse(says: str) -> UnreadableError:
     return UnreadableError(says)
 
 
-def world(given: JSON) -> tuple[()]:
-    """The world, which has no parameters."""
-    if given not in ({}, None):
-        raise _refuse(f"world: isaac.robot has no parameters, not {brief(given)}")
-    return ()
+def world(given: JSON) -> World:
+    """The world: the robot's name, which may be left untold, and its channels."""
+    given = {} if given is None else given
+    if not isinstance(given, dict) or not set(given) <= set(_WORLD):
+        raise _refuse(f"world: isaac.robot has {', '.join(_WORLD)} only, not {brief(given)}")
+    for key, value in given.items():
+        if not isinstance(value, str) or not value:
+            raise _refuse(f"world.{key}: {brief(value)} is not a text with something in it")
+    return World(**{_WORLD[key]: value for key, value in given.items()})
+
+
+def write_world(given: World) -> JSON:
+    """The parameters of a world."""
+    told = {key: getattr(given, attribute) for key, attribute in _WORLD.items()}
+    return {key: value for key, value in told.items() if value is not None}
+
+
+# Drives.
 
 
 def _arrives(line: str) -> tuple[Arrives, tuple[Name, ...]]:
     found = decode_line(line.encode(errors="surrogatepass")) if line.strip() else []
     message = found[0] if found else None
-    if not isinstance(message, Message) or message.header.channel != MISSION_CHANNEL:
+    if not isinstance(message, Message):
         return Arrives(), ()
+    channel = message.header.channel
     if not isinstance(message.payload, MissionProto):
-        return Arrives(foreign=True), ()
+        return Arrives(foreign=True, channel=channel), ()
     strict = decode_line(line.encode(errors="surrogatepass"), numbers=False)
     numeric = not (strict and isinstance(strict[0], Message))
     uuid = message.payload.uuid
     names = () if uuid is None or uuid.value == 0 else (uuid_name(uuid),)
-    return Arrives(_usable(message.payload.config), bool(names), numeric), names
+    return Arrives(_configuration(json.loads(line), message.payload), bool(names), numeric, channel=channel), names
 
 
-def _usable(config: str) -> str:
-    value = strictjson.parse(config)
+def _configuration(raw: JSON, mission: MissionProto) -> str:
+    """Of which kind a configuration is; one that is missing or empty is none, like null."""
+    given = raw["payload"].get("config")
+    if given is None or not mission.config or (isinstance(given, dict) and given.get("serialized", 0) is None):
+        return NULL
+    value = strictjson.parse(mission.config)
     if value is None:
         return NULL
-    sound = isinstance(value, dict) and next(strictjson.faults(value), None) is None
-    return USABLE if sound else UNUSABLE
+    if isinstance(value, strictjson.JsonFault):
+        return UNUSABLE
+    if not isinstance(value, dict) or next(strictjson.faults(value), None) is not None:
+        return ODD
+    return USABLE if all(_is_node(node) for node in value.values()) else SHALLOW
 
 
-def drive(given: JSON) -> tuple[Arrives | Stops | Passes, tuple[Name, ...]]:
+def _is_node(value: JSON) -> bool:
+    """Whether a value holds components, each an object."""
+    return isinstance(value, dict) and all(isinstance(component, dict) for component in value.values())
+
+
+def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive and the mission that it names."""
     event = given.get("event") if isinstance(given, dict) else None
     if event == "line":
         return _arrives(text_line(given))
     if event in ("behaviorSucceeded", "behaviorFailed"):
         return Stops(event), ()
+    if event in ("connect", "disconnect"):
+        return Connection(event), ()
     if event == "advance":
         return Passes(seconds(given.get("seconds"))), ()
     raise _refuse(f"drive.event: {brief(event)} is not a drive of isaac.robot")
 
 
-def write_drive(event: Arrives | Stops | Passes, names: tuple[Name, ...]) -> JSON:
-    """The JSON of an event."""
+_CONFIGURATIONS = {USABLE: "{}", NULL: "null", SHALLOW: '{"node":1}', ODD: "1", UNUSABLE: "no json"}
+
+
+def write_drive(event: Event, names: tuple[Name, ...]) -> JSON:
+    """The JSON of an event; of a line the essence."""
     if isinstance(event, Passes):
         return {"event": "advance", "seconds": event.time / MICROSECONDS}
-    if isinstance(event, Stops):
+    if isinstance(event, Stops | Connection):
         return {"event": event.name}
     if event.foreign:
-        return {"event": "line", "line": encode(Message(Header(MISSION_CHANNEL), TextProto(""))).decode().rstrip()}
+        return {"event": "line", "line": encode(Message(Header(event.channel), TextProto(""))).decode().rstrip()}
     if event.mission is None:
         return {"event": "line", "line": "{}"}
-    config = {USABLE: "{}", NULL: "null", UNUSABLE: "no json"}[event.mission]
     uuid = Uuid.of(names[0][1]) if names else None  # type: ignore[index]
-    message = Message(Header(MISSION_CHANNEL), MissionProto(uuid, config))
+    message = Message(Header(event.channel), MissionProto(uuid, _CONFIGURATIONS[event.mission]))
     return {"event": "line", "line": encode(message).decode().removesuffix("\n")}
 
 
+# Lines that the robot sends.
+
+
 def strip(line: JSON) -> tuple[Part, ...]:
-    """The identifier in a line and what is left of it; nothing where the robot says its name (AI-37 is waived)."""
+    """The mission's identifier in a line, the uuid of its header as a mark, and what is left of it."""
     names, said = see(line)
-    if isinstance(said, Said) and said.kind == "text" and said.channel == NAME_CHANNEL and not said.bare:
-        return ()
-    return ((names, (), to_json(said)),)
+    own = stamp(line)
+    return ((names, () if own is None else (("uuid", own),), to_json(said)),)
 
 
-def write_message(view: Report, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
-    """The line that shows a report."""
+def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
+    """The line that shows a report, or the name."""
     time = round(at * 1e9)
-    named = names and meet(choice, (AI_10["b"],))
-    uuid = Uuid.of(names[0][1]) if named else None  # type: ignore[index]
-    header = Header(STATUS_CHANNEL, time, time, Uuid.of(new_uuid(number)[1]))  # type: ignore[index]
+    own = Uuid.of(new_uuid(number)[1])  # type: ignore[index]
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
+    if isinstance(view, Introduction):
+        named = Message(Header(view.channel, time, time, own), TextProto(view.name or ANY_NAME))
+        return encode(named, header_uuid_as_numbers=bare).decode().removesuffix("\n")
+    uuid = Uuid.of(names[0][1]) if names and meet(choice, (AI_10["b"],)) else None  # type: ignore[index]
+    if uuid is not None and meet(choice, (AI_27_UUID["b"],)):
+        own = uuid
+    header = Header(view.channel, time, time, own)
     line = encode(Message(header, MissionStatusProto(uuid, WireStatus(view.status))), header_uuid_as_numbers=bare)
     message = json.loads(line)
     if meet(choice, (AI_28_STATUS["c"],)):
@@ -148,6 +190,6 @@ CODEC = Codec(
     write_request=lambda *_: {},
     write_answer=lambda *_: {},
     write_message=write_message,
-    write_world=lambda _: {},
+    write_world=write_world,
     write_drive=write_drive,
 )

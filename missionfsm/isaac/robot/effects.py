@@ -7,6 +7,7 @@ then counts from there.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 
 from attrs import evolve, frozen
@@ -37,6 +38,7 @@ from missionfsm.isaac.robot.state import (
     Codelet,
     Introduction,
     Report,
+    Waiting,
     World,
 )
 from missionfsm.kernel.readings import Ambiguity, Assumption
@@ -74,10 +76,12 @@ def introduction(world: World, *, offer: bool = False) -> Emission:
     return Emission(NAMES, Introduction(world.name, world.name_channel), (), stays=offer, certain=not offer)
 
 
-def moved(here: Codelet, trigger: str, *, runs: bool | None = None) -> Codelet:
-    """A codelet moves on its chart; `runs` tells two moves of one trigger apart."""
-    after = (LIFECYCLE.after(trigger, here.state) == "RUNNING") if runs is None else runs
-    return evolve(here, running=after, named=here.named and after, used=True, quiet=0)
+def moved(here: Codelet, trigger: str) -> Codelet:
+    """A codelet moves on its chart."""
+    state = LIFECYCLE.after(trigger, here.state)
+    assert state is not None, f"{trigger} is no move from {here.state}"  # noqa: S101 - the caller has looked
+    runs = state == "RUNNING"
+    return evolve(here, running=runs, named=here.named and runs, used=True, quiet=0)
 
 
 def _waiting_names(here: Codelet) -> tuple[int, ...]:
@@ -87,9 +91,12 @@ def _waiting_names(here: Codelet) -> tuple[int, ...]:
 def told(here: Codelet) -> Iterator[Emission]:
     """The statuses that waited, in order."""
     at = 0
-    for report in here.waiting:
-        yield Emission(STATUSES, report, (at,) if report.named else (), certain=True)
-        at += report.named
+    for one in here.waiting:
+        about = at if one.report.named else None
+        if one.offered:
+            yield _emission(here.world, "running", about, offer=True)
+        yield _emission(here.world, one.report.status, about)
+        at += one.report.named
 
 
 def _concluded(
@@ -123,7 +130,7 @@ def _concluded(
             if one.offered:
                 emits.append(_emission(here.world, "running", one.about, offer=True))
             emits.append(_emission(here.world, one.status, one.about))
-        waiting = (*kept, *(Report(one.status, one.about is not None, here.world.status_channel) for one in later))
+        waiting = (*kept, *(_waits(here, one) for one in later))
         if not waiting:
             emits += offers
         names = (
@@ -140,13 +147,17 @@ def _concluded(
         )
 
 
+def _waits(here: Codelet, due: Due) -> Waiting:
+    return Waiting(Report(due.status, due.about is not None, here.world.status_channel), due.offered)
+
+
 def _unconnected(
     here: Codelet, after: Codelet, runs: tuple[int, ...], due: tuple[Due, ...], ids: tuple[str, ...]
 ) -> Iterator[Step]:
     ids = (*ids, rules.LINKED.id)
     before = _waiting_names(here)
     yield Step(evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(AI_15_STATUS["a"],))
-    reports = tuple(Report(one.status, one.about is not None, here.world.status_channel) for one in due)
+    reports = tuple(_waits(here, one) for one in due)
     names = (*before, *(one.about for one in due if one.about is not None), *runs)
     kept = evolve(after, waiting=(*here.waiting, *reports))
     yield Step(kept, names=names, rules=ids, assumes=(AI_15_STATUS["b"],))
@@ -155,6 +166,7 @@ def _unconnected(
 # Lines.
 
 
+@functools.lru_cache(maxsize=20_000)
 def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
     """A line arrives."""
     if not here.connected:
@@ -230,7 +242,7 @@ def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
             because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
             yield from _all(_concluded(here, after, None, (failure,), because), (said,))
             continue
-        ended = moved(here, "an unusable mission arrives", runs=False)
+        ended = moved(here, "an unusable mission arrives")
         due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True), failure)
         preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
         yield from _all(preempts, (said, AI_33_PREEMPTS["a"]))
@@ -246,6 +258,7 @@ _STOPS = {
 }
 
 
+@functools.lru_cache(maxsize=20_000)
 def stops(here: Codelet, event: Stops, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
@@ -259,7 +272,7 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     """The codelet's own tick: the statuses that waited are sent."""
     if not (here.connected and here.waiting):
         return ()
-    because = dict.fromkeys(FINAL[report.status].id for report in here.waiting)
+    because = dict.fromkeys(FINAL[one.report.status].id for one in here.waiting)
     offers = (_emission(here.world, "running", _old(here), offer=True),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
     return (Step(after, names=here.mission, emits=(*told(here), *offers), rules=tuple(because)),)
@@ -268,6 +281,7 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
 # Time.
 
 
+@functools.lru_cache(maxsize=20_000)
 def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
     """Time passes: what has to be said within a bound was said by now, or may have been."""
     if not here.connected:
@@ -309,6 +323,7 @@ def _introduces(step: Step, time: int) -> Iterator[Step]:
 # The connection.
 
 
+@functools.lru_cache(maxsize=20_000)
 def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
     """The connection drops, with all that was on its way, or is there again."""
     if event.name == "connect":

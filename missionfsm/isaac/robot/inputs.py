@@ -5,8 +5,8 @@ from __future__ import annotations
 from attrs import frozen
 
 USABLE, NULL, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = ("usable", "null", "shallow", "odd", "unusable")
-"""What a configuration is: an object of nodes; ``null``; an object in which something is no node with components;
-any other JSON, or none at all; no JSON."""
+"""What a configuration is: an object of nodes; ``null``, or none at all; an object in which something is no node with
+components; any other JSON; no JSON."""
 
 
 @frozen(cache_hash=True)

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from attrs import evolve
 
 from missionfsm.isaac.robot import rules
-from missionfsm.isaac.robot.spec import Codelet, Report
-from missionfsm.isaac.shared.mutations import changed, line_bends, swapped
+from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
+from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.shared.mutations import changed, line_bends, mission_type, swapped, unsigned_type
 from missionfsm.kernel.spec import Emission, Step
 from missionfsm.kernel.system import Bend, Break, breaks
 
@@ -16,6 +17,8 @@ Twist = Callable[[Codelet, Step], Step | None]
 
 BENDS = (
     Bend(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
+    Bend(rules.TYPES.id, "sends the type id unsigned", changed(unsigned_type)),
+    Bend(rules.TYPES.id, "sends the type id of a mission", changed(mission_type)),
     *line_bends(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
 )
 
@@ -27,15 +30,37 @@ def _never_run(_: Codelet, step: Step) -> Step:
 
 
 def _about_old(emission: Emission) -> bool:
-    return 0 in (emission.refs or ())
+    return isinstance(emission.view, Report) and 0 in (emission.refs or ())
 
 
 def _final(emission: Emission) -> bool:
     return isinstance(emission.view, Report) and emission.view.status != "running"
 
 
-def _silent(_: Codelet, step: Step) -> Step:
-    return evolve(step, emits=())
+def _without_running(_: Codelet, step: Step) -> Step:
+    return evolve(step, emits=tuple(one for one in step.emits if one.topic != STATUSES))
+
+
+def _without_name(_: Codelet, step: Step) -> Step:
+    return evolve(step, emits=tuple(one for one in step.emits if one.topic != NAMES))
+
+
+def _nameless_while_running(before: Codelet, step: Step) -> Step:
+    return _without_name(before, step) if before.running else step
+
+
+def _speaks_up(before: Codelet, step: Step) -> Step:
+    """The name is said although there is no connection."""
+    return evolve(step, emits=(*step.emits, introduction(before.world)))
+
+
+def _with_another_name(_: Codelet, step: Step) -> Step:
+    """The name is another one while a mission runs."""
+    emits = tuple(
+        evolve(one, view=evolve(one.view, name=f"{one.view.name}-2")) if isinstance(one.view, Introduction) else one
+        for one in step.emits
+    )
+    return evolve(step, emits=emits)
 
 
 def _without_final(_: Codelet, step: Step) -> Step:
@@ -64,7 +89,9 @@ def _said_as(status: str) -> Twist:
 
 def _running_after(_: Codelet, step: Step) -> Step:
     """RUNNING comes once more after the final status."""
-    final = next(filter(_final, step.emits))
+    final = next(filter(_final, step.emits), None)
+    if final is None:
+        return step
     return evolve(step, emits=(*step.emits, evolve(final, view=evolve(final.view, status="running"))))
 
 
@@ -72,9 +99,9 @@ def _ends_what_runs(before: Codelet, step: Step) -> Step:
     """What means nothing fails the mission that runs."""
     if not before.running or step.after is not before:
         return step
-    report = Emission("line", Report("failure", before.named), (0,) if before.named else (), certain=True)
+    report = Report("failure", before.named, before.world.status_channel)
     idle = evolve(before, running=False, named=False, used=True)
-    return evolve(step, after=idle, names=(), emits=(report,))
+    return evolve(step, after=idle, names=(), emits=(Emission(STATUSES, report, before.mission, certain=True),))
 
 
 TWISTS = (
@@ -89,8 +116,15 @@ TWISTS = (
     ),
     *breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
     *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
-    *breaks(rules.RUNNING, is_never_reported=_silent),
+    *breaks(rules.RUNNING, is_never_reported=_without_running),
     Break(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
+    *breaks(
+        rules.NAMED,
+        is_never_said=_without_name,
+        is_not_said_during_a_mission=_nameless_while_running,
+        is_another_one=_with_another_name,
+    ),
+    *breaks(rules.LINKED, is_forgotten=_speaks_up),
     *breaks(
         rules.SUCCESS,
         is_not_reported=_without_final,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.robot.spec import UNUSABLE, Arrives, Codelet, Passes, Report, Stops
+from missionfsm.isaac.robot.inputs import UNUSABLE, Arrives, Event, Passes
+from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Refs, Sketch
 
@@ -22,7 +23,7 @@ def _node(codelet: Codelet) -> str:
     return "waits for the next mission" if codelet.used else "waits for a first mission"
 
 
-def _label(_: Codelet, event: Arrives | Stops | Passes, __: Refs) -> str:
+def _label(_: Codelet, event: Event, __: Refs) -> str:
     if isinstance(event, Arrives):
         return "an unusable mission arrives" if event.mission == UNUSABLE else "a mission arrives"
     if isinstance(event, Passes):
@@ -30,8 +31,8 @@ def _label(_: Codelet, event: Arrives | Stops | Passes, __: Refs) -> str:
     return {"behaviorSucceeded": "the tree reports success", "behaviorFailed": "the tree reports failure"}[event.name]
 
 
-def _shows(report: Report) -> str:
-    return report.status.upper()
+def _shows(view: Report | Introduction) -> str:
+    return view.status.upper() if isinstance(view, Report) else "its name"
 
 
 SKETCHES = (

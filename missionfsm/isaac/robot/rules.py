@@ -100,14 +100,7 @@ TYPES = _promise(
     "a-type-id-is-signed",
     "The type id in a header is the payload's, as a signed 64-bit integer.",
     CLIENT,
-    "A fact of the wire; a header that has none is understood by its payload (AI-27).",
-)
-OWN = _promise(
-    "line",
-    "a-header-has-a-uuid-of-its-own",
-    "The uuid in a header is the message's own, not the mission's, and another one for the next message.",
-    CLIENT,
-    "AI-27.uuid.",
+    "A fact of the wire; a header that has none is understood by its payload. Whose its uuid is: AI-27.uuid.",
 )
 INTEGERS = _promise(
     "line",
@@ -131,6 +124,5 @@ RULES = (
     LINKED,
     ENVELOPE,
     TYPES,
-    OWN,
     INTEGERS,
 )

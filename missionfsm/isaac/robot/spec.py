@@ -57,13 +57,19 @@ SPEC = Spec(
             "only-missions-are-named", "An idle codelet has no mission.", lambda here: here.running or not here.named
         ),
         Invariant(
-            "what-waits-is-final", "RUNNING does not wait.", lambda here: all(one.status != "running" for one in here.waiting)
+            "what-waits-is-final",
+            "RUNNING does not wait.",
+            lambda here: all(one.report.status != "running" for one in here.waiting),
         ),
     ),
     possibilities=(
         *map(_SAYS, LIFECYCLE.states),
         Invariant("a-mission-follows", "A mission runs after another.", lambda here: here.running and here.used),
-        Invariant("the-connection-drops", "Some robot is without a connection.", lambda here: here.begun and not here.connected),
+        Invariant(
+            "the-connection-drops",
+            "Some robot is without a connection.",
+            lambda here: here.begun and not here.connected,
+        ),
     ),
     abstraction=Abstraction(situation=_outline, shape=_outline, outline=_outline),
     unopened=(rules.LINKED.id,),

@@ -26,14 +26,18 @@ LIFECYCLE: Chart[str] = Chart(
         ("a mission arrives", "RUNNING", "RUNNING"),
         ("an unusable mission arrives", "IDLE", "IDLE"),
         ("an unusable mission arrives", "RUNNING", "IDLE"),
-        ("an unusable mission arrives", "RUNNING", "RUNNING"),
+        ("an unusable mission is passed over", "RUNNING", "RUNNING"),
         ("the tree reports success", "RUNNING", "IDLE"),
         ("the tree reports failure", "RUNNING", "IDLE"),
         ("the connection drops", "RUNNING", "IDLE"),
     ),
-    {"an unusable mission arrives": "AI-33.preempts", "the connection drops": "AI-15.mission b"},
+    {
+        "an unusable mission arrives": "AI-33.unusable, AI-33.preempts a",
+        "an unusable mission is passed over": "AI-33.preempts b",
+        "the connection drops": "AI-15.mission b",
+    },
 )
-"""Whether a behavior tree runs. Where an unusable mission arrives during another one there are two ways (AI-33)."""
+"""Whether a behavior tree runs."""
 
 
 @frozen(cache_hash=True)
@@ -53,6 +57,14 @@ class Report:
     status: str
     named: bool
     channel: str = "mission_status"
+
+
+@frozen(cache_hash=True)
+class Waiting:
+    """A status that waits; `offered` is whether RUNNING of that mission may come just before it."""
+
+    report: Report
+    offered: bool
 
 
 @frozen(cache_hash=True)
@@ -85,7 +97,7 @@ class Codelet:
     running: bool = False
     named: bool = False
     used: bool = False
-    waiting: tuple[Report, ...] = ()
+    waiting: tuple[Waiting, ...] = ()
     waited: int = 0
     quiet: int = 0
     nameless: int = 0
@@ -98,9 +110,9 @@ class Codelet:
     @property
     def mission(self) -> tuple[int, ...]:
         """The position of the identifier of the mission that runs, among the names: none where it has none."""
-        return (sum(one.named for one in self.waiting),) if self.running and self.named else ()
+        return (sum(one.report.named for one in self.waiting),) if self.running and self.named else ()
 
     @property
     def identifiers(self) -> int:
         """How many identifiers it has: those of the statuses that wait, then that of the mission that runs."""
-        return sum(one.named for one in self.waiting) + len(self.mission)
+        return sum(one.report.named for one in self.waiting) + len(self.mission)

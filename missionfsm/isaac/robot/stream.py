@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
@@ -27,7 +29,7 @@ def matches(view: Report | Introduction, content: Said | Garbled) -> tuple[Match
     assumes = (AI_25_HEADER["n" if content.bare else "s"],) if content.stamped else ()
     if content.borrowed:
         assumes = (*assumes, AI_27_UUID["b"])
-    told = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id, rules.OWN.id)
+    told = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id)
     if isinstance(view, Introduction):
         return _introduces(view, content, assumes, told)
     return _reports(view, content, assumes, told)
@@ -68,7 +70,7 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
     return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
-def delivery(topic: str) -> Delivery:
+def delivery(topic: Hashable) -> Delivery:
     """What is broken by a line that nothing owes, or by one that does not come."""
     if topic == "names":
         return Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,))

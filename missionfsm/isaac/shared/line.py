@@ -122,15 +122,11 @@ def stamp(line: object) -> int | None:
 def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], Said | Garbled]:
     payload = message.payload
     own = message.header.uuid if message.header.uuid is not None and message.header.uuid.value else None
-    marks = {
-        "bare": _bare(raw),
-        "stamped": own is not None,
-        "borrowed": own is not None and not isinstance(payload, TextProto) and own == payload.uuid,
-        "unsigned": str(raw["header"].get("proto")).isdecimal() and int(raw["header"]["proto"]) >= 1 << 63,
-    }
+    borrowed = own is not None and not isinstance(payload, TextProto) and own == payload.uuid
+    marks = (_bare(raw), own is not None, borrowed, _unsigned(raw["header"].get("proto")))
     channel = message.header.channel
     if isinstance(payload, TextProto):
-        return (), Said("text", channel, payload.text, **marks)
+        return (), Said("text", channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
     names: list[Name] = []
     named = payload.uuid is not None and payload.uuid.value != 0
     if named and payload.uuid is not None:
@@ -145,13 +141,18 @@ def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ..
         if what is None:
             return tuple(names), Garbled("the configuration is no JSON object")
         form = "text" if isinstance((raw["payload"].get("config") or {}).get("serialized"), str) else "object"
-        return tuple(names), Said("mission", channel, what, form, named, header_named, **marks)
+        return tuple(names), Said("mission", channel, what, form, named, header_named, *marks)
     assert isinstance(payload, MissionStatusProto)  # noqa: S101 - the only kind that is left
     written = raw["payload"].get("missionStatus")
     form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
     if form == "upper" and written != written.upper():
         return tuple(names), Garbled(f"payload.missionStatus is written {strictjson.shown(written)}")
-    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, **marks)
+    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, *marks)
+
+
+def _unsigned(proto: JSON) -> bool:
+    """Whether a type id is too large to be a signed one."""
+    return str(proto).isdecimal() and int(proto) >= 1 << 63
 
 
 def _bare(raw: JSON) -> tuple[str, ...]:

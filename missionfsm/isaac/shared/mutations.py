@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 
 from missionfsm.isaac.wire import strictjson
+from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed, unsigned
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import Bend
 
@@ -30,6 +31,16 @@ def swapped(message: JSON) -> None:
     """The halves of the mission's identifier change places."""
     uuid = message["payload"].get("uuid", {})
     uuid.update(lower=uuid.get("upper", "0"), upper=uuid.get("lower", "0"))
+
+
+def unsigned_type(message: JSON) -> None:
+    """The type id is the unsigned one."""
+    message["header"].update(proto=str(unsigned(int(message["header"]["proto"]))))
+
+
+def mission_type(message: JSON) -> None:
+    """The type id is that of a mission."""
+    message["header"].update(proto=str(signed(TYPE_IDS[MissionProto])))
 
 
 def line_bends(envelope: str, integers: str, channel: str) -> tuple[Bend, ...]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from toys import FLAKY_LAMP, LAMP, PLAIN_TICKETS, TICKETS, Event
+from toys import FLAKY_LAMP, LAMP, PLAIN_TICKETS, TICKETS, Event, spec
 
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Name, Received, Returned, Settled
 from missionfsm.kernel.history import Event as Observed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, UNAVAILABLE
-from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.spec import Drive, Emission, Opening, Spec, Step
 from missionfsm.oracle.belief import Automaton, Belief
 
 ONE, TWO = ("stream", 1), ("stream", 2)
@@ -220,3 +220,35 @@ def test_readings_follow_the_names() -> None:
         *(call(3, "watch"), answer(3, ONE), shows(("red", "red"), "y", "x")),
     ]
     assert (all(belief.observe(event) for event in taken), belief.readings) == (True, {"T-1": ("b",)})
+
+
+WORD = (Emission("t", "word"), Emission("t", "more", stays=True))
+TALKER = spec(
+    "talker",
+    lambda _: "",
+    lambda *_: (),
+    drives=(
+        Drive("speak", lambda here, *_: (Step(here, emits=WORD),) if here else ()),
+        Drive("hush", lambda here, *_: (Step(here, withdraws=("t",)),) if here else ()),
+        Drive("cut", lambda here, *_: (Step(here, clears=("t",)),) if here else ()),
+    ),
+    urgent=lambda here: () if here else (Step("open", opens=(Opening("t", 0),)),),
+)
+"""A channel that is there from the start: speaking owes a word and offers more, which is withdrawn, or all is lost."""
+
+
+@pytest.mark.parametrize(
+    ("events", "failed"),
+    [
+        ((shows("word"), shows("more"), SETTLED), None),
+        ((Driven(Event("hush")), shows("word"), SETTLED), None),
+        ((Driven(Event("hush")), shows("word"), shows("more")), 3),
+        ((Driven(Event("hush")), SETTLED), 2),
+        ((Driven(Event("cut")), SETTLED), None),
+        ((Driven(Event("cut")), shows("word")), 2),
+    ],
+    ids=["offered", "owed all the same", "withdrawn", "still owed", "lost", "void"],
+)
+def test_what_is_on_its_way_can_become_void(events: tuple[Observed, ...], failed: int | None) -> None:
+    """A step may withdraw what a channel offers, or clear what it owes as well."""
+    assert failing(TALKER, None, ("speak", "hush", "cut"), [Driven(Event("speak")), *events]) == failed

@@ -1,0 +1,107 @@
+"""The pages in ``docs/``: computed parts are as the program has them, code runs, links hold.
+
+Run as a program it writes the computed parts: ``python tests/test_docs.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from missionfsm.app.docpages import regenerate
+from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import check
+
+ROOT = Path(__file__).parent.parent
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+RUN_SHELL = re.compile(r"<!-- run: shell -->\n```bash\n(.*?)```", re.DOTALL)
+RUN_PYTHON = re.compile(r"<!-- run -->\n```python\n(.*?)```", re.DOTALL)
+LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)")
+
+
+def named(path: Path) -> str:
+    return path.name
+
+
+def blocks(kind: str) -> list[tuple[str, str]]:
+    return [(path.name, text) for path in PAGES for found, text in BLOCK.findall(path.read_text()) if found == kind]
+
+
+def anchors(path: Path) -> set[str]:
+    """The anchors of a page, as the usual hosts make them."""
+    headings = re.findall(r"^#+ (.*)$", path.read_text(), re.MULTILINE)
+    return {"#" + re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_there_are_pages() -> None:
+    """The pages that others point to are there, so that the tests below test something."""
+    assert {"adapter.md", "architecture.md", "history.md"} <= {path.name for path in PAGES}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_computed_parts_are_computed(page: Path) -> None:
+    """What is computed is as the program computes it."""
+    assert page.read_text() == regenerate(page.read_text()), "run python tests/test_docs.py"
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=named)
+def test_links_hold(page: Path) -> None:
+    """Every link to a file of the project, and to a heading of a page, leads somewhere."""
+    broken = []
+    for target, anchor in LINK.findall(page.read_text()):
+        found = (page.parent / target).resolve() if target else page
+        if not found.exists() or (anchor and found.suffix == ".md" and anchor not in anchors(found)):
+            broken.append(target + anchor)
+    assert broken == []
+
+
+@pytest.mark.parametrize("text", [text for _, text in (*blocks("json"), *blocks("jsonl"))])
+def test_json_that_is_shown_is_json(text: str) -> None:
+    """A block of JSON is one value, or one on each line."""
+    try:
+        json.loads(text)
+    except ValueError:
+        for line in text.splitlines():
+            json.loads(line)
+
+
+def test_the_history_that_is_shown_conforms() -> None:
+    """The example of the history format is a history, and it conforms."""
+    (text,) = [text for page, text in blocks("jsonl") if page == "history.md"]
+    first, *lines = map(json.loads, text.splitlines())
+    verdict = check(system("bear.mission"), head(first), lines)
+    assert verdict.conforms
+    assert verdict.events >= 10
+
+
+@pytest.mark.parametrize("script", [script for path in PAGES for script in RUN_SHELL.findall(path.read_text())])
+def test_shell_that_is_shown_runs(script: str, tmp_path: Path) -> None:
+    """What a reader copies into a shell works."""
+    tools = {**os.environ, "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))}
+    for name in ("examples", "tests"):
+        if (ROOT / name).exists():
+            (tmp_path / name).symlink_to(ROOT / name)
+    ran = subprocess.run(
+        ["sh", "-ec", script], cwd=tmp_path, env=tools, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert ran.returncode == 0, ran.stderr + ran.stdout
+    assert ran.stdout
+
+
+@pytest.mark.parametrize("script", [script for path in PAGES for script in RUN_PYTHON.findall(path.read_text())])
+def test_python_that_is_shown_runs(script: str) -> None:
+    """What a reader copies into Python works."""
+    exec(compile(script, "docs", "exec"), {})  # noqa: S102 - the page's own code
+
+
+if __name__ == "__main__":
+    for path in PAGES:
+        path.write_text(regenerate(path.read_text()))

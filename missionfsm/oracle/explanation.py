@@ -23,7 +23,7 @@ GONE = -1
 """The number of a name that was observed once and that nothing carries any more."""
 
 
-@value
+@value(cache_hash=True)
 class Ready:
     """An answer that a call in flight may come back with, and the readings that this assumes."""
 
@@ -33,7 +33,7 @@ class Ready:
     rules: tuple[str, ...]
 
 
-@value
+@value(cache_hash=True)
 class InFlight:
     """A call whose answer has not come.
 
@@ -48,7 +48,7 @@ class InFlight:
     done: Ready | None = None
 
 
-@value
+@value(cache_hash=True)
 class Owed:
     """A message that a channel has still to show.
 
@@ -64,7 +64,7 @@ class Owed:
     stays: bool = False
 
 
-@value
+@value(cache_hash=True)
 class Channel:
     """A stream or a connection: its name, its topic, what it showed last and what it owes."""
 

@@ -9,10 +9,12 @@ search that it leads finds an explanation exactly where there is one.
 from __future__ import annotations
 
 import bisect
+import operator
 from collections.abc import Hashable, Mapping, Sequence
 from typing import Any
 
 from missionfsm.kernel.history import Answer, Cancelled, Ended, Received, Returned, Settled
+from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Mismatch, Spec
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 
@@ -26,6 +28,9 @@ Symbol = tuple[Any, ...]
 Message = tuple[Hashable, Names]
 """What a message shows: its content, and the names in it."""
 
+Narrowed = tuple[Channel, Assumption | None]
+"""A channel without what is known never to be shown, and what that assumes."""
+
 
 class Lookahead:
     """What the events of a window say of those before them.
@@ -35,19 +40,29 @@ class Lookahead:
         symbols: the events.
         horizon: how many of them may be known beforehand.
         latest: what each channel showed last before the window.
+        last: whether nothing comes after the horizon.
 
     Attributes:
         at: how many of them have been observed.
     """
 
-    def __init__(self, spec: Spec, symbols: Sequence[Symbol], horizon: int, latest: Mapping[int, Message]) -> None:
+    def __init__(
+        self,
+        spec: Spec,
+        symbols: Sequence[Symbol],
+        horizon: int,
+        latest: Mapping[int, Message],
+        *,
+        last: bool = False,
+    ) -> None:
         self.spec = spec
+        self._last = last
         self.at = 0
         self.answers: dict[int, tuple[Answer, Names]] = {}
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
         self._settled: list[int] = []
         self._latest = latest
-        self._passed: dict[Any, bool] = {}
+        self._passed: dict[Any, Narrowed | None] = {}
         self._shows: dict[Any, bool] = {}
         ended: set[int] = set()
         for position, (kind, *what) in enumerate(symbols[:horizon]):
@@ -73,34 +88,53 @@ class Lookahead:
         """What a call in flight comes back with, and with which names; None where it is not known."""
         return self.answers.get(call)
 
-    def leads(self, explanation: Explanation) -> bool:
-        """Whether the explanation may still come to show what the streams show next."""
-        if not (self._messages or self._settled):
-            return True
-        channels = [one for one in explanation.channels if one.name > GONE and one.name not in self._ended]
-        if len(channels) > 1 and len({channel.name for channel in channels}) < len(channels):
-            return True  # which of the channels that share a name a message is about, nobody knows beforehand
-        return all(self._channel_leads(explanation, channel) for channel in channels)
+    def narrowed(self, explanation: Explanation) -> Explanation | None:
+        """The explanation without what is known never to be shown; None where it cannot lead to what is.
 
-    def _channel_leads(self, explanation: Explanation, channel: Channel) -> bool:
+        What a channel owes and cannot be what it shows next, is passed over then: those that differ in it are one.
+        """
+        if not (self._messages or self._settled or self._last):
+            return explanation
+        channels = explanation.channels
+        known = [one.name for one in channels if one.name > GONE]
+        if len(known) > 1 and len(set(known)) < len(known):
+            return explanation  # which of the channels that share a name a message is about, nobody knows beforehand
+        narrow: list[Channel] = []
+        assumed = explanation.assumed
+        for channel in channels:
+            found: Narrowed | None = (channel, None)
+            if channel.name > GONE and channel.name not in self._ended:
+                found = self._narrowed(explanation, channel)
+            if found is None:
+                return None
+            if found[1] is not None:
+                assumed = meet(assumed, (found[1],))
+                if not assumed:
+                    return None
+            narrow.append(found[0])
+        if all(map(operator.is_, narrow, channels)):
+            return explanation
+        return explanation.but(channels=tuple(narrow), assumed=assumed)
+
+    def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
         positions, messages = self._messages.get(channel.name, _NO_MESSAGES)
         first = bisect.bisect_left(positions, self.at)
         quiet = bisect.bisect_left(self._settled, self.at)
         if first == len(positions) and quiet == len(self._settled):
-            return True
+            silent = self._last and channel.owed
+            return (Channel(channel.name, channel.topic, channel.last), None) if silent else (channel, None)
         key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet)
-        found = self._passed.get(key)
-        if found is None:
+        if key not in self._passed:
             last = len(positions)
             if quiet < len(self._settled):
                 last = bisect.bisect_left(positions, self._settled[quiet], first)
             due = messages[first:last]
             rests = quiet < len(self._settled) and len(due) <= NEXT
             before = messages[first - 1] if first else self._latest.get(channel.name)
-            found = self._passed[key] = self._leads(explanation, channel, due[:NEXT], before, rests=rests)
-        return found
+            self._passed[key] = self._leading(explanation, channel, due[:NEXT], before, rests=rests)
+        return self._passed[key]
 
-    def _leads(
+    def _leading(
         self,
         explanation: Explanation,
         channel: Channel,
@@ -108,8 +142,8 @@ class Lookahead:
         before: Message | None,
         *,
         rests: bool,
-    ) -> bool:
-        """Whether the messages can be what is owed, in order, and after that what the state comes to show.
+    ) -> Narrowed | None:
+        """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
 
         Args:
             before: what the channel has shown last, if it is known.
@@ -119,7 +153,7 @@ class Lookahead:
         owed, last = channel.owed, channel.last
         again = delivery.repeats is not None or delivery.echoes is not None
         places = {0}
-        for message in messages:
+        for position, message in enumerate(messages):
             shown = [self._may_show(one, message) for one in owed]
             following = {
                 index if owed[index].stays else index + 1 for index in range(min(places), len(owed)) if shown[index]
@@ -127,12 +161,22 @@ class Lookahead:
             if again and (any(shown) or (last is not None and self._may_show(last, message))):
                 following |= places
             if not following:
-                return self._foresees(explanation, message)
+                if not self._foresees(explanation, message):
+                    return None
+                return (channel, None) if position or not owed else self._passed_over(channel)
             places, before = following, message
-        if not rests or before is None:
-            return True
         left = [one for one in owed[max(places) :] if not one.passing]
-        return not left or self._may_show(left[-1], before) or self._foresees(explanation, before)
+        if not rests or before is None or not left or self._may_show(left[-1], before):
+            return channel, None
+        return (channel, None) if self._foresees(explanation, before) else None
+
+    def _passed_over(self, channel: Channel) -> Narrowed | None:
+        """The channel once everything that it owes is passed over."""
+        passed = Channel(channel.name, channel.topic, channel.last)
+        if all(one.passing for one in channel.owed):
+            return passed, None
+        skips = self.spec.delivery(channel.topic).skips
+        return (passed, skips) if skips else None
 
     def _foresees(self, explanation: Explanation, message: Message) -> bool:
         """Whether the state may come to be shown so."""

@@ -8,7 +8,8 @@ effect, the state is the same, and no more is assumed. A `Lookahead` leaves out 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from attrs import define, field
 
@@ -18,6 +19,7 @@ from missionfsm.oracle.subsumption import sift
 from missionfsm.oracle.successors import Moves, Seen, Sighting
 from missionfsm.oracle.transition import Oracle
 
+T = TypeVar("T")
 WIDTH = 16
 """How many explanations are followed at once."""
 
@@ -48,6 +50,7 @@ class Search:
         budget: how many explanations may be looked at.
 
     Attributes:
+        whole: whether no events come after those of the window.
         width: how many explanations are followed at once.
         layers: the explanations that were found: at position n of the first n events.
         reached: how many events were explained that have some more behind them in mind.
@@ -67,6 +70,7 @@ class Search:
         self._symbols = symbols
         self._latest = latest
         self._budget = budget
+        self.whole = False
         self.width = WIDTH
         self.layers: list[Layer] = []
         self.reached = 0
@@ -77,36 +81,73 @@ class Search:
         Raises:
             ExhaustedError: it costs more than the budget.
         """
-        ahead = Lookahead(self.oracle.spec, self._symbols, horizon, self._latest)
-        budget, self.moves.budget = self.moves.budget, self._budget
-        self.moves.ahead = ahead
+        last = self.whole and horizon == len(self._symbols)
+        self._ahead = Lookahead(self.oracle.spec, self._symbols, horizon, self._latest, last=last)
+        self._horizon = horizon
+        start = (self._ahead.narrowed(one) for one in self._start)
+        self.layers = [Layer(tuple(one for one in start if one))]
+        self._tried: list[Seen] = [{} for _ in range(horizon + 1)]
         self.moves.reset()
-        try:
-            return self._explain(ahead, horizon)
-        finally:
-            self.moves.ahead, self.moves.budget = None, budget
-            self.moves.reset()
+        return self._spending(self._explain)
 
-    def _explain(self, ahead: Lookahead, horizon: int) -> bool:
-        layers = self.layers = [Layer(tuple(one for one in self._start if ahead.leads(one)))]
-        tried: list[Seen] = [{} for _ in range(horizon + 1)]
-        while len(layers) <= horizon:
+    def differently(self) -> bool:
+        """Whether the same events are explained otherwise as well, in a way that was not found yet.
+
+        Raises:
+            ExhaustedError: it costs more than the budget.
+        """
+        self.layers.pop()
+        return self._spending(self._explain)
+
+    def step_over(self) -> bool:
+        """Whether the event after those that were explained last is explained by what lies between robot and recording.
+
+        Raises:
+            ExhaustedError: it costs more than the budget.
+        """
+        if not self.oracle.spec.transport:
+            return False
+        symbol = self._symbols[len(self.layers) - 1]
+        while self.layers:
+            found = self._spending(lambda: self.oracle.step(self.layers[-1].explanations, *symbol))
+            if found:
+                self._enter(found)
+                return True
+            if not self.differently():
+                break
+        return False
+
+    def _spending(self, work: Callable[[], T]) -> T:
+        """Do some work on the budget of the search."""
+        moves = self.moves
+        budget, moves.budget, moves.ahead = moves.budget, self._budget, self._ahead
+        try:
+            return work()
+        finally:
+            moves.ahead, moves.budget = None, budget
+
+    def _enter(self, found: tuple[Sighting, ...]) -> None:
+        rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
+        self.layers.append(Layer(tuple(one.explanation for one in found), rules))
+
+    def _explain(self) -> bool:
+        layers = self.layers
+        while len(layers) <= self._horizon:
             if not layers:
                 return False
-            here = layers[-1]
             position = len(layers) - 1
-            ahead.at = position
-            found = self._next(here, position, ahead, tried[position + 1])
+            self._ahead.at = position
+            found = self._next(layers[-1], position)
             if found:
-                rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
-                layers.append(Layer(tuple(one.explanation for one in found), rules))
+                self._enter(found)
             else:
                 self.reached = max(self.reached, position)
                 layers.pop()
         return True
 
-    def _next(self, here: Layer, position: int, ahead: Lookahead, tried: Seen) -> tuple[Sighting, ...]:
+    def _next(self, here: Layer, position: int) -> tuple[Sighting, ...]:
         """Some more explanations of the next event; none where there are no others."""
+        ahead, tried = self._ahead, self._tried[position + 1]
         if not here.begun:
             here.begun = True
             kind, *what = self._symbols[position]
@@ -115,9 +156,10 @@ class Search:
         while here.more is not None and not found:
             for one in here.more:
                 ahead.at = position + 1
-                if ahead.leads(one.explanation) and not self.moves.outdone(tried, one.explanation):
-                    found.append(one)
+                narrow = ahead.narrowed(one.explanation)
                 ahead.at = position
+                if narrow and not self.moves.outdone(tried, narrow):
+                    found.append(one if narrow is one.explanation else Sighting(narrow, one.rules))
                 if len(found) >= self.width:
                     break
             else:

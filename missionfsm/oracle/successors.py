@@ -76,6 +76,7 @@ class Moves:
         self.groups = tuple(ambiguity.group for ambiguity in spec.ambiguities)
         self._outcomes: dict[Any, tuple[Step, ...]] = {}
         self._effects: dict[Any, tuple[Step, ...]] = {}
+        self._idle: dict[Any, tuple[Step, ...]] = {}
         self._urgent: dict[Any, tuple[Step, ...]] = {}
         self._unseen: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
@@ -90,7 +91,7 @@ class Moves:
 
     def forget(self) -> None:
         """Drop what the spec said; it will say the same again."""
-        for memory in (self._outcomes, self._effects, self._urgent, self._unseen, self._matches):
+        for memory in (self._outcomes, self._effects, self._idle, self._urgent, self._unseen, self._matches):
             memory.clear()
 
     def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
@@ -112,6 +113,18 @@ class Moves:
         if found is None:
             steps = self.outcomes(state, request, refs)
             found = self._effects[key] = tuple(step for step in steps if changes(state, step))
+        return found
+
+    def idle(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+        """The outcomes of a request in a state that have an answer and change nothing."""
+        key = (state, request, refs)
+        found = self._idle.get(key)
+        if found is None:
+            found = self._idle[key] = tuple(
+                step
+                for step in self.outcomes(state, request, refs)
+                if step.answer is not None and step.applied and not changes(state, step)
+            )
         return found
 
     def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
@@ -162,6 +175,7 @@ class Moves:
 
         The call `besides` does not need to: whoever looks for its answer looks at every explanation on the way.
         """
+        self.spend(weight(explanation) - 1)
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
         passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
@@ -181,11 +195,10 @@ class Moves:
 
     def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
         refs = tuple(explanation.ref(arg) for arg in call.args)
-        for step in self.outcomes(explanation.state, call.request, refs):
-            if step.answer is not None and step.applied and not changes(explanation.state, step):
-                names = tuple(explanation.names[ref] for ref in step.refs)
-                if self.may_answer(call, step.answer, names):
-                    yield Ready(step.answer, names, step.assumes, step.rules)
+        for step in self.idle(explanation.state, call.request, refs):
+            names = tuple(explanation.names[ref] for ref in step.refs)
+            if self.may_answer(call, step.answer, names):  # type: ignore[arg-type]  # an idle step has an answer
+                yield Ready(step.answer, names, step.assumes, step.rules)  # type: ignore[arg-type]
 
     def may_answer(self, call: InFlight, answer: Answer, names: Names) -> bool:
         """Whether a call may come back with this answer, as far as it is known with which it does."""
@@ -249,9 +262,13 @@ class Moves:
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
         taken = self.advance(explanation, step, besides=besides)
         if taken:
-            after = tidy(taken[0])
-            if self.ahead is None or self.ahead.leads(after):
-                yield Sighting(after, step.rules)
+            after = self.narrowed(taken[0])
+            if after:
+                yield Sighting(tidy(after), step.rules)
+
+    def narrowed(self, explanation: Explanation) -> Explanation | None:
+        """The explanation, as far as it can lead to what is known of later; None where it cannot."""
+        return self.ahead.narrowed(explanation) if self.ahead else explanation
 
     def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
         for where, refs in self.addressed(explanation, explanation.calls[position].args):
@@ -291,7 +308,7 @@ class Moves:
                 failure = self.may_fail(call, answer.code)
                 if failure is None or not failure.open_ended:
                     return None
-        return explanation if ahead.leads(explanation) else None
+        return ahead.narrowed(explanation)
 
     def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:
         """Explanations and everything that they can silently become, nearest first.
@@ -314,7 +331,7 @@ class Moves:
 
     def outdone(self, seen: Seen, explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
-        self.spend()
+        self.spend(weight(explanation))
         key = point(explanation)
         others = seen.setdefault(key, [])
         for assumed, left in others:
@@ -323,11 +340,17 @@ class Moves:
         others.append((explanation.assumed, explanation.lost))
         return False
 
-    def spend(self) -> None:
-        """Count one thing more that was looked at. Raises ExhaustedError when it is too many for one event."""
-        self._spent += 1
+    def spend(self, cost: int = 1) -> None:
+        """Count something more that was looked at. Raises ExhaustedError when it is too much for one event."""
+        self._spent += cost
         if self._spent > self.budget:
             raise ExhaustedError
+
+
+def weight(explanation: Explanation) -> int:
+    """What an explanation costs: one, and more where it owes many messages with many names."""
+    owed = sum([len(channel.owed) for channel in explanation.channels])
+    return 1 + (len(explanation.names) * owed + 4 * len(explanation.calls) >> 6)
 
 
 def place(explanation: Explanation) -> Place:

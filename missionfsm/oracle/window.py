@@ -46,39 +46,47 @@ class Window:
             self.positions.append(len(self.events))
         self.events.append(event)
 
-    def search(self, *, whole: bool) -> Search:
+    @property
+    def unanswered(self) -> frozenset[int]:
+        """The numbers of the calls that the events do not answer, but for those that subscribe.
+
+        What a stream shows tells that it was opened.
+        """
+        waiting = {call.name: call.request for one in self._belief.node.explanations for call in one.calls}
+        for kind, *what in self._symbols:
+            if kind is Called:
+                waiting[what[3]] = what[0]
+            elif kind is Returned:
+                waiting.pop(what[2], None)
+        return frozenset(call for call, request in waiting.items() if not self._streams(request))
+
+    def search(self, lost: frozenset[int] | None = None) -> Search:
         """A search through the window; it has not begun yet.
 
         Args:
-            whole: no further events come, so that a call without an answer never gets one.
+            lost: where no further events come, the numbers of the calls that are never answered.
         """
         start, symbols = self._belief.node.explanations, self._symbols
-        if whole:
-            answered = {what[2] for kind, *what in symbols if kind is Returned}
-            start = tuple(self._given_up(one, answered) for one in start)
-            symbols = [self._lost(symbol, answered) for symbol in symbols]
-        return Search(self._belief.automaton.oracle, start, symbols, self._latest, BUDGET)
+        if lost:
+            start = tuple(self._given_up(one, lost) for one in start)
+            symbols = [(*one[:3], True, one[4]) if one[0] is Called and one[4] in lost else one for one in symbols]
+        search = Search(self._belief.automaton.oracle, start, symbols, self._latest, BUDGET)
+        search.whole = lost is not None
+        return search
 
     def _streams(self, request: object) -> bool:
-        """Whether a request subscribes: what the stream shows tells that it was opened."""
         spec = self._belief.automaton.spec
         operation = spec.operations.get(spec.request_operation(request))
         return operation is None or operation.streaming
 
-    def _lost(self, symbol: Symbol, answered: set[int]) -> Symbol:
-        if symbol[0] is not Called or symbol[4] in answered or self._streams(symbol[1]):
-            return symbol
-        return (*symbol[:3], True, symbol[4])
-
-    def _given_up(self, explanation: Explanation, answered: set[int]) -> Explanation:
+    def _given_up(self, explanation: Explanation, given_up: frozenset[int]) -> Explanation:
         """The explanation without the calls in flight that never come back; those that wait may still take effect."""
-        lost, calls = explanation.lost, []
+        lost = explanation.lost
         for call in explanation.calls:
-            if call.name in answered or self._streams(call.request):
-                calls.append(call)
-            elif call.done is None:
+            if call.name in given_up and call.done is None:
                 lost = with_lost(lost, call.request, call.args)
-        return explanation.but(calls=tuple(calls), lost=lost)
+        calls = tuple(call for call in explanation.calls if call.name not in given_up)
+        return explanation.but(calls=calls, lost=lost)
 
     def close(self, search: Search) -> None:
         """Let the belief go on behind the events, all of which the search has explained."""

@@ -42,7 +42,7 @@ def searched(belief: Belief, events: list[history.Event], width: int, *, whole: 
     window = Window(belief)
     for event in events:
         window.add(event)
-    search = window.search(whole=whole)
+    search = window.search(window.unanswered if whole else None)
     search.width = width
     return window, search
 

@@ -46,10 +46,11 @@ def alternatives(system: System) -> Iterator[tuple[Ambiguity, str]]:
 
 
 def choices(system: System) -> dict[str, int]:
-    """The default choice, and one for every single alternative reading."""
+    """The default choice, and one for every single alternative reading; parts that are alike are read alike."""
     ambiguities = system.spec.ambiguities
-    single = {f"{one.id}={letter}": choose(ambiguities, {one.id: letter}) for one, letter in alternatives(system)}
-    return {"default": choose(ambiguities), **single}
+    single = dict.fromkeys((one.alike or one.id, letter) for one, letter in alternatives(system))
+    others = {f"{name}={letter}": choose(ambiguities, {name: letter}) for name, letter in single}
+    return {"default": choose(ambiguities), **others}
 
 
 @frozen

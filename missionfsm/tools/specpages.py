@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import fnmatch
 import re
+import textwrap
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
@@ -191,15 +192,25 @@ def _readings(ambiguities: Iterable[Ambiguity]) -> Iterator[str]:
         head,
         (
             (
-                f"[{one.id}](#{_anchor(one.id)})",
+                f"[{one.id}](#{_anchor(one.id)})" + (f" and {len(others)} alike" if others else ""),
                 one.question,
                 one.default,
                 ", ".join(letter for letter in one.readings if letter != one.default and letter not in one.flagged),
                 ", ".join(letter for letter in one.readings if letter in one.flagged),
             )
-            for one in ambiguities
+            for one, *others in _folded(ambiguities)
         ),
     )
+
+
+def _folded(ambiguities: Iterable[Ambiguity]) -> Iterator[tuple[Ambiguity, ...]]:
+    """The ambiguities; those that are alike, and whose words differ by the name of the part alone, together."""
+    found: dict[object, list[Ambiguity]] = {}
+    for one in ambiguities:
+        words = one.question.replace(one.id.rpartition(".")[2], "")
+        answers = (tuple(one.readings.items()), one.default, one.flagged)
+        found.setdefault((one.alike, words, answers) if one.alike else one, []).append(one)
+    return map(tuple, found.values())
 
 
 def _anchor(entry: str) -> str:
@@ -214,15 +225,22 @@ def base(entry: str) -> str:
 
 def _entry(ambiguities: Iterable[Ambiguity], waived: Mapping[str, str], entry: str) -> Iterator[str]:
     blocks: list[list[str]] = []
-    for ambiguity in ambiguities:
-        if base(ambiguity.id) == entry:
-            letters = (f"- {_letter(ambiguity, letter)}: {says}" for letter, says in ambiguity.readings.items())
-            blocks.append([f"**{ambiguity.id}** {ambiguity.question}", "", *letters])
+    for ambiguity, *others in _folded(one for one in ambiguities if base(one.id) == entry):
+        letters = (f"- {_letter(ambiguity, letter)}: {says}" for letter, says in ambiguity.readings.items())
+        blocks.append([*_wrapped(f"**{ambiguity.id}** {ambiguity.question}"), "", *letters])
+        if others:
+            ids = ", ".join(one.id for one in others)
+            blocks[-1] += ["", *_wrapped(f"Asked as well, each by itself: {ids}.")]
     for part, reason in waived.items():
         if base(part) == entry:
             blocks.append([f"{'Waived' if part == entry else f'Not offered, {part}'}: {reason}."])
     for number, block in enumerate(blocks):
         yield from ("", *block) if number else block
+
+
+def _wrapped(text: str) -> list[str]:
+    """The lines of a paragraph."""
+    return textwrap.wrap(text, 120, break_long_words=False, break_on_hyphens=False)
 
 
 def _letter(ambiguity: Ambiguity, letter: str) -> str:

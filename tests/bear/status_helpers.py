@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import random
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -53,7 +54,9 @@ class Walk:
         self.subject = subject
         self.random = random.Random(seed)
         self.judge = Judge(SYSTEM, Head(SYSTEM.name, world, drives), automaton, keep=100_000)
-        self.drives = [one for one in ALPHABET.drives if one["event"] in drives]
+        alphabet = SYSTEM.alphabet(world, Bounds())
+        self.prompts = alphabet.prompts
+        self.drives = [one for one in alphabet.drives if one["event"] in drives]
         self.serial = 0
         self.streams: list[int] = []
         subject.exchange("reset", {"world": world})
@@ -95,7 +98,7 @@ class Walk:
     def turn(self) -> None:
         dice = self.random.random()
         if dice < 0.35 and len(self.streams) < 4:
-            prompt = self.random.choice(ALPHABET.prompts)
+            prompt = self.random.choice(self.prompts)
             self.call(prompt.method, prompt.params)
         elif dice < 0.8 and self.drives:
             self.drive(self.random.choice(self.drives))
@@ -105,6 +108,12 @@ class Walk:
             self.call("GetRobotStatus", {"robotId": self.random.choice(("r1", "r2", "r3"))})
         else:
             self.settle()
+
+
+@functools.lru_cache(maxsize=4)
+def _automaton(drives: tuple[str, ...], readings: tuple[tuple[str, str], ...]) -> Automaton:
+    """One automaton for all who may walk it: what one of them finds out, the others know."""
+    return Automaton(SYSTEM.spec, drives, constrain(SYSTEM.spec.ambiguities, dict(readings)))
 
 
 def walk(
@@ -117,7 +126,7 @@ def walk(
     seed: int = 0,
 ) -> Judge:
     """The judge of the first of so many random conversations that goes wrong, or of the last."""
-    automaton = Automaton(SYSTEM.spec, drives, constrain(SYSTEM.spec.ambiguities, readings or {}))
+    automaton = _automaton(drives, tuple((readings or {}).items()))
     for number in range(walks):
         one = Walk(subject, automaton, WORLDS[number % len(WORLDS)], drives, seed * 1000 + number)
         for _ in range(steps):

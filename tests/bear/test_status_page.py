@@ -190,7 +190,7 @@ def test_the_example_of_subscribe_robot_status_has_wrapped_goals() -> None:
         SETTLED,
     ]
     found = judge(lines, world).verdict()
-    assert (found.outcome, found.readings["AS-22"]) == (Outcome.CONFORMS, ("b",))
+    assert (found.outcome, found.readings["AS-22.SubscribeRobotStatus"]) == (Outcome.CONFORMS, ("b",))
 
 
 @pytest.mark.parametrize("method", list(EXAMPLES))

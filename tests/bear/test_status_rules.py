@@ -158,7 +158,7 @@ def test_a_robot_that_is_offline_may_be_answered_for_in_three_ways(letter: str, 
     """AS-07: its last values, INTERNAL, or its connection alone; never CONNECTED."""
     call = {"call": 1, "method": GET, "params": {"robotId": "r2"}}
     found = judge([call, {"return": 1, **answer}], WORLDS[1])
-    assert found.verdict().readings["AS-07"] == (letter,)
+    assert found.verdict().readings["AS-07.offline"] == (letter,)
     state = {**WORLDS[1]["robots"][1]["state"], "connection": {"state": "STATE_CONNECTED"}}
     lie = {"return": 1, "result": {"robotState": state}}
     assert judge([call, lie], WORLDS[1]).verdict().outcome is Outcome.VIOLATES

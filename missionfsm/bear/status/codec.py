@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+import attrs
 from attrs import evolve
 
 from missionfsm.bear.status import messages as wire
@@ -54,12 +55,11 @@ def request(method: str, params: JSON) -> Request:
     params = {} if params is None else params
     try:
         if method == GET:
-            unknown = bool(unknown_fields(wire.StatusRequest, params))
-            return Request(method, (read(wire.StatusRequest, params).robot_id,), unknown_field=unknown)
+            unknown = ("request",) if unknown_fields(wire.StatusRequest, params) else ()
+            return Request(method, (read(wire.StatusRequest, params).robot_id,), unknown_fields=unknown)
         selector = read(wire.SubscribeRequest, params).selector or wire.RobotSelector()
     except MalformedError as error:
         return Request(method, malformed=str(error))
-    unknown = bool(unknown_fields(wire.SubscribeRequest, params))
     given = selector.robot_ids.ids if selector.robot_ids else ()
     ids = tuple(dict.fromkeys(given))
     return Request(
@@ -68,7 +68,20 @@ def request(method: str, params: JSON) -> Request:
         by_ids=selector.robot_ids is not None,
         location=selector.location_id,
         repeated=len(ids) < len(given),
-        unknown_field=unknown,
+        unknown_fields=_levels(params),
+    )
+
+
+def _levels(params: JSON) -> tuple[str, ...]:
+    """Where a well-formed subscription has fields that are not documented."""
+    selector = _field(params, "selector") or {}
+    ids = _field(selector, "robotIds") or {}
+    levels = ((wire.SubscribeRequest, params), (wire.RobotSelector, selector), (wire.RobotIDs, ids))
+    names = ("request", "selector", "ids")
+    return tuple(
+        name
+        for name, (kind, message) in zip(names, levels, strict=True)
+        if not message.keys() <= {one for field in attrs.fields(kind) for one in (field.name, camel(field.name))}
     )
 
 
@@ -125,6 +138,7 @@ _SNAKE = {
     camel(name): name
     for name in (
         "robot_id",
+        "robot_ids",
         "robot_state",
         "battery_state",
         "navigation_state",
@@ -174,10 +188,13 @@ def write_state(shown: Seen) -> JSON:
 def strip(message: JSON) -> tuple[Part, ...]:
     """A message as parts, one for each robot: its number on the track of the robot, and the message without metadata.
 
-    What is not of the documented form is left in, for `content` to find. A map without entries is no part at all.
+    What is not of the documented form is left in, for `content` to find. A map without entries is no part at all, and
+    null is the same as absent.
     """
     if not isinstance(message, dict):
         return (((), (), message),)
+    if None in message.values():
+        message = {name: value for name, value in message.items() if value is not None}
     for name in MAPS.values():
         entries = _field(message, name)
         if isinstance(entries, dict):
@@ -232,7 +249,10 @@ def _content(rest: JSON) -> Seen:
         raise MalformedError(f"{brief(rest)} is not an object")
     for endpoint, name in MAPS.items():
         if name in rest:
-            [(robot, entry)] = rest[name].items()
+            entries = rest[name]
+            if not isinstance(entries, dict):
+                raise MalformedError(f"{brief(entries)} is not an object", name)
+            [(robot, entry)] = entries.items()
             try:
                 if not isinstance(entry, dict):
                     raise MalformedError(f"{brief(entry)} is not an object")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.bear.status.state import GET, Fleet, Happening, Request
-from missionfsm.bear.status.stream import Promised, Seen, View, brief_value
+from missionfsm.bear.status.stream import BLANK, Promised, Seen, View, brief_value
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.text import brief
 
@@ -29,7 +29,7 @@ def describe(value: object) -> str:
 def _shown(value: View) -> str:
     if value.unheard:
         return "any state"
-    return "UNKNOWN values" if value.blank else brief_value(value.value)
+    return "UNKNOWN values" if value.value == BLANK.get(value.endpoint) else brief_value(value.value)
 
 
 def _request(request: Request) -> str:
@@ -43,7 +43,7 @@ def _request(request: Request) -> str:
         parts.append(f"robots {ids or 'none'}{', one of them twice' if request.repeated else ''}")
     if request.location is not None:
         parts.append(f"location {brief(request.location)}")
-    if request.unknown_field:
+    if request.unknown_fields:
         parts.append("an unknown field")
     return f"{request.operation}({'; '.join(parts)})"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -10,29 +11,27 @@ from attrs import evolve
 from missionfsm.bear.status.messages import (
     BatteryState,
     ConnectionState,
-    ErrorCodes,
     NavigationState,
+    RobotConnection,
     RobotState,
     Stuck,
-    Twist,
     Wifi,
 )
 from missionfsm.bear.status.readings import (
+    AS_04,
+    AS_04_BLANK,
     AS_07,
+    AS_07_UNKNOWN,
     AS_09_OFFLINE,
-    AS_09_STATE,
     AS_09_UNKNOWN,
     AS_09_UNSET,
     AS_13_FIELDS,
+    AS_13_SIGNAL,
     AS_13_THROTTLE,
-    AS_17_OFFLINE,
-    AS_17_ZERO,
     AS_18,
     AS_25,
-    AS_27,
+    AS_27_OFFLINE,
     AS_28,
-    AS_29_EMPTY,
-    AS_32,
     AS_34,
 )
 from missionfsm.bear.status.rules import OPERATIONS, foreign, own, ranking
@@ -41,17 +40,15 @@ from missionfsm.bear.status.state import (
     LOCALIZATION,
     STATE_PARTS,
     TOPICAL,
-    WIFI,
     Endpoint,
     Fleet,
     Happening,
-    Moves,
     Request,
     Robot,
     Value,
     reporting,
 )
-from missionfsm.bear.status.stream import UPDATES, Promised, Seen, Topic, View, each, shows, told, view
+from missionfsm.bear.status.stream import UPDATES, Promised, Seen, Told, Topic, View, blank, each, shows, view
 from missionfsm.bear.status.values import clamped
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, Assumption
@@ -84,25 +81,47 @@ def outcomes(
     """Every answer that the page allows to a call, success first."""
     operation = operations[request.operation]
     found: list[Step] = []
-    for decision in decide(operation.blocking(fleet, request), ranking):
-        if decision.code is None:
-            rules = tuple(rule.id for rule in operation.promises)
-            ways = _latest(fleet, request) if request.operation == GET else _opened(fleet, request)
-            found += (evolve(one, assumes=(*decision.assumes, *one.assumes), rules=rules) for one in ways)
-        else:
-            rules = tuple(rule.id for rule in decision.rules)
-            found.append(Step(fleet, answer=Answer(decision.code), assumes=decision.assumes, rules=rules))
+    for asked, assumed in _arms(request):
+        for decision in decide(operation.blocking(fleet, asked), functools.partial(ranking, asked, fleet)):
+            assumes = (*assumed, *decision.assumes)
+            if decision.code is None:
+                rules = tuple(rule.id for rule in operation.promises)
+                ways = _latest(fleet, asked) if asked.operation == GET else _opened(fleet, asked)
+                found += (evolve(one, assumes=(*assumes, *one.assumes), rules=rules) for one in ways)
+            else:
+                rules = tuple(rule.id for rule in decision.rules)
+                found.append(Step(fleet, answer=Answer(decision.code), assumes=assumes, rules=rules))
     if request.operation == GET and fleet.fault:
         found = [_failed(fleet, one) for one in found]
     found.sort(key=lambda one: one.answer != Answer(OK))
     return tuple(found)
 
 
-def failing(_: Request, code: str) -> Failure | None:
-    """Codes that may come at any time: INTERNAL, and (AS-34) those of the transport and of authentication."""
+def _arms(request: Request) -> Iterator[tuple[Request, Assumed]]:
+    """AS-04: what a request asks for that has robot ids and a location: both, or one of them alone."""
+    if not request.both or not (request.ids or request.location):
+        yield request, ()
+        return
+    by_ids, by_location = evolve(request, location=None), evolve(request, ids=(), by_ids=False, repeated=False)
+    if request.ids and request.location:
+        question = AS_04[request.operation]
+        yield request, (question["a"],)
+        yield by_location, (question["b"],)
+        yield by_ids, (question["e"],)
+    else:
+        question = AS_04_BLANK[request.operation]
+        yield request, (question["a"],)
+        yield by_ids if request.ids else by_location, (question["z"],)
+
+
+def failing(request: Request, code: str) -> Failure | None:
+    """Codes that may come at any time: INTERNAL, and (AS-34) those of the transport and of authentication.
+
+    Faults are driven for GetRobotStatus alone: to a subscription INTERNAL may come whoever drives what.
+    """
     if code == INTERNAL:
-        return Failure()
-    return Failure((AS_34["b"],), driven=False) if code in TRANSPORT else None
+        return Failure(driven=request.operation == GET)
+    return Failure((AS_34[request.operation]["b"],), driven=False) if code in TRANSPORT else None
 
 
 def _failed(fleet: Fleet, step: Step) -> Step:
@@ -117,18 +136,19 @@ def _latest(fleet: Fleet, request: Request) -> Iterator[Step]:
     robot = fleet.robot(request.ids[0])
     assert robot is not None, "a robot that does not exist is refused"  # noqa: S101 - said by the rules
     if fleet.unheard:
-        anything = View(robot.id, Endpoint.ROBOT, unheard=True)
+        anything = View(robot.id, Endpoint.ROBOT, unheard=True, got=True)
         yield _got(fleet, anything, Seen("", Endpoint.ROBOT, RobotState()), ())
-        yield Step(fleet, answer=Answer(INTERNAL), assumes=(AS_07["b"],))
         return
-    full = View(robot.id, Endpoint.ROBOT, robot.state, offline=robot.offline)
-    bare = evolve(full, value=RobotState(connection=robot.state.connection))
+    full = View(robot.id, Endpoint.ROBOT, robot.state, got=True)
+    question = AS_07 if robot.offline else None if robot.seen else AS_07_UNKNOWN
     for seen, assumes in shows(full):
-        yield _got(fleet, full, evolve(seen, robot=""), (*assumes, *((AS_07["a"],) if robot.offline else ())))
-    if robot.offline:
+        yield _got(fleet, full, evolve(seen, robot=""), (*assumes, *((question["a"],) if question else ())))
+    if question is AS_07:
+        bare = evolve(full, value=RobotState(connection=robot.state.connection))
         for seen, assumes in shows(bare):
             yield _got(fleet, bare, evolve(seen, robot=""), (*assumes, AS_07["c"]))
-        yield Step(fleet, answer=Answer(INTERNAL), assumes=(AS_07["b"],))
+    if question:
+        yield Step(fleet, answer=Answer(INTERNAL), assumes=(question["b"],))
 
 
 def _got(fleet: Fleet, shown: View, seen: Seen, assumes: Assumed) -> Step:
@@ -148,63 +168,55 @@ def _opened(fleet: Fleet, request: Request) -> Iterator[Step]:
     for owed, assumes in _firsts(fleet, endpoint, selected):
         opens = tuple(Opening(topic, 0, owed.get(topic.robot, ())) for topic in topics)
         yield Step(fleet, opens=opens, answer=Answer(OK), refs=(0,), assumes=assumes)
-    for ambiguity in (AS_09_UNKNOWN, AS_09_STATE, AS_09_OFFLINE):
-        if any(ambiguity in _open_questions(fleet, endpoint, robot) for robot in selected):
-            yield Step(fleet, answer=Answer(INTERNAL), assumes=(ambiguity["d"],))
 
 
-def _open_questions(fleet: Fleet, endpoint: Endpoint, robot: Robot) -> tuple[Ambiguity, ...]:
-    """On which entries it depends what a new stream shows first of a robot."""
+def _question(fleet: Fleet, endpoint: Endpoint, robot: Robot) -> Ambiguity | None:
+    """On which ambiguity it depends what a new stream shows first of a robot."""
     shown = view(robot, endpoint)
     if endpoint is Endpoint.NETWORK:
-        return (AS_27,) if fleet.unheard or (shown and not shown.linked) else ()
+        return AS_27_OFFLINE if fleet.unheard else shown.unlinked if shown else None
     if shown is None:
-        return (AS_09_STATE,) if endpoint is Endpoint.ROBOT else (AS_09_UNKNOWN,)
-    return (AS_09_OFFLINE,) if (robot.offline or fleet.unheard) and endpoint is not Endpoint.ONLINE else ()
-
-
-_LETTERS = {AS_09_UNKNOWN: "bc", AS_09_STATE: "bc", AS_09_OFFLINE: "abc", AS_27: "abc"}
+        return AS_09_UNKNOWN[endpoint.value]
+    offline = (robot.offline or fleet.unheard) and endpoint is not Endpoint.ONLINE
+    return AS_09_OFFLINE[endpoint.value] if offline else None
 
 
 def _firsts(
     fleet: Fleet, endpoint: Endpoint, selected: tuple[Robot, ...]
 ) -> Iterator[tuple[dict[str, tuple[Emission, ...]], Assumed]]:
     """The first messages of a stream by robot, for every combination of the readings that matter."""
-    questions = dict.fromkeys(one for robot in selected for one in _open_questions(fleet, endpoint, robot))
-    for letters in itertools.product(*(_LETTERS[one] for one in questions)):
-        choice = dict(zip(questions, letters, strict=True))
-        owed = {
-            robot.id: tuple(
-                _first(fleet, robot, endpoint, [choice[one] for one in _open_questions(fleet, endpoint, robot)])
-            )
-            for robot in selected
-        }
-        yield owed, tuple(one[letter] for one, letter in choice.items())
+    questions = {robot.id: _question(fleet, endpoint, robot) for robot in selected}
+    asked = [one for one in dict.fromkeys(questions.values()) if one]
+    for letters in itertools.product(*(one.readings for one in asked)):
+        choice: dict[Ambiguity | None, str] = {None: "a", **dict(zip(asked, letters, strict=True))}
+        owed = {robot.id: tuple(_first(fleet, robot, endpoint, choice[questions[robot.id]])) for robot in selected}
+        yield owed, tuple(one[letter] for one, letter in zip(asked, letters, strict=True))
 
 
-def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letters: list[str]) -> Iterator[Emission]:
-    topic = told(fleet, robot, endpoint)
-    letter = letters[0] if letters else "a"
+def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Iterator[Emission]:
+    """What a new stream shows first of a robot, as its question is read: a, without one."""
+    topic = Told(endpoint, robot.id, robot.location)
     shown = view(robot, endpoint)
     if fleet.unheard:
         anything = View(robot.id, endpoint, unheard=True)
-        if letter == "a":
+        if letter == "a" and shown:
             yield Emission(topic, anything, ())
         yield Emission(topic, anything, (), stays=True)
-    elif shown is None and letter == "c":
+    elif letter == "e":
+        yield Emission(topic, View(robot.id, endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED)), ())
+    elif endpoint is Endpoint.NETWORK:
+        if shown and letter != "c":
+            yield Emission(topic, shown, ())
+    elif letter == "c":
         yield _blank(topic, robot, endpoint)
-    elif shown is None or (endpoint is Endpoint.NETWORK and letter == "c"):
-        return
-    elif letter == "c" and endpoint is not Endpoint.NAVIGATION:
-        yield _blank(topic, robot, endpoint)
-    elif letter != "b" or endpoint is Endpoint.NETWORK:
+    elif shown and letter == "a":
         yield Emission(topic, shown, ())
 
 
-def _blank(topic: object, robot: Robot, endpoint: Endpoint) -> Emission:
+def _blank(topic: Told, robot: Robot, endpoint: Endpoint) -> Emission:
     """UNKNOWN values; of a stuck state only if AS-18 is read so."""
-    only = AS_18["b"] if endpoint is Endpoint.NAVIGATION else None
-    return Emission(topic, View(robot.id, endpoint, blank=True, offline=robot.offline), (), only=only)
+    only = AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else None
+    return Emission(topic, blank(robot, endpoint), (), only=only)
 
 
 # Drives.
@@ -228,7 +240,7 @@ def _forgotten(fleet: Fleet) -> Step:
     """Any robot may report anything from now on: every stream may show it any number of times."""
     after = evolve(fleet, unheard=True)
     emits = tuple(
-        Emission(told(fleet, robot, endpoint), View(robot.id, endpoint, unheard=True), (), stays=True)
+        Emission(Told(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
         for endpoint, robot in each(one for one in fleet.robots if one.owned)
     )
     return Step(after, emits=emits, label="robots report by themselves")
@@ -243,41 +255,51 @@ def _accepted(robot: Robot, part: str, value: Value) -> Iterator[tuple[Value, As
     if right is value:
         yield value, ()
     else:
-        yield right, (AS_28["a"],)
-        yield robot.part(part), (AS_28["b"],)
+        yield right, (AS_28[part]["a"],)
+        yield robot.part(part), (AS_28[part]["b"],)
+
+
+Way = tuple[tuple[Emission, ...], Assumed]
+"""What a report makes one kind of stream show, and the readings that this assumes."""
 
 
 def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assumed) -> Iterator[Step]:
     if part == LOCALIZATION:
         # Its content is not looked at (AS-24), so whether a message is due is not known either.
         shown = view(robot, Endpoint.ROBOT)
-        emits = (Emission(told(fleet, robot, Endpoint.ROBOT), shown, (), stays=True),) if shown and robot.owned else ()
-        yield Step(fleet, emits=emits, assumes=assumes, label="report")
+        ways = _addressed(robot, Endpoint.ROBOT, shown, stays=True) if shown and robot.owned else [((), ())]
+        for emits, assumed in ways:
+            yield Step(fleet, emits=emits, assumes=(*assumes, *assumed), label="report")
         return
-    if value is None and part in TOPICAL.values() and part != WIFI and robot.part(part) is not None:
-        for letter in "abc":
+    endpoint = next((one for one, topic in TOPICAL.items() if topic == part), None)
+    if value is None and endpoint in _UNSET and robot.part(part) is not None:
+        question = AS_09_UNSET[endpoint.value]
+        for letter in question.readings:
             after = reporting(robot, part, None, keep=letter == "a")
-            yield from _shown(fleet, robot, after, part, (*assumes, AS_09_UNSET[letter]), blank=letter == "c")
+            yield from _shown(fleet, robot, after, part, (*assumes, question[letter]), unset=letter == "c")
     else:
         yield from _shown(fleet, robot, reporting(robot, part, value), part, assumes)
 
 
+_UNSET = tuple(one for one in Endpoint if one.value in AS_09_UNSET)
+
+
 def _shown(  # noqa: PLR0913 - what a report is made of
-    fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, blank: bool = False
+    fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: bool = False
 ) -> Iterator[Step]:
     """What a change of a robot shows, in every combination of the readings that matter."""
     into = fleet.put(after)
     if not after.owned or after == before:
         yield Step(into, assumes=assumes, label="report")
         return
-    ways: list[list[tuple[tuple[Emission, ...], Assumed]]] = []
+    ways: list[list[Way]] = []
     for endpoint, topical in TOPICAL.items():
         if topical == part:
-            ways.append(list(_topical(into, before, after, endpoint, blank=blank)))
+            ways.append(list(_topical(before, after, endpoint, unset=unset)))
     if part in STATE_PARTS:
-        ways.append(list(_whole(into, before, after, part)))
+        ways.append(list(_whole(before, after, part)))
     if part == "connection":
-        ways.append([(tuple(_reconnected(into, before, after)), ())])
+        ways += _reconnected(before, after)
     for combination in itertools.product(*ways):
         emits = tuple(one for emissions, _ in combination for one in emissions)
         assumed = tuple(one for _, more in combination for one in more)
@@ -285,91 +307,109 @@ def _shown(  # noqa: PLR0913 - what a report is made of
         yield Step(into, emits=emits, assumes=(*assumes, *assumed), rules=rules, label="report")
 
 
-def _ways(
-    fleet: Fleet, shown: View, robot: Robot, lenient: Iterable[Assumption]
-) -> Iterator[tuple[tuple[Emission, ...], Assumed]]:
+def _addressed(  # noqa: PLR0913 - an emission's own fields
+    robot: Robot,
+    endpoint: Endpoint,
+    shown: View,
+    *,
+    only: Assumption | None = None,
+    optional: bool = False,
+    stays: bool = False,
+) -> list[Way]:
+    """A message about a robot, once for each way to find its streams (AS-25), which matters once it has moved."""
+    question = AS_25[endpoint.value]
+    return [
+        (
+            (Emission(Told(endpoint, robot.id, robot.location, followed), shown, (), only, optional, stays),),
+            (question["b" if followed else "a"],) if robot.moved else (),
+        )
+        for followed in ((False, True) if robot.moved else (False,))
+    ]
+
+
+def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assumption] = ()) -> Iterator[Way]:
     """A message that is due; or, under each of some readings, one that may be sent from now on."""
-    topic = told(fleet, robot, shown.endpoint)
     lenient = tuple(lenient)
     strict = tuple(one.of.besides(*one.letters) for one in lenient)
-    yield (Emission(topic, shown, ()),), strict
+    for emits, assumed in _addressed(robot, endpoint, shown):
+        yield emits, (*strict, *assumed)
     for one in lenient:
-        yield (Emission(topic, shown, (), optional=True),), (one,)
+        for emits, assumed in _addressed(robot, endpoint, shown, optional=True):
+            yield emits, (one, *assumed)
 
 
-def _topical(
-    fleet: Fleet, before: Robot, after: Robot, endpoint: Endpoint, *, blank: bool
-) -> Iterator[tuple[tuple[Emission, ...], Assumed]]:
+def _topical(before: Robot, after: Robot, endpoint: Endpoint, *, unset: bool) -> Iterator[Way]:
     """A stream with a single topic, after a report about that topic."""
-    if blank:
-        yield (_blank(told(fleet, after, endpoint), after, endpoint),), ()
+    if unset:
+        only = AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else None
+        yield from _addressed(after, endpoint, blank(after, endpoint), only=only)
         return
     shown = view(after, endpoint)
-    if shown is None or (shown == view(before, endpoint)):
+    if shown is None or shown == view(before, endpoint):
         yield (), ()
-    elif endpoint is Endpoint.NETWORK and not shown.linked:
-        yield (Emission(told(fleet, after, endpoint), shown, (), optional=True, only=_told_of(shown)),), ()
+    elif shown.unlinked:
+        yield from _addressed(after, endpoint, shown, optional=True, only=shown.unlinked["a", "b"])
     else:
-        yield from _ways(fleet, shown, after, _minor(endpoint, before, after))
+        yield from _due(after, endpoint, shown, _minor(endpoint, before, after))
 
 
-def _told_of(shown: View) -> Assumption | None:
-    """AS-27: the readings without which nothing is told of a robot that is not known to be connected."""
-    return None if shown.endpoint is not Endpoint.NETWORK or shown.linked or shown.unheard else AS_27["a", "b"]
+def _withheld(before: Robot, after: Robot, endpoint: Endpoint) -> Iterator[Assumption]:
+    """AS-09: the readings under which what an offline robot reports is shown only once it is back."""
+    if before.offline and after.offline and endpoint.value in AS_09_OFFLINE:
+        yield AS_09_OFFLINE[endpoint.value]["b", "c"]
 
 
 def _minor(endpoint: Endpoint, before: Robot, after: Robot) -> Iterator[Assumption]:
-    """AS-13: the readings under which a change need not be streamed, since it is a small one."""
+    """The readings under which a change need not be streamed: a small one (AS-13), or one of an offline robot."""
+    yield from _withheld(before, after, endpoint)
     old, new = (
         (before.wifi, after.wifi) if endpoint is Endpoint.NETWORK else (before.topic(endpoint), after.topic(endpoint))
     )
     if isinstance(old, BatteryState) and isinstance(new, BatteryState) and old.state == new.state:
-        yield AS_13_FIELDS["b"]
+        yield AS_13_FIELDS[endpoint.value]["b"]
     if isinstance(old, NavigationState) and isinstance(new, NavigationState) and _stuck(old) == _stuck(new):
-        yield AS_13_FIELDS["b"]
+        yield AS_13_FIELDS[endpoint.value]["b"]
     if isinstance(old, Wifi) and isinstance(new, Wifi) and (old.ssid, old.security) == (new.ssid, new.security):
-        yield AS_13_THROTTLE["b"]
+        yield AS_13_SIGNAL["b"]
 
 
 def _stuck(navigation: NavigationState) -> Stuck | None:
     return navigation.stuck_state.state if navigation.stuck_state else None
 
 
-def _whole(fleet: Fleet, before: Robot, after: Robot, part: str) -> Iterator[tuple[tuple[Emission, ...], Assumed]]:
+def _whole(before: Robot, after: Robot, part: str) -> Iterator[Way]:
     """SubscribeRobotStatus, after a report about a part of the state."""
-    old, new = before.part(part), after.part(part)
     if before.state == after.state:
         yield (), ()
         return
-    lenient: list[Assumption] = []
-    if part in ("pose", "twist") and old is not None and new is not None:
-        lenient.append(AS_13_THROTTLE["b"])
-    if part == "twist" and {old, new} <= {None, Twist()}:
-        lenient.append(AS_17_ZERO["b"])
-    if part == "twist" and after.offline:
-        lenient.append(AS_17_OFFLINE["c"])
-    if part in ("servi_state", "carti_state"):
-        lenient.append(AS_32["b"])
-    if part == "error_codes" and {old, new} <= {None, ErrorCodes()}:
-        lenient += (AS_29_EMPTY["c"], AS_29_EMPTY["d"])
-    shown = View(after.id, Endpoint.ROBOT, after.state, offline=after.offline)
+    shown = View(after.id, Endpoint.ROBOT, after.state)
     if not after.seen:
         # The robot reports nothing at all any more: what that looks like is AS-09.
-        yield (Emission(told(fleet, after, Endpoint.ROBOT), shown, (), optional=True),), ()
+        yield from _addressed(after, Endpoint.ROBOT, shown, optional=True)
         return
-    yield from _ways(fleet, shown, after, lenient)
+    lenient = list(_withheld(before, after, Endpoint.ROBOT))
+    if part in AS_13_THROTTLE and before.part(part) is not None and after.part(part) is not None:
+        lenient.append(AS_13_THROTTLE[part]["b"])
+    yield from _due(after, Endpoint.ROBOT, shown, lenient)
 
 
-def _reconnected(fleet: Fleet, before: Robot, after: Robot) -> Iterator[Emission]:
-    """What a change of the connection may bring to the other streams: what they withheld, or a network that is gone."""
+def _reconnected(before: Robot, after: Robot) -> Iterator[list[Way]]:
+    """What a change of the connection brings to the other streams: what they withheld, or a network that is gone."""
     network = view(after, Endpoint.NETWORK)
-    if network:
-        yield Emission(told(fleet, after, Endpoint.NETWORK), network, (), stays=True, only=_told_of(network))
-    if before.offline and after.connection is ConnectionState.STATE_CONNECTED:
+    if network and network.unlinked:
+        only = network.unlinked["a", "b"]
+        yield _addressed(after, Endpoint.NETWORK, network, stays=True, only=only)
+    elif network:
+        yield _addressed(after, Endpoint.NETWORK, network)
+    if before.offline and not after.offline:
         for endpoint in (Endpoint.BATTERY, Endpoint.ERRORS, Endpoint.NAVIGATION):
             shown = view(after, endpoint)
             if shown:
-                yield Emission(told(fleet, after, endpoint), shown, (), optional=True, only=AS_09_OFFLINE["b", "c"])
+                question = AS_09_OFFLINE[endpoint.value]
+                back = [
+                    (emits, (*assumed, question["b", "c"])) for emits, assumed in _addressed(after, endpoint, shown)
+                ]
+                yield [*back, ((), (question["a"],))]
 
 
 def restarted(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
@@ -377,35 +417,40 @@ def restarted(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tupl
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
-    emits = tuple(
-        Emission(told(fleet, robot, endpoint), shown, (), stays=True, only=_told_of(shown))
+    if not robot.owned or fleet.unheard:
+        return (Step(fleet, label="restart"),)
+    ways = [
+        _addressed(robot, endpoint, shown, stays=True, only=shown.unlinked["a", "b"] if shown.unlinked else None)
         for endpoint in Endpoint
-        if robot.owned and not fleet.unheard and (shown := view(robot, endpoint))
+        if (shown := view(robot, endpoint))
+    ]
+    return tuple(
+        Step(
+            fleet,
+            emits=tuple(one for emissions, _ in combination for one in emissions),
+            assumes=tuple(one for _, assumed in combination for one in assumed),
+            label="restart",
+        )
+        for combination in itertools.product(*ways)
     )
-    return (Step(fleet, emits=emits, label="restart"),)
 
 
 def moved(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    """A robot is at another location from now on; whether streams by location follow it is AS-25."""
+    """A robot is at another location from now on; it may join the streams of that one (AS-25)."""
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
-    after = evolve(robot, location=str(event.value))
-    if after == robot:
+    after = evolve(robot, location=str(event.value), moved=True)
+    if after.location == robot.location:
         return (Step(fleet, label="move"),)
-    found = []
-    for moves, letter in ((Moves.FIXED, "a"), (Moves.FOLLOWED, "b")):
-        into = evolve(fleet.put(after), moves=moves)
-        emits: tuple[Emission, ...] = ()
-        if moves is Moves.FOLLOWED and robot.owned:
-            # It joins the streams of its new place; those by robot ids may see it announced again.
-            emits = tuple(
-                Emission(told(into, after, endpoint), shown, (), stays=True, only=_told_of(shown))
-                for endpoint in Endpoint
-                if (shown := _anything(fleet, after, endpoint))
-            )
-        found.append(Step(into, emits=emits, assumes=(AS_25[letter],), label="move"))
-    return tuple(found)
+    emits = tuple(
+        Emission(
+            Told(endpoint, after.id, after.location, followed=True), shown, (), AS_25[endpoint.value]["b"], stays=True
+        )
+        for endpoint in Endpoint
+        if robot.owned and (shown := _anything(fleet, after, endpoint))
+    )
+    return (Step(fleet.put(after), emits=emits, label="move"),)
 
 
 def _anything(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> View | None:

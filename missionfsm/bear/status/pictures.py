@@ -50,6 +50,6 @@ SKETCHES = (
         prompts=_PROMPTS,
         drives=_DRIVES,
         world=_WORLD,
-        contrasts=("AS-07=b", "AS-09.offline=d"),
+        contrasts=("AS-07.offline=b", "AS-02.GetRobotStatus=b"),
     ),
 )

@@ -6,9 +6,18 @@ import functools
 from collections.abc import Mapping
 
 from missionfsm.bear.status.describe import describe
-from missionfsm.bear.status.effects import armed, failing, moved, outcomes, reported, restarted
+from missionfsm.bear.status.effects import TRANSPORT, armed, failing, moved, outcomes, reported, restarted
 from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
-from missionfsm.bear.status.readings import AMBIGUITIES, AS_01, AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_34
+from missionfsm.bear.status.readings import (
+    AMBIGUITIES,
+    AS_01,
+    AS_08,
+    AS_12_EVENT,
+    AS_12_HYBRID,
+    AS_13_SKIP,
+    AS_26,
+    AS_34,
+)
 from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import (
     CHARTS,
@@ -24,7 +33,7 @@ from missionfsm.bear.status.state import (
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
 from missionfsm.bear.status.values import faults
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.rules import INTERNAL, PERMISSION_DENIED, UNAVAILABLE, Operation
+from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation
 from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Spec
 
 
@@ -40,14 +49,19 @@ _COMPARED = {"equal": "the one before again", "smaller": "smaller than the one b
 
 @functools.cache
 def _delivery(topic: Topic) -> Delivery:
-    # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends (AS-26).
-    ends: dict[str, tuple[Assumption, ...]] = {INTERNAL: (), UNAVAILABLE: (AS_34["b"],)}
+    # A stream may break down (INTERNAL is documented) or be cut off by the transport; that it just ends is AS-26.
+    call = topic.endpoint.value
+    ends: dict[str, tuple[Assumption, ...]] = {
+        INTERNAL: (),
+        OK: (AS_26[call]["b"],),
+        **dict.fromkeys(TRANSPORT, (AS_34[call]["b"],)),
+    }
     if topic.partly:
-        ends[PERMISSION_DENIED] = (AS_01["c"],)
+        ends[PERMISSION_DENIED] = (AS_01[call]["c"],)
     return Delivery(
-        skips=AS_13_SKIP["c"],
-        repeats=AS_12_HYBRID["a", "b"] if topic.endpoint is Endpoint.ROBOT else AS_12_EVENT["b"],
-        echoes=AS_08["c"] if topic.endpoint in MAPS else None,
+        skips=AS_13_SKIP[call]["c"],
+        repeats=AS_12_HYBRID["a", "b"] if topic.endpoint is Endpoint.ROBOT else AS_12_EVENT[call]["b"],
+        echoes=AS_08[call]["c"] if topic.endpoint in MAPS else None,
         ends=ends,
         unowed=(UPDATES.id,),
     )
@@ -134,9 +148,10 @@ def _names(_: Fleet) -> int:
 def _shape(fleet: Fleet) -> tuple[object, ...]:
     """Fleets that differ in values alone are of one shape: what is reported, who is offline, what is armed."""
     reported = tuple(
-        (one.connection, *(part for part in STATE_PARTS if one.part(part) is not None)) for one in fleet.robots
+        (one.connection, one.moved, *(part for part in STATE_PARTS if one.part(part) is not None))
+        for one in fleet.robots
     )
-    return (reported, fleet.fault, fleet.unheard, fleet.moves)
+    return (reported, fleet.fault, fleet.unheard)
 
 
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:

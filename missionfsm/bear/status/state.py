@@ -145,6 +145,7 @@ class Robot:
         wifi: the network that it is connected to.
         known: by subscription with a single topic, in the order of `TOPICAL`: what is known of it, perhaps although
             the robot does not report it any more (AS-09); None for nothing.
+        moved: it has been at another location, so that it matters which robots a location's streams follow (AS-25).
     """
 
     id: str
@@ -153,6 +154,7 @@ class Robot:
     state: RobotState = RobotState()
     wifi: Wifi | None = None
     known: tuple[Value, ...] = (None,) * len(TOPICAL)
+    moved: bool = False
 
     def part(self, name: str) -> Value:
         """What it reports of a part."""
@@ -217,14 +219,6 @@ class Location:
     owned: bool = True
 
 
-class Moves(enum.Enum):
-    """What becomes of a location's streams when robots move (AS-25); decided when the first one does."""
-
-    NONE = "no robot has moved"
-    FIXED = "the robots of a stream are those at its start"
-    FOLLOWED = "the robots of a stream are those that are there"
-
-
 @frozen(cache_hash=True)
 class World:
     """Robots and locations; one that is not listed does not exist."""
@@ -240,14 +234,12 @@ class Fleet:
     Attributes:
         fault: the next GetRobotStatus that would succeed fails.
         unheard: robots may have reported anything since the start, and nobody knows what.
-        moves: what is known of AS-25.
     """
 
     robots: tuple[Robot, ...] = ()
     locations: tuple[Location, ...] = ()
     fault: bool = False
     unheard: bool = False
-    moves: Moves = Moves.NONE
 
     def robot(self, robot_id: str) -> Robot | None:
         """The robot with an id."""
@@ -304,7 +296,7 @@ class Request:
         by_ids: the list of robot ids is set.
         location: the location that it names, None where it is not set.
         repeated: an id is named twice.
-        unknown_field: it has a field that is not documented.
+        unknown_fields: where it has fields that are not documented: `request`, `selector`, `ids`.
         malformed: where and how it is malformed; empty where it is not.
     """
 
@@ -313,5 +305,10 @@ class Request:
     by_ids: bool = False
     location: str | None = None
     repeated: bool = False
-    unknown_field: bool = False
+    unknown_fields: tuple[str, ...] = ()
     malformed: str = ""
+
+    @property
+    def both(self) -> bool:
+        """Whether it selects by robot ids and by location."""
+        return self.by_ids and self.location is not None

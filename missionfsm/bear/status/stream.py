@@ -13,6 +13,7 @@ from attrs import evolve, frozen
 from missionfsm.bear.status.messages import (
     BatteryMode,
     BatteryState,
+    ConnectionState,
     EmergencyStopState,
     ErrorCodes,
     NavigationState,
@@ -30,7 +31,8 @@ from missionfsm.bear.status.readings import (
     AS_19,
     AS_21,
     AS_22,
-    AS_27,
+    AS_27_OFFLINE,
+    AS_27_UNKNOWN,
     AS_29_EMPTY,
     AS_32,
 )
@@ -41,8 +43,6 @@ from missionfsm.bear.status.state import (
     SYSTEM,
     TOPICAL,
     Endpoint,
-    Fleet,
-    Moves,
     Robot,
     Value,
 )
@@ -56,7 +56,7 @@ from missionfsm.bear.status.values import (
 )
 from missionfsm.bear.wire.messages import MissionState, State
 from missionfsm.kernel.codec import Garbled
-from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
 from missionfsm.kernel.text import brief
@@ -89,14 +89,14 @@ class Told:
     endpoint: Endpoint
     robot: str
     location: str
-    moves: Moves
+    followed: bool = False
 
 
 def concerns(channel: Any, emission: Any) -> bool:  # noqa: ANN401 - a `Topic` and a `Told`
     """Whether a channel gets an emission."""
     if channel.robot != emission.robot or channel.endpoint is not emission.endpoint:
         return False
-    if channel.location is None or emission.moves is not Moves.FOLLOWED:
+    if channel.location is None or not emission.followed:
         return bool(channel.member)
     return bool(channel.location == emission.location)
 
@@ -107,33 +107,42 @@ class View:
 
     Attributes:
         value: the part that the stream is about, the whole state, or the network (None: it has none).
-        blank: nothing is known, and UNKNOWN values say so; `value` is None.
         unheard: any value may have been reported; `value` is None.
-        offline: the robot is known to be disconnected.
-        linked: it is known to be connected.
+        unlinked: of a network, why it is open what is told of it; None where the robot is known to be connected.
+        got: it is what GetRobotStatus answers, and no message.
     """
 
     robot: str
     endpoint: Endpoint
     value: Value = None
-    blank: bool = False
     unheard: bool = False
-    offline: bool = False
-    linked: bool = True
+    unlinked: Ambiguity | None = None
+    got: bool = False
+
+    @property
+    def call(self) -> str:
+        """The call that shows it."""
+        return GET if self.got else self.endpoint.value
+
+    @property
+    def offline(self) -> bool:
+        """Whether it is the state of a robot that is known to be disconnected."""
+        connection = self.value.connection if isinstance(self.value, RobotState) else None
+        return connection is not None and connection.state is ConnectionState.STATE_DISCONNECTED
 
 
 def view(robot: Robot, endpoint: Endpoint) -> View | None:
     """What a subscriber is shown of a robot; None where nothing is known."""
     if endpoint is Endpoint.NETWORK:
-        linked = bool(robot.connection) and not robot.offline
-        return View(robot.id, endpoint, robot.wifi, offline=robot.offline, linked=linked)
+        unlinked = AS_27_OFFLINE if robot.offline else None if robot.connection else AS_27_UNKNOWN
+        return View(robot.id, endpoint, robot.wifi, unlinked=unlinked)
     value = robot.topic(endpoint) if endpoint in TOPICAL else robot.state if robot.seen else None
-    return None if value is None else View(robot.id, endpoint, value, offline=robot.offline)
+    return None if value is None else View(robot.id, endpoint, value)
 
 
-def told(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Told:
-    """The topic of an emission about a robot."""
-    return Told(endpoint, robot.id, robot.location, fleet.moves)
+def blank(robot: Robot, endpoint: Endpoint) -> View:
+    """UNKNOWN values, where nothing is known that could be shown."""
+    return View(robot.id, endpoint, BLANK[endpoint])
 
 
 @frozen(cache_hash=True)
@@ -202,21 +211,21 @@ RULES = (WELL_FORMED, SEQUENCE, SELECTED, UPDATES, *VALUES.values(), *(one.rule 
 
 # Reading a message.
 
-_BLANK = {
+BLANK = {
     Endpoint.BATTERY: BatteryState(),
     Endpoint.ERRORS: ErrorCodes(),
     Endpoint.NAVIGATION: NavigationState(StuckState()),
     Endpoint.ONLINE: RobotConnection(),
     Endpoint.ROBOT: RobotState(),
 }
-_EMPTY_PARTS: dict[str, Any] = {
-    "connection": RobotConnection(),
-    "battery": BatteryState(),
-    "emergency_stop": EmergencyStopState(),
-    "error_codes": ErrorCodes(),
-    "navigation_state": NavigationState(StuckState()),
+_EMPTY_PARTS: dict[str, tuple[tuple[str, Any], ...]] = {
+    "connection": (("c", RobotConnection()), ("e", RobotConnection(ConnectionState.STATE_DISCONNECTED))),
+    "battery": (("c", BatteryState()),),
+    "emergency_stop": (("c", EmergencyStopState()),),
+    "error_codes": (("c", ErrorCodes()),),
+    "navigation_state": (("c", NavigationState(StuckState())),),
 }
-"""Parts whose default says the same as their absence."""
+"""What parts that are not reported may be shown as, with the reading of AS-09 under which they are."""
 
 _NO_MISSION = (MissionState(state=State.STATE_DEFAULT), MissionState())
 
@@ -229,9 +238,9 @@ def matches(view: View, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch
         return Mismatch(
             SELECTED.id, f"the message is about robot {brief(content.robot)}, not about {brief(view.robot)}"
         )
-    if content.endpoint is not view.endpoint and not (content.endpoint is None and view.endpoint in _BLANK):
+    if content.endpoint is not view.endpoint and not (content.endpoint is None and view.endpoint in BLANK):
         return Mismatch(WELL_FORMED.id, f"the message is none of {view.endpoint.value}")
-    value = _BLANK[view.endpoint] if content.endpoint is None else content.value
+    value = BLANK[view.endpoint] if content.endpoint is None else content.value
     found = _matched(view, value, content.wrapped, VALUES[view.endpoint.value])
     if isinstance(found, Mismatch):
         return found
@@ -263,22 +272,21 @@ def _matched(view: View, value: Value, wrapped: bool | None, rule: Rule) -> tupl
     assumes: list[Assumption] = []
     for fault in faults(value):
         if fault.rule == a_stuck_state_is_known.rule.id and _may_be_unknown(view):
-            assumes.append(AS_18["b"])
+            assumes.append(AS_18[view.call]["b"])
         elif fault.rule == reserved_reasons_are_not_used.rule.id:
-            assumes.append(AS_19["z"])
+            assumes.append(AS_19[view.call]["z"])
         elif not fault.robots or (view.unheard and not fault.lasts):
             return Mismatch(fault.rule, fault.says)
     if wrapped is not None:
-        assumes.append(AS_22["b" if wrapped else "a"])
+        assumes.append(AS_22[view.call]["b" if wrapped else "a"])
     if view.unheard:
         return ((*assumes, *_of_itself(value)),)
-    wanted: Value = _BLANK.get(view.endpoint) if view.blank else view.value
     if view.endpoint is Endpoint.NETWORK:
         found: tuple[Assumed, ...] | str = _network(view, value)
     elif view.endpoint is Endpoint.ROBOT:
-        found = _whole(view, wanted, value)
+        found = _whole(view, value)
     else:
-        found = ((),) if wanted == value else difference(wanted, value)
+        found = ((),) if view.value == value else difference(view.value, value)
     if isinstance(found, str):
         return Mismatch(rule.id, found)
     return tuple(tuple(dict.fromkeys((*assumes, *one))) for one in found)
@@ -286,9 +294,9 @@ def _matched(view: View, value: Value, wrapped: bool | None, rule: Rule) -> tupl
 
 def _may_be_unknown(view: View) -> bool:
     """AS-18: whether a stuck state of UNKNOWN could be shown."""
-    if view.blank or view.unheard:
-        return True
-    return isinstance(view.value, RobotState) and view.value.navigation_state is None
+    if isinstance(view.value, RobotState):
+        return view.value.navigation_state is None
+    return view.unheard or view.value == BLANK[Endpoint.NAVIGATION]
 
 
 def _of_itself(value: Value) -> Assumed:
@@ -301,18 +309,21 @@ def _of_itself(value: Value) -> Assumed:
 
 def _network(view: View, value: Value) -> tuple[Assumed, ...] | str:
     if value == view.value:
-        return ((AS_27["a"],),) if value is not None and not view.linked else ((),)
-    if value is None and not view.linked:
-        return ((AS_27["b"],),)
+        return ((view.unlinked["a"],),) if value is not None and view.unlinked else ((),)
+    if value is None and view.unlinked:
+        return ((view.unlinked["b"],),)
     return difference(view.value, value)
 
 
-def _whole(view: View, wanted: RobotState, shown: RobotState) -> tuple[Assumed, ...] | str:
+def _whole(view: View, shown: RobotState) -> tuple[Assumed, ...] | str:
     """The ways in which a whole state shows another, part by part."""
+    if view.value == shown == RobotState():
+        # Without any values it says nothing about how a part looks that is not reported.
+        return ((),)
     ways: list[list[Assumed]] = []
     for attribute in attrs.fields(RobotState):
         part = attribute.name
-        found = _part(view, part, getattr(wanted, part), getattr(shown, part))
+        found = _part(view, part, getattr(view.value, part), getattr(shown, part))
         if isinstance(found, str):
             return f"{part}: {found}"
         if found != [()]:
@@ -321,37 +332,35 @@ def _whole(view: View, wanted: RobotState, shown: RobotState) -> tuple[Assumed, 
 
 
 def _part(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed] | str:  # noqa: ANN401 - any part
+    call = view.call
     if part == "mission" and wanted is None and (shown is None or shown in _NO_MISSION):
-        # A message without any values says nothing about how a robot without a mission looks.
-        return [()] if view.blank else [(AS_21["a" if shown is None else "b"],)]
-    if (
-        part == "error_codes"
-        and ErrorCodes() in (wanted, shown)
-        and (wanted or ErrorCodes()) == (shown or ErrorCodes())
-    ):
-        return [()] if wanted is None else [(AS_29_EMPTY["d" if shown is None else "c"],)]
+        return [(AS_21[call]["a" if shown is None else "b"],)]
+    if part == "error_codes" and wanted == ErrorCodes() and shown in (None, wanted):
+        return [(AS_29_EMPTY[call]["d" if shown is None else "c"],)]
     if part == "twist" and wanted is not None and shown in (None, wanted):
         return _twist(view, wanted, omitted=shown is None)
     if part in ("servi_state", "carti_state") and wanted is not None and shown is None:
-        return [(AS_32["b"],)]
+        return [(AS_32[call]["b"],)]
     if wanted == shown:
         return [()]
-    empty = _EMPTY_PARTS.get(part)
-    if empty is not None and wanted in (None, empty) and shown in (None, empty):
-        return [(AS_09_PART["c"],)] if wanted is None else [()]
+    for letter, empty in _EMPTY_PARTS.get(part, ()):
+        if wanted is None and shown == empty:
+            return [(AS_09_PART[part][call][letter],)]
+        if letter == "c" and wanted == empty and shown is None:
+            return [()]
     return difference(wanted, shown)
 
 
 def _twist(view: View, wanted: Twist, *, omitted: bool) -> list[Assumed] | str:
     """AS-17: a velocity that is reported may be left out if it is nothing or the robot is offline."""
+    zero, offline = AS_17_ZERO[view.call], AS_17_OFFLINE[view.call]
     if not omitted:
-        zero = (AS_17_ZERO["a"],) if wanted == Twist() else ()
-        return [(*zero, *((AS_17_OFFLINE["d"],) if view.offline else ()))]
+        return [(*((zero["a"],) if wanted == Twist() else ()), *((offline["d"],) if view.offline else ()))]
     found: list[Assumed] = []
     if wanted == Twist():
-        found.append((AS_17_ZERO["b"],))
+        found.append((zero["b"],))
     if view.offline:
-        found.append((AS_17_OFFLINE["c"],))
+        found.append((offline["c"],))
     return found or difference(wanted, None)
 
 
@@ -385,37 +394,38 @@ def brief_value(value: Any) -> str:  # noqa: ANN401 - any value
 @functools.lru_cache(maxsize=10_000)
 def shows(view: View) -> tuple[tuple[Seen, Assumed], ...]:
     """Every message that shows a view and that differs by a reading, with what it assumes; the usual one first."""
-    if view.blank:
-        return ((Seen(view.robot, view.endpoint, _BLANK[view.endpoint]), ()),)
-    if view.endpoint is Endpoint.NETWORK:
-        shown = Seen(view.robot, view.endpoint, view.value)
-        if view.linked or view.value is None:
-            return ((shown, ()),)
-        return (shown, (AS_27["a"],)), (evolve(shown, value=None), (AS_27["b", "c"],))
-    if view.endpoint is not Endpoint.ROBOT or not isinstance(view.value, RobotState):
-        return ((Seen(view.robot, view.endpoint, view.value), ()),)
+    shown = Seen(view.robot, view.endpoint, view.value)
+    if view.endpoint is Endpoint.NETWORK and view.unlinked and view.value is not None:
+        return (shown, (view.unlinked["a"],)), (evolve(shown, value=None), (view.unlinked["b", "c"],))
+    if view.endpoint is not Endpoint.ROBOT or view.value in (None, RobotState()):
+        return ((shown, ()),)
     return tuple(_whole_shown(view, view.value))
 
 
 def _whole_shown(view: View, state: RobotState) -> Iterator[tuple[Seen, Assumed]]:
+    call = view.call
     choices: list[list[tuple[dict[str, Any], Assumed]]] = []
     if state.mission is None:
-        choices.append([({}, (AS_21["a"],)), ({"mission": _NO_MISSION[0]}, (AS_21["b"],))])
+        choices.append([({}, (AS_21[call]["a"],)), ({"mission": _NO_MISSION[0]}, (AS_21[call]["b"],))])
     if state.error_codes == ErrorCodes():
-        choices.append([({}, (AS_29_EMPTY["c"],)), ({"error_codes": None}, (AS_29_EMPTY["d"],))])
+        choices.append([({}, (AS_29_EMPTY[call]["c"],)), ({"error_codes": None}, (AS_29_EMPTY[call]["d"],))])
     if state.twist == Twist():
-        choices.append([({}, (AS_17_ZERO["a"],)), ({"twist": None}, (AS_17_ZERO["b"],))])
+        choices.append([({}, (AS_17_ZERO[call]["a"],)), ({"twist": None}, (AS_17_ZERO[call]["b"],))])
     if state.twist is not None and view.offline:
-        choices.append([({}, (AS_17_OFFLINE["d"],)), ({"twist": None}, (AS_17_OFFLINE["c"],))])
+        choices.append([({}, (AS_17_OFFLINE[call]["d"],)), ({"twist": None}, (AS_17_OFFLINE[call]["c"],))])
     typed = next((name for name in ("servi_state", "carti_state") if getattr(state, name) is not None), None)
     if typed:
-        choices.append([({}, (AS_32["a"],)), ({typed: None}, (AS_32["b"],))])
+        choices.append([({}, (AS_32[call]["a"],)), ({typed: None}, (AS_32[call]["b"],))])
+    for part, empty in _EMPTY_PARTS.items():
+        if getattr(state, part) is None and part != "navigation_state":
+            question = AS_09_PART[part][call]
+            choices.append([({}, (question["a"],)), *(({part: value}, (question[letter],)) for letter, value in empty)])
     goals = bool(state.mission and state.mission.goals)
     for chosen in itertools.product(*choices):
         changed = {name: content for fields, _ in chosen for name, content in fields.items()}
         assumes = tuple(itertools.chain.from_iterable(assumed for _, assumed in chosen))
         for wrapped in (False, True) if goals else (None,):
-            way = () if wrapped is None else (AS_22["b" if wrapped else "a"],)
+            way = () if wrapped is None else (AS_22[call]["b" if wrapped else "a"],)
             yield Seen(view.robot, view.endpoint, evolve(state, **changed), wrapped), (*assumes, *way)
 
 

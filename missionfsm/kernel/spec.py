@@ -23,7 +23,7 @@ from typing import Any, Protocol
 from attrs import field, frozen
 
 from missionfsm.kernel.chart import Chart
-from missionfsm.kernel.history import Answer
+from missionfsm.kernel.history import Answer, Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
 from missionfsm.kernel.values import value
@@ -250,6 +250,21 @@ class Abstraction:
     shortcut: Callable[..., Shortcut] | None = None
 
 
+@frozen
+class Parting:
+    """How a system falls into parts that do not touch one another, but for the readings that all of them follow.
+
+    Attributes:
+        parts: (world, names of the drives that a tester commands) to the parts; none where it does not fall apart.
+        part: (the system, one of its parts) to the system as far as that part sees of it.
+        whose: an event to the part that it is about; None where it is about all of them.
+    """
+
+    parts: Callable[[Any, frozenset[str]], tuple[Hashable, ...]]
+    part: Callable[[Spec, Hashable], Spec]
+    whose: Callable[[Event], Hashable | None]
+
+
 @frozen(eq=False)
 class Spec:
     """A system as a nondeterministic labelled transition system.
@@ -315,6 +330,7 @@ class Spec:
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = Abstraction()
+    parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
     transport: bool = False

@@ -229,6 +229,11 @@ class Belief:
         self._marks: dict[Name, dict[Hashable, int]] = {}
         self._renumbered: set[tuple[Name, Hashable]] = set()
 
+    @property
+    def spec(self) -> Spec:
+        """The system."""
+        return self.automaton.spec
+
     def observe(self, event: Event) -> bool:
         """Take one event into account; False when nothing explains it.
 
@@ -444,6 +449,11 @@ class Belief:
             ):
                 found[ambiguity.id] = ambiguity.possible(left)
         return found
+
+    @property
+    def ways(self) -> list[int]:
+        """What each explanation assumes."""
+        return [one.assumed for one in self.node.explanations]
 
     @property
     def left(self) -> int:

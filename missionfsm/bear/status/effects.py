@@ -77,8 +77,13 @@ def outcomes(
     request: Request,
     _: tuple[int | None, ...],
     operations: Mapping[str, Operation] = OPERATIONS,
+    alone: str | None = None,
 ) -> tuple[Step, ...]:
-    """Every answer that the page allows to a call, success first."""
+    """Every answer that the page allows to a call, success first.
+
+    Args:
+        alone: the one robot that subscriptions are looked at for; None for all of them.
+    """
     operation = operations[request.operation]
     found: list[Step] = []
     for asked, assumed in _arms(request):
@@ -86,7 +91,7 @@ def outcomes(
             assumes = (*assumed, *decision.assumes)
             if decision.code is None:
                 rules = tuple(rule.id for rule in operation.promises)
-                ways = _latest(fleet, asked) if asked.operation == GET else _opened(fleet, asked)
+                ways = _latest(fleet, asked) if asked.operation == GET else _opened(fleet, asked, alone)
                 found += (evolve(one, assumes=(*assumes, *one.assumes), rules=rules) for one in ways)
             else:
                 rules = tuple(rule.id for rule in decision.rules)
@@ -155,12 +160,14 @@ def _got(fleet: Fleet, shown: View, seen: Seen, assumes: Assumed) -> Step:
     return Step(fleet, answer=Answer(OK, Promised(shown, seen)), assumes=assumes)
 
 
-def _opened(fleet: Fleet, request: Request) -> Iterator[Step]:
+def _opened(fleet: Fleet, request: Request, alone: str | None) -> Iterator[Step]:
     """A subscription: a channel for every robot that it may ever be about, and what each is shown first."""
     endpoint = Endpoint(request.operation)
     by_location = request.location is not None
     selected = fleet.at(request.location or "") if by_location else own(fleet, request)
     candidates = tuple(one for one in fleet.robots if one.owned) if by_location else selected
+    if alone is not None:
+        selected, candidates = (tuple(one for one in some if one.id == alone) for some in (selected, candidates))
     partly = not by_location and bool(foreign(fleet, request))
     topics = [Topic(endpoint, one.id, request.location, one in selected, partly) for one in candidates]
     if not topics:
@@ -222,10 +229,10 @@ def _blank(topic: Told, robot: Robot, endpoint: Endpoint) -> Emission:
 # Drives.
 
 
-def reported(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    """A robot reports the value of a part; without a robot: nobody knows what robots report."""
+def reported(fleet: Fleet, event: Happening, _: tuple[int | None, ...], alone: str | None = None) -> tuple[Step, ...]:
+    """A robot reports the value of a part; without a robot: nobody knows what robots report, or what this one does."""
     if not event.robot:
-        return () if fleet.unheard else (_forgotten(fleet),)
+        return () if fleet.unheard else (_forgotten(fleet, alone),)
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
@@ -236,12 +243,12 @@ def reported(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple
     )
 
 
-def _forgotten(fleet: Fleet) -> Step:
+def _forgotten(fleet: Fleet, alone: str | None) -> Step:
     """Any robot may report anything from now on: every stream may show it any number of times."""
     after = evolve(fleet, unheard=True)
     emits = tuple(
         Emission(Told(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
-        for endpoint, robot in each(one for one in fleet.robots if one.owned)
+        for endpoint, robot in each(one for one in fleet.robots if one.owned and alone in (None, one.id))
     )
     return Step(after, emits=emits, label="robots report by themselves")
 

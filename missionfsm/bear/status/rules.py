@@ -125,16 +125,17 @@ def _blank(request: Request) -> bool:
 
 def foreign(fleet: Fleet, request: Request) -> tuple[Robot, ...]:
     """The robots among those named that belong to somebody else."""
-    return tuple(one for one in map(fleet.robot, request.ids) if one is not None and not one.owned)
+    return tuple(one for one in map(fleet.by_id.get, request.ids) if one is not None and not one.owned)
 
 
 def own(fleet: Fleet, request: Request) -> tuple[Robot, ...]:
     """The account's robots among those named."""
-    return tuple(one for one in map(fleet.robot, request.ids) if one is not None and one.owned)
+    return tuple(one for one in map(fleet.by_id.get, request.ids) if one is not None and one.owned)
 
 
 def _is_unknown(fleet: Fleet, request: Request) -> bool:
-    return any(one and fleet.robot(one) is None for one in request.ids)
+    known = fleet.by_id
+    return any(one and one not in known for one in request.ids)
 
 
 @rule(PERMISSION_DENIED, cite=_GET)

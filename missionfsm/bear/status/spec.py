@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
+
+from attrs import evolve
 
 from missionfsm.bear.status.describe import describe
 from missionfsm.bear.status.effects import TRANSPORT, armed, failing, moved, outcomes, reported, restarted
@@ -22,19 +24,23 @@ from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import (
     CHARTS,
     FORGET,
+    GET,
     MAPS,
     STATE_PARTS,
     SYSTEM,
     Endpoint,
     Fleet,
     Happening,
+    Request,
+    World,
     initial,
 )
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
 from missionfsm.bear.status.values import faults
+from missionfsm.kernel.history import Called, Driven, Event, Received
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation
-from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Spec
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Parting, Spec
 
 
 def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
@@ -154,6 +160,33 @@ def _shape(fleet: Fleet) -> tuple[object, ...]:
     return (reported, fleet.fault, fleet.unheard)
 
 
+# A fleet falls into robots: what is streamed of one says nothing of another.
+
+
+def _parts(world: World, driven: frozenset[str]) -> tuple[str, ...]:
+    """The robots; a fault that is armed hits the next call, whichever robot it is about, and so ties all of them."""
+    return () if "fault" in driven else tuple(robot.id for robot in world.robots)
+
+
+def _whose(event: Event) -> str | None:
+    if isinstance(event, Received):
+        return getattr(event.content, "robot", "")
+    if isinstance(event, Driven):
+        happening: Happening = event.event  # type: ignore[assignment]  # of this system
+        return happening.robot if happening.name in ("report", "restart") else None
+    if isinstance(event, Called):
+        request: Request = event.request  # type: ignore[assignment]  # of this system
+        return request.ids[0] if request.operation == GET and request.ids else None
+    return None
+
+
+def _alone(spec: Spec, robot: Hashable) -> Spec:
+    """The system with channels for one robot only."""
+    asked = functools.partial(outcomes, operations=spec.operations, alone=str(robot))
+    report = evolve(spec.drives["report"], steps=functools.partial(reported, alone=str(robot)))
+    return evolve(spec, outcomes=asked, drives={**spec.drives, "report": report}, rebuilt=None)
+
+
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
     """The page as a specification, perhaps with other rules of refusal."""
     return Spec(
@@ -189,6 +222,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         possibilities=POSSIBILITIES,
         answers=answers,
         abstraction=Abstraction(shape=_shape),
+        parting=Parting(_parts, _alone, _whose),
         rebuilt=specification,
         unopened=(UPDATES.id,),
     )

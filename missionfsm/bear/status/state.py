@@ -241,9 +241,14 @@ class Fleet:
     fault: bool = False
     unheard: bool = False
 
+    @property
+    def by_id(self) -> Mapping[str, Robot]:
+        """The robots by their ids; whoever looks for many of them asks once."""
+        return _by_id(self.robots)
+
     def robot(self, robot_id: str) -> Robot | None:
         """The robot with an id."""
-        return _by_id(self.robots).get(robot_id)
+        return self.by_id.get(robot_id)
 
     def location(self, location_id: str) -> Location | None:
         """The location with an id."""
@@ -265,6 +270,7 @@ def _by_id(robots: tuple[Robot, ...]) -> Mapping[str, Robot]:
     return {robot.id: robot for robot in robots}
 
 
+@functools.lru_cache(maxsize=64)
 def initial(world: World) -> Fleet:
     """The fleet of a world."""
     return Fleet(tuple(map(starting, world.robots)), world.locations)

@@ -15,6 +15,7 @@ from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.belief import NODES, Belief, Node
+from missionfsm.oracle.parted import Parted
 from missionfsm.tools.check.explain import event_words
 
 
@@ -51,7 +52,7 @@ class Rulings:
         found: ambiguity id and letter to what ruled it out.
     """
 
-    def __init__(self, belief: Belief) -> None:
+    def __init__(self, belief: Belief | Parted) -> None:
         self.seen: set[Node] = {belief.node}
         self.found: dict[tuple[str, str], Ruling] = {}
         self._belief = belief
@@ -71,8 +72,8 @@ class Rulings:
         gone = self._left & ~left
         if not gone:
             return
-        self._left = left
-        spec = self._belief.automaton.spec
+        self._left &= left
+        spec = self._belief.spec
         request = asked if isinstance(event, Returned) else None
         ruling = Ruling(spec, event, request, len(self.found))
         for ambiguity in spec.ambiguities:

@@ -13,6 +13,7 @@ from missionfsm.kernel.history import Called, Event, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton, Belief, Tally
+from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
@@ -75,7 +76,11 @@ class Judge:
         self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else BUDGET)
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
-        self.belief = Belief(self.automaton, system.codec.world(head.world), self._tally)
+        world = system.codec.world(head.world)
+        self.belief: Belief | Parted = Belief(self.automaton, world, self._tally)
+        parting = self.automaton.spec.parting
+        if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
+            self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, BUDGET)
         self.rulings = Rulings(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost)
@@ -125,7 +130,7 @@ class Judge:
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
-                if self._patient:
+                if self._patient and isinstance(belief, Belief):
                     self.events -= 1
                     self._held = Held(belief)
                     return self._hold(events[position:], place)
@@ -193,7 +198,9 @@ class Judge:
     def violation(self) -> Violation | None:
         """What is wrong with the event that nothing explains; put into words when it is asked for."""
         if self._unexplained is not None and self._violation is None:
-            found = violation(self.belief, self._unexplained, self._asked)
+            found = violation(
+                self.belief.latest if isinstance(self.belief, Parted) else self.belief, self._unexplained, self._asked
+            )
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 
@@ -218,7 +225,7 @@ class Judge:
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
         spec, readings = self.system.spec, self.belief.readings
         left_out = uncovered(spec, exercised, readings)
-        ways = [one.assumed for one in self.belief.node.explanations]
+        ways = self.belief.ways
         used = (name for name, codes in self.answers.items() if codes)
         verdict = Verdict(
             outcome,
@@ -244,7 +251,7 @@ class Judge:
     @property
     def exercised(self) -> dict[str, int]:
         """How often each rule was exercised: here, or by all that walk the automaton."""
-        return self.automaton.exercised(self._tally)
+        return self.belief.exercised if isinstance(self.belief, Parted) else self.automaton.exercised(self._tally)
 
 
 def check(system: System, head: Head, lines: Iterable[JSON], **options: Any) -> Verdict:  # noqa: ANN401 - see Judge

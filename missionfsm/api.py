@@ -17,7 +17,7 @@ import shlex
 import tempfile
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
@@ -177,7 +177,8 @@ def explore(
     *,
     readings: Mapping[str, str] | None = None,
     forget_ended: bool = False,
-    **bounds: Any,  # noqa: ANN401 - see below
+    size: int = 2,
+    **own: int,
 ) -> Exploration:
     """Visit every state that a system can reach within bounds.
 
@@ -185,7 +186,8 @@ def explore(
         system: the system, or its name.
         readings: ambiguity id to the letter that is followed; of the rest, every reading at every step.
         forget_ended: only count what has ended: far fewer states, in which the same can be done.
-        bounds: what `missionfsm.kernel.alphabet.Bounds` has, such as ``missions=3``.
+        size: how large a state may be at most: for most systems, how many missions are listed.
+        own: bounds of the system itself, such as ``goals=3`` and ``batch=1``.
 
     Raises:
         UnreadableError: there is no system of that name.
@@ -195,7 +197,7 @@ def explore(
 
     explored = _system(system)
     assumed = constrain(explored.spec.ambiguities, readings or {})
-    return explorer.explore(explored, Bounds(**bounds), assumed=assumed, forget_ended=forget_ended)
+    return explorer.explore(explored, Bounds(size, **own), assumed=assumed, forget_ended=forget_ended)
 
 
 def _system(system: str | System) -> System:

@@ -15,7 +15,7 @@ from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.reference.subject import Reference
 
-BOUNDS = Bounds(missions=4, goals=3)
+BOUNDS = Bounds(4, goals=3)
 
 
 @frozen(eq=False)

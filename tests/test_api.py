@@ -136,9 +136,7 @@ def test_what_conform_is_given_is_looked_at_first() -> None:
 
 
 def test_a_system_is_explored_within_bounds() -> None:
-    """Bounds are those of the command line; an unknown one is refused as any unknown argument is."""
-    small = explore("bear.mission", missions=1, goals=1, batch=1)
+    """The size and the system's own bounds say how far it goes."""
+    small = explore("bear.mission", size=1, goals=1, batch=1)
     assert small.counterexample is None
-    assert small.states < explore("bear.mission", missions=1, goals=2, batch=1).states
-    with pytest.raises(TypeError, match="dances"):
-        explore("bear.mission", dances=1)
+    assert small.states < explore("bear.mission", size=1, goals=2, batch=1).states

@@ -189,7 +189,7 @@ def test_explore_says_what_it_saw(command_line: CommandLine) -> None:
     assert found["bounds"] == {"missions": 1, "goals": 1, "batch": 1}
     two = command_line("explore", "bear.mission")
     assert two.status == 0
-    assert two.out.startswith("bear.mission within 2 missions, 2 goals, batches of 2: ")
+    assert two.out.startswith("bear.mission within size 2, goals 2, batch 2: ")
 
 
 @pytest.mark.parametrize("what", ["rules", "readings"])

@@ -25,7 +25,7 @@ from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, reachable, references, steps
 
-BOUNDS = Bounds(missions=2, goals=2, batch=2)
+BOUNDS = Bounds(2, goals=2, batch=2)
 NEAR = 100
 """How many states of an exploration are looked at, nearest first."""
 
@@ -84,7 +84,7 @@ class Lab:
 
     def most(self, start: State) -> int:
         """How far a state may go to be looked at."""
-        return max(BOUNDS.missions, self.extent(start))
+        return max(BOUNDS.size, self.extent(start))
 
     def plain_steps(self, here: State) -> list[Step]:
         found = self._near.get(here)
@@ -267,13 +267,13 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
         pytest.skip(f"{lab.system.name} has no shortcut")
     assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
     slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, shortcut=None))
-    bounds = Bounds(missions=2, goals=1, batch=2)
+    bounds = Bounds(2, goals=1, batch=2)
     for world in lab.worlds:
         alphabet = lab.system.alphabet(world, bounds)
         labels = Labels.of(lab.system, alphabet.plain, alphabet.plain_drives)
         start = lab.start(world)
-        fast = reachable(lab.spec, start, labels, bounds.missions, assumed)
-        assert set(fast) == set(reachable(slow, start, labels, bounds.missions, assumed))
+        fast = reachable(lab.spec, start, labels, bounds.size, assumed)
+        assert set(fast) == set(reachable(slow, start, labels, bounds.size, assumed))
 
 
 # What is shown is recognised.
@@ -324,7 +324,7 @@ from missionfsm.systems import system
 from missionfsm.tools.explore.explore import Labels, reachable, steps
 
 found = system(sys.argv[1])
-bounds = Bounds(1, 2, 1)
+bounds = Bounds(1, goals=2, batch=1)
 (world, *_) = found.alphabet({}, bounds).worlds
 alphabet = found.alphabet(world, bounds)
 plain = Labels.of(found, alphabet.plain, alphabet.plain_drives)

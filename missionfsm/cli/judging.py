@@ -312,7 +312,7 @@ def explore(  # noqa: PLR0913 - options of the command
     except ValueError as error:
         stop(str(error), BAD_INPUT)
     refuse_outputs({"--json": json, "--html": html})
-    bounds = Bounds(missions, goals, batch)
+    bounds = Bounds(missions, goals=goals, batch=batch)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     troubles = _told(found, json)
     with troubles.kept():

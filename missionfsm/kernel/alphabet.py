@@ -45,27 +45,38 @@ class Naming:
     """How a tester writes names into params, and what names it may make up.
 
     A name is ``(kind, value)``. `write` gives its JSON, `make` a name of a kind that belongs to a serial number, which
-    is 0 for one that is never anything's; `shown` one as messages carry it.
+    is 0 for one that is never anything's; `shown` one as messages carry it; `given` one that the reference gives out
+    where it is not said what it is a name of.
     """
 
     write: Callable[[Any], JSON] = _as_it_is
     make: Callable[[str, int], Any] = lambda kind, serial: (kind, serial)
     shown: Callable[[int], Any] = lambda serial: f"n{serial}"
+    given: Callable[[int], Any] = lambda serial: f"name-{serial}"
 
 
-@frozen
+@frozen(init=False)
 class Bounds:
-    """How far exploration goes.
+    """How far exploration goes: ``Bounds(2, goals=3)``.
 
     Attributes:
-        missions: at most so many are listed at a time.
-        goals: a mission has at most so many.
-        batch: a batch has at most so many missions.
+        size: how large a state may be at most, as the system's `Abstraction` counts; that is how many names it has,
+            or how many missions are listed.
+        own: other bounds of the system by name, such as how many goals a mission has at most.
     """
 
-    missions: int = 2
-    goals: int = 2
-    batch: int = 2
+    size: int
+    own: tuple[tuple[str, int], ...]
+
+    def __init__(self, size: int = 2, **own: int) -> None:
+        self.__attrs_init__(size, tuple(own.items()))
+
+    def get(self, name: str, default: int = 2) -> int:
+        """One of the system's own bounds."""
+        return dict(self.own).get(name, default)
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} {most}" for name, most in (("size", self.size), *self.own))
 
 
 @frozen

@@ -62,6 +62,8 @@ class Codec:
         write_happened: (event, names) to what the result of a drive says besides that it happened.
         happened: the JSON of a drive that happened, with what its result says, to the event and its names, among them
             those that only the environment could give.
+        measured: fields of a drive that its result may give anew: in real time never exactly as much passes as was
+            wanted.
         skim: the text of a message that is one part, as nearly all are written, to what `strip` finds; None for any
             other text. Two texts of which the same is left have the same content.
         robot_in_params: whether the system is about one robot, so that params that name a robot only say which.
@@ -85,5 +87,6 @@ class Codec:
     happened: Callable[[JSON], tuple[Any, tuple[Name, ...]]] = field(
         default=Factory(lambda self: self.drive, takes_self=True)
     )
+    measured: tuple[str, ...] = ()
     skim: Callable[[bytes], Skimmed | None] = lambda _text: None
     robot_in_params: bool = False

@@ -116,12 +116,12 @@ class Failure:
     Attributes:
         assumes: the readings under which it may.
         open_ended: whether the call may all the same take effect, at once or later (a deadline that passed).
-        driven: whether it comes only when driven, where a tester drives faults.
+        drive: the name of the drive that brings it about; where a tester has that drive it comes no other way.
     """
 
     assumes: tuple[Assumption, ...] = ()
     open_ended: bool = False
-    driven: bool = True
+    drive: str | None = None
 
 
 @value
@@ -227,7 +227,7 @@ class Abstraction:
         idle_shape: the same for what changes nothing; None where it is `shape`.
         phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
         place: (state, position of a name) to where it stands, as far as a search tells places apart.
-        size: state to how large it is for a search, against `Bounds.missions`; None where that is the number of its
+        size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
             names.
         extent: the same for exploration; None where that is the number of its names.
         outline: state to the one that stands for it in exploration: without what it remembers of times, and of

@@ -221,7 +221,7 @@ class Moves:
     def may_fail(self, call: InFlight, code: str) -> Failure | None:
         """That a call may be answered with a code whatever the state is, without anybody's doing; None if not."""
         failure = self.spec.failing(call.request, code)
-        if failure is None or (failure.driven and "fault" in self.driven):
+        if failure is None or failure.drive in self.driven:
             return None
         return failure
 

@@ -92,7 +92,7 @@ class Graph:
                     if not meet(self.assumed, step.assumes):
                         continue
                     effect, after = self._effect(tried, step, kinds[here])
-                    within = extent(step.after) <= self.bounds.missions
+                    within = extent(step.after) <= self.bounds.size
                     if step.after not in numbers and within and len(numbers) < MOST_STATES:
                         numbers[step.after] = len(numbers)
                         kinds[step.after] = after
@@ -108,7 +108,7 @@ class Graph:
         rules = [spec.rules_by_id[rule] for rule in self._rules.values]
         found = {
             "system": spec.system,
-            "bounds": {"missions": bounds.missions, "goals": bounds.goals, "batch": bounds.batch},
+            "bounds": {"missions": bounds.size, **dict(bounds.own)},
             "whole": len(states) < MOST_STATES,
             "head": {
                 "missionfsm": 1,

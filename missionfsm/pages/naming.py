@@ -17,7 +17,6 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.tools.conform.conversation import filled
 from missionfsm.tools.placeholders import fill
-from missionfsm.tools.reference.model import mission_name
 
 PLACES = 900_000_000
 """Stands for the name in position 0; those for the others follow. The page knows them as nine digits, 900000…"""
@@ -48,7 +47,7 @@ class Writer:
 
     def made(self, kind: str, serial: int) -> Name:
         """The name of a kind with a serial number."""
-        name: Name = self.naming.make(kind, serial) if kind else mission_name(serial)
+        name: Name = self.naming.make(kind, serial) if kind else self.naming.given(serial)
         return name
 
     def place(self, kind: str, position: int) -> Name:

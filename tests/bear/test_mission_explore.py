@@ -27,7 +27,7 @@ def labels(bounds: Bounds, world: object = None) -> Labels:
 
 def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
     start = SPEC.initial(MISSION.codec.world({}))
-    return reachable(SPEC, start, labels(bounds), bounds.missions, assumed, forget_ended=forgetting)
+    return reachable(SPEC, start, labels(bounds), bounds.size, assumed, forget_ended=forgetting)
 
 
 @pytest.mark.parametrize(
@@ -37,14 +37,14 @@ def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
 )
 def test_three_missions_and_two_goals(assumed: int, states: int, situations: int, depth: int) -> None:
     """Three missions of two goals make so many states; every invariant holds and every possibility is met."""
-    found = explore(MISSION, Bounds(3, 2, 2), assumed=assumed)
+    found = explore(MISSION, Bounds(3, goals=2, batch=2), assumed=assumed)
     assert (found.states, found.situations, found.depth) == (states, situations, depth)
     assert (found.counterexample, found.unmet) == (None, ())
 
 
 def test_the_steps_of_two_missions_are_counted() -> None:
     """Under the default readings two missions of one goal make so many states, and so many answers of each kind."""
-    found = explore(MISSION, Bounds(2, 1, 2), assumed=DEFAULT)
+    found = explore(MISSION, Bounds(2, goals=1, batch=2), assumed=DEFAULT)
     assert (found.states, found.transitions) == (350, 8_942)
     assert found.by_operation == {
         "AppendMission": {"FAILED_PRECONDITION": 6, "OK": 1044},
@@ -66,15 +66,15 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
 
     Its states are the counted full ones; and a full robot goes where its counted one goes, and nowhere else.
     """
-    bounds = Bounds(2, 2, 2)
+    bounds = Bounds(2, goals=2, batch=2)
     full, counted = graph(bounds, assumed), graph(bounds, assumed, forgetting=True)
     assert {forget_ended(here) for here in full} == set(counted)
     short = SPEC.abstraction.shortcut
     assert short is not None
     tried = labels(bounds)
     events = [event for event, _ in tried.events]
-    plain = short(tried.requests, events, assumed, bounds.missions)
-    forgetting = short(tried.requests, events, assumed, bounds.missions, forget_ended=True)
+    plain = short(tried.requests, events, assumed, bounds.size)
+    forgetting = short(tried.requests, events, assumed, bounds.size, forget_ended=True)
 
     def after(shortcut: object, here: Robot) -> set[Robot]:
         return {forget_ended(shortcut.decode(one)) for one in shortcut.successors(shortcut.encode(here))}  # type: ignore[attr-defined]
@@ -85,22 +85,22 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
 @READINGS
 def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     """Without the shortcut, counting what has ended reaches the same states."""
-    bounds = Bounds(2, 1, 2)
+    bounds = Bounds(2, goals=1, batch=2)
     slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, shortcut=None))
     start = SPEC.initial(MISSION.codec.world({}))
-    found = reachable(slow, start, labels(bounds), bounds.missions, assumed, forget_ended=True)
+    found = reachable(slow, start, labels(bounds), bounds.size, assumed, forget_ended=True)
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
 
 
 def test_six_missions_and_two_goals() -> None:
     """Under the default readings six missions of two goals, the ended ones counted, make 8,696 states."""
-    found = explore(MISSION, Bounds(6, 2, 2), assumed=DEFAULT, forget_ended=True)
+    found = explore(MISSION, Bounds(6, goals=2, batch=2), assumed=DEFAULT, forget_ended=True)
     assert (found.states, found.counterexample) == (8_696, None)
 
 
 def test_a_robot_is_nearest_to_the_first_state_through_its_parent() -> None:
     """What is reached knows a state before it from which a step leads there."""
-    bounds = Bounds(2, 1, 1)
+    bounds = Bounds(2, goals=1, batch=1)
     tried = labels(bounds)
     found = graph(bounds, DEFAULT)
     for here in found:
@@ -112,7 +112,7 @@ def test_a_robot_is_nearest_to_the_first_state_through_its_parent() -> None:
 def test_a_broken_invariant_has_a_shortest_counterexample(*, forgetting: bool) -> None:
     """An invariant that does not hold is shown with a shortest way to a state in which it does not."""
     never = Invariant("never-two", "Two missions have ended.", lambda robot: len(robot.done) < 2)
-    found = explore(MISSION, Bounds(2, 1, 2), assumed=DEFAULT, invariants=(never,), forget_ended=forgetting)
+    found = explore(MISSION, Bounds(2, goals=1, batch=2), assumed=DEFAULT, invariants=(never,), forget_ended=forgetting)
     assert found.counterexample is not None
     assert not found.holds
     # A batch of two, a start, an end, a start, an end.
@@ -122,13 +122,13 @@ def test_a_broken_invariant_has_a_shortest_counterexample(*, forgetting: bool) -
 
 def test_every_rule_fires_and_rests() -> None:
     """Every refusal is met by some call in some state of some world, and not met by another."""
-    bounds = Bounds(2, 1, 1)
+    bounds = Bounds(2, goals=1, batch=1)
     fires: set[str] = set()
     rests: set[str] = set()
     for world in WORLDS:
         alphabet = MISSION.alphabet(world, bounds)
         start = SPEC.initial(MISSION.codec.world(world))
-        found = reachable(SPEC, start, labels(bounds, world), bounds.missions)
+        found = reachable(SPEC, start, labels(bounds, world), bounds.size)
         situations = {SPEC.abstraction.situation(here): here for here in found}
         everything = Labels.of(MISSION, alphabet.prompts, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything).items():

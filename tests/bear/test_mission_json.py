@@ -147,7 +147,7 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
     """What is written for a request, with its names, is read as that request with those names."""
     alphabet = system("bear.mission").alphabet
     worlds = [{"family": family.value} for family in Family]
-    prompts = [prompt for world in worlds for prompt in alphabet(world, Bounds(2, 3, 2)).plain]
+    prompts = [prompt for world in worlds for prompt in alphabet(world, Bounds(2, goals=3, batch=2)).plain]
     for prompt in prompts:
         names, rest = CODEC.split(prompt.method, prompt.params)
         request = CODEC.request(prompt.method, rest)

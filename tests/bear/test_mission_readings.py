@@ -15,7 +15,7 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
-BOUNDS = Bounds(2, 3, 2)
+BOUNDS = Bounds(2, goals=3, batch=2)
 ALTERNATIVES = [
     (ambiguity.id, letter)
     for ambiguity in MISSION.spec.ambiguities

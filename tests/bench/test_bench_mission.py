@@ -108,11 +108,11 @@ def test_bench_mission_a_step_of_the_model(benchmark: Any) -> None:
 @pytest.mark.parametrize(
     ("bounds", "assumed", "forgetting"),
     [
-        (Bounds(3, 2, 2), DEFAULT, False),
-        (Bounds(4, 2, 2), DEFAULT, False),
-        (Bounds(3, 2, 2), ANYTHING, False),
-        (Bounds(6, 2, 2), DEFAULT, True),
-        (Bounds(6, 2, 2), ANYTHING, True),
+        (Bounds(3, goals=2, batch=2), DEFAULT, False),
+        (Bounds(4, goals=2, batch=2), DEFAULT, False),
+        (Bounds(3, goals=2, batch=2), ANYTHING, False),
+        (Bounds(6, goals=2, batch=2), DEFAULT, True),
+        (Bounds(6, goals=2, batch=2), ANYTHING, True),
     ],
     ids=[
         "3 missions",
@@ -128,7 +128,7 @@ def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int,
     labels = Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
     found = benchmark.pedantic(
-        reachable, (SPEC, start, labels, bounds.missions, assumed), {"forget_ended": forgetting}, rounds=3
+        reachable, (SPEC, start, labels, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
     )
     began = time.perf_counter()
     states = len(set(found))
@@ -140,11 +140,11 @@ def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int,
 
 def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:
     """Distinct states a second without the shortcut: every outcome of every call as a step with names and messages."""
-    bounds = Bounds(2, 2, 2)
+    bounds = Bounds(2, goals=2, batch=2)
     alphabet = MISSION.alphabet(WORLD, bounds)
     labels = Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
-    states = list(reachable(SPEC, start, labels, bounds.missions, DEFAULT))
+    states = list(reachable(SPEC, start, labels, bounds.size, DEFAULT))
 
     def every_step() -> int:
         return sum(1 for here in states for _ in steps(SPEC, here, labels))

@@ -29,7 +29,7 @@ def run_of(name: str, subject: Subject, automaton: Automaton | None = None) -> R
     """A run against a subject that has not begun."""
     one = system(name)
     about = introduce(one, subject)
-    return Run(one, subject, about, automaton or Automaton(one.spec, about.drives), Bounds(missions=4, goals=3))
+    return Run(one, subject, about, automaton or Automaton(one.spec, about.drives), Bounds(4, goals=3))
 
 
 def explained(run: Run, tours: int, steps: int, seed: int = 1) -> bool:

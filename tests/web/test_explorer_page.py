@@ -230,9 +230,9 @@ def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -
 
 def test_the_bounds_are_told(explorers: dict[str, Path], open_page: Opener) -> None:
     """The page says how many states it has and within which bounds."""
-    graph = Graph(systems.system("isaac.robot"), Bounds(1, 2, 1), ANYTHING).data()
+    graph = Graph(systems.system("isaac.robot"), Bounds(1, goals=2, batch=1), ANYTHING).data()
     told = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
     steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
     assert told.startswith(f"{len(graph['states'])} states and {steps} steps")
-    assert "within the bounds missions 1, goals 2, batch 1" in told
+    assert "within the bounds size 1, goals 2, batch 1" in told
     assert "more than this page holds" not in told

@@ -47,7 +47,7 @@ from missionfsm.kernel.readings import ANYTHING
 from missionfsm.pages.explorer import explorer_page
 from missionfsm.systems import names, system
 for name in names():
-    page = explorer_page(system(name), Bounds(1, 1, 1) if name != "isaac.server" else Bounds(0, 1, 1), ANYTHING)
+    page = explorer_page(system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), ANYTHING)
     print(name, hashlib.sha256(page.encode()).hexdigest())
 """
 
@@ -180,7 +180,7 @@ def test_a_history_without_its_beginning_is_told() -> None:
 @pytest.mark.parametrize("name", systems.names())
 def test_every_number_in_a_graph_means_something(name: str) -> None:
     """What a state refers to is there: doings, effects, states, parts of messages, rules and assumptions."""
-    graph = Graph(systems.system(name), Bounds(0 if name == "isaac.server" else 1, 1, 1), ANYTHING).data()
+    graph = Graph(systems.system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), ANYTHING).data()
     states = graph["states"]
     assert states
     for _, seen, flat in states:
@@ -198,8 +198,10 @@ def test_every_number_in_a_graph_means_something(name: str) -> None:
 def test_a_demanded_reading_leaves_no_other() -> None:
     """Where a reading is demanded, no answer of the graph assumes another of that ambiguity."""
     explored = systems.system("bear.mission")
-    free = Graph(explored, Bounds(1, 1, 1), ANYTHING).data()
-    bound = Graph(explored, Bounds(1, 1, 1), constrain(explored.spec.ambiguities, {"AM-02.unknown": "a"})).data()
+    free = Graph(explored, Bounds(1, goals=1, batch=1), ANYTHING).data()
+    bound = Graph(
+        explored, Bounds(1, goals=1, batch=1), constrain(explored.spec.ambiguities, {"AM-02.unknown": "a"})
+    ).data()
     asked = [letters for some in free["assumes"] for name, letters in some if name == "AM-02.unknown"]
     left = [letters for some in bound["assumes"] for name, letters in some if name == "AM-02.unknown"]
     assert any("a" not in letters for letters in asked)

@@ -138,9 +138,9 @@ def failing(request: Request, code: str) -> Failure | None:
     if code in operation.failures:
         # No tester can drive a subscription to fail.
         open_ended = code == DEADLINE_EXCEEDED or request.operation == "SkipGoal"
-        return Failure(open_ended=open_ended, driven=not operation.streaming)
+        return Failure(open_ended=open_ended, drive=None if operation.streaming else "fault")
     if code in TRANSPORT:
-        return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED), driven=False)
+        return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED))
     return None
 
 

@@ -10,7 +10,7 @@ from missionfsm.bear.mission.pictures import SKETCHES
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
 from missionfsm.bear.mission.scripts import SCRIPTS
 from missionfsm.bear.mission.spec import SPEC
-from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Naming, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -112,14 +112,14 @@ def _wrapped(mission: JSON) -> JSON:
 
 
 def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
-    good = tuple(_missions(family, bounds.goals))
+    good = tuple(_missions(family, bounds.get("goals")))
     bad = (*_DEFECTIVE, *_FOREIGN[family], _TWICE)
     for method in ("CreateMission", "AppendMission"):
         yield from (Prompt(method, _wrapped(mission)) for mission in (*good, *bad))
         yield Prompt(method, {"mission": good[0], "urgency": "high"})
         yield Prompt(method, [])
     for method in ("CreateMissionBatch", "AppendMissionBatch"):
-        for size in range(1, bounds.batch + 1):
+        for size in range(1, bounds.get("batch") + 1):
             for first in range(0, len(good), 2):
                 batch = [_wrapped(good[(first + index) % len(good)]) for index in range(size)]
                 yield Prompt(method, {"missions": batch})
@@ -128,7 +128,7 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
         yield Prompt(method, {"missions": []})
         yield Prompt(method, {})
         yield Prompt(method, {"missions": [good[0]]})
-    for workflow in (*_workflows(family, bounds.goals), *_DEFECTIVE_WORKFLOWS):
+    for workflow in (*_workflows(family, bounds.get("goals")), *_DEFECTIVE_WORKFLOWS):
         yield Prompt("CreateMissionWorkflow", {} if workflow is None else {"missionWorkflow": workflow})
     yield Prompt("CreateMissionWorkflow", {"missionWorkflow": _DEFECTIVE_WORKFLOWS[-1], "urgency": "high"})
     yield from _updates()
@@ -139,7 +139,7 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
 
 
 def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
-    goals = _tables(bounds.goals)
+    goals = _tables(bounds.get("goals"))
     kind = {"base": auto, "servi": None, "carti": None}[family]
     several = (
         kind(*goals)
@@ -154,10 +154,10 @@ def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
     for mission in (base({"destinationId": TABLES[0]}), several, *patrol):
         yield Prompt("CreateMission", {"mission": mission})
         yield Prompt("AppendMission", {"mission": mission})
-    if bounds.batch > 1:
+    if bounds.get("batch") > 1:
         batch = [
             {"mission": several},
-            *({"mission": base({"destinationId": TABLES[0]})} for _ in range(bounds.batch - 1)),
+            *({"mission": base({"destinationId": TABLES[0]})} for _ in range(bounds.get("batch") - 1)),
         ]
         yield Prompt("CreateMissionBatch", {"missions": batch})
         yield Prompt("AppendMissionBatch", {"missions": batch})
@@ -215,4 +215,7 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES)
+NAMING = Naming(given=lambda serial: f"mission-{serial}")
+SYSTEM = System(
+    SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES
+)

@@ -125,8 +125,8 @@ def failing(request: Request, code: str) -> Failure | None:
     Faults are driven for GetRobotStatus alone: to a subscription INTERNAL may come whoever drives what.
     """
     if code == INTERNAL:
-        return Failure(driven=request.operation == GET)
-    return Failure((AS_34[request.operation]["b"],), driven=False) if code in TRANSPORT else None
+        return Failure(drive="fault" if request.operation == GET else None)
+    return Failure((AS_34[request.operation]["b"],)) if code in TRANSPORT else None
 
 
 def _failed(fleet: Fleet, step: Step) -> Step:

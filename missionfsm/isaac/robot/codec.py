@@ -180,6 +180,7 @@ def _answer(method: str, _: JSON) -> tuple[Answer, tuple[Name, ...]]:
 CODEC = Codec(
     methods=tuple(SPEC.operations),
     streams=(),
+    measured=("seconds",),
     world=world,
     split=_split,
     request=_split,

@@ -332,6 +332,7 @@ def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int
 CODEC = Codec(
     methods=tuple(SPEC.operations),
     streams=(),
+    measured=("seconds",),
     world=world,
     split=split,
     request=request,

@@ -24,8 +24,6 @@ from missionfsm.tools.placeholders import fill, is_template
 
 PROTOCOL = 1
 WRONG_NAME = "no-such-name"
-MEASURED = "seconds"
-"""What a drive may say otherwise than it was asked: in real time never exactly as much passes as was wanted."""
 _Read = TypeVar("_Read")
 
 
@@ -176,7 +174,7 @@ class Conversation:
         if happened:
             # What the environment gave a name to (a connection), the history says with the drive.
             told = {**event, **{key: value for key, value in result.items() if key != "happened"}}
-            if any(told[key] != value for key, value in event.items() if key != MEASURED):
+            if any(told[key] != value for key, value in event.items() if key not in self.system.codec.measured):
                 message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
                 raise SubjectError(message)
             self._hear({"drive": told})

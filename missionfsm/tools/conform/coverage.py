@@ -16,7 +16,7 @@ from missionfsm.tools.check.verdict import PER, RATE
 from missionfsm.tools.explore.explore import Labels, references
 from missionfsm.tools.reference.model import recognised
 
-BOUNDS = Bounds(missions=2, goals=2, batch=2)
+BOUNDS = Bounds(2, goals=2, batch=2)
 
 SITUATIONS = 12
 """How many different situations of each world are looked at, the nearest ones."""
@@ -89,7 +89,7 @@ class Census:
                 for steps in self._moves(here, everything):
                     self._count(world, steps)
             for step in itertools.chain.from_iterable(self._moves(here, plain)):
-                if step.after not in found and size(step.after) <= BOUNDS.missions:
+                if step.after not in found and size(step.after) <= BOUNDS.size:
                     found.add(step.after)
                     todo.append(step.after)
 

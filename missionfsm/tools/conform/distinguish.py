@@ -304,7 +304,7 @@ class _Search:
     def _is_new(self, node: _Node) -> bool:
         spec = self.system.spec
         size = spec.size
-        if max(size(one.state) for one in node.here) > self.lab.guide.bounds.missions:
+        if max(size(one.state) for one in node.here) > self.lab.guide.bounds.size:
             return False
         shapes = tuple((spec.abstraction.shape(one.state), len(one.channels)) for one in node.here)
         key = (node.world, shapes, node.agreed)

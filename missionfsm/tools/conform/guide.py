@@ -75,7 +75,7 @@ class Guide:
     Args:
         system: the system.
         worlds: the worlds that conversations start in.
-        bounds: for the alphabet; longer queues than `bounds.missions` are not sought.
+        bounds: for the alphabet; longer queues than `bounds.size` are not sought.
         drives: the drives that the adapter has.
 
     Attributes:
@@ -223,7 +223,7 @@ class Guide:
             self._edges[key] = ((where, operation, says), leads_to) if steps else None
             self._growth[key] = size(after) - size(here.state)
         grows = self._growth[key]
-        return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.missions else None
+        return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.size else None
 
     def _places(self, here: Explanation, refs: tuple[int | None, ...]) -> tuple[Hashable, ...]:
         """Where the named things stand: a shape does not tell their positions apart."""

@@ -28,7 +28,7 @@ from missionfsm.tools.placeholders import kind_of, slots
 
 Scripts = tuple[tuple[Line, ...], ...]
 
-BOUNDS = Bounds(missions=4, goals=3)
+BOUNDS = Bounds(4, goals=3)
 """What a run tries, unless it is told otherwise."""
 
 SETTLED = 0.6

@@ -114,7 +114,7 @@ class Exploration:
         """The exploration as the command line writes it."""
         return {
             "system": self.system,
-            "bounds": {"missions": self.bounds.missions, "goals": self.bounds.goals, "batch": self.bounds.batch},
+            "bounds": {"missions": self.bounds.size, **dict(self.bounds.own)},  # the key is older than other systems
             "states": self.states,
             "situations": self.situations,
             "transitions": self.transitions,
@@ -127,9 +127,8 @@ class Exploration:
         }
 
     def __str__(self) -> str:
-        bounds = f"{self.bounds.missions} missions, {self.bounds.goals} goals, batches of {self.bounds.batch}"
         counts = f"{self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"
-        lines = [f"{self.system} within {bounds}: {counts}"]
+        lines = [f"{self.system} within {self.bounds}: {counts}"]
         if self.counterexample:
             lines.append(f"broken invariant: {self.counterexample}")
         else:
@@ -275,7 +274,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     alphabet = system.alphabet(usual, bounds)
     labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
     start = spec.initial(system.codec.world(usual))
-    found = reachable(spec, start, labels, bounds.missions, assumed, forget_ended=forget_ended)
+    found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
     checked = spec.invariants if invariants is None else invariants
     broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
     quotient = _quotient(spec, forget_ended=forget_ended)

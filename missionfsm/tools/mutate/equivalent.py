@@ -38,11 +38,11 @@ class Scope:
 
 
 SCOPES = (
-    Scope(Bounds(missions=2, goals=1, batch=2)),
+    Scope(Bounds(2, goals=1, batch=2)),
     # One world for each kind of robot.
-    Scope(Bounds(missions=2, goals=2, batch=2), worlds=3, follows_all=False),
+    Scope(Bounds(2, goals=2, batch=2), worlds=3, follows_all=False),
 )
-TIMED = (Scope(Bounds(missions=1)),)
+TIMED = (Scope(Bounds(1)),)
 """Those for systems with clocks, which make many states of one (see `Abstraction.outline`)."""
 
 Assumed = tuple[Assumption, ...]
@@ -207,13 +207,11 @@ class _Explorer:
         same = abstraction.shape if abstraction.outline else abstraction.situation
         found, todo, situations = {start}, [start], set()
         for here in todo:
-            taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.scope.bounds.missions]
+            taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.scope.bounds.size]
             situation = same(here)
             if situation not in situations and not self._passes(here):
                 situations.add(situation)
-                asked = [
-                    step for step in self._asked_all(here, own) if extent(step.after) <= self.scope.bounds.missions
-                ]
+                asked = [step for step in self._asked_all(here, own) if extent(step.after) <= self.scope.bounds.size]
                 taken += asked if self.scope.follows_all else ()
             new = dict.fromkeys(step.after for step in taken if step.after not in found)
             found.update(new)
@@ -353,7 +351,7 @@ def _explaining(  # noqa: PLR0913 - a step and where it is taken
     }
     if taken.answer is not None and not taken.refs:
         failure = system.spec.failing(request, taken.answer.code)
-        if failure is not None and not failure.driven:
+        if failure is not None and failure.drive is None:
             nothing = evolve(taken, after=here, names=None, emits=(), opens=())
             found |= {failure.assumes} if _seen(nothing, here) == seen else set()
     return frozenset(found)

@@ -73,11 +73,6 @@ class Reply:
     happened: bool = True
 
 
-def mission_name(serial: int) -> Name:
-    """The names that the reference gives out, unless it is told otherwise."""
-    return f"mission-{serial}"
-
-
 Twist = Callable[[Any, Step | None], Step | None]
 """(state, step) to the step that is taken in its place; for implementations with one thing broken."""
 
@@ -111,7 +106,7 @@ class Model:
     Args:
         system: the system.
         choice: ambiguity id to letter; the others follow their defaults.
-        mint: serial number to a name that was never given out.
+        mint: serial number to a name that was never given out; by default as the system has it.
         twist: what is broken, if anything.
 
     Raises:
@@ -122,12 +117,12 @@ class Model:
         self,
         system: System,
         choice: Mapping[str, str] | None = None,
-        mint: Callable[[int], Name] = mission_name,
+        mint: Callable[[int], Name] | None = None,
         twist: Twist = straight,
     ) -> None:
         self.system = system
         self.choice = choose(system.spec.ambiguities, choice)
-        self._mint = mint
+        self._mint = mint or system.naming.given
         self.twist = twist
         self._chosen: dict[Any, Step | None] = {}
 

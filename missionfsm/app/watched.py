@@ -23,7 +23,7 @@ from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.text import brief
 from missionfsm.kernel.transport import TR_02
-from missionfsm.tools.check.explain import told
+from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Outcome, Verdict, Violation
 
 Numbered = tuple[int, JSON]
@@ -119,7 +119,7 @@ class _Subscription:
         violation = None
         if self.first is not None:
             number, problem = self.first
-            rules = told(spec, (problem.rule,))
+            rules = rules_in_words(spec, (problem.rule,))
             violation = Violation(rules, str(problem), (_RIGHT,), at=number, where=f"line {number}: ")
         return Verdict(
             Outcome.CONFORMS if violation is None else Outcome.VIOLATES,

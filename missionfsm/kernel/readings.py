@@ -52,6 +52,8 @@ class Ambiguity:
         alike: what parts of one entry have in common that ask the same question, with the same letters, in calls that
             look alike (``AM-01.create`` and ``AM-01.append``); None for a question that is asked once. Whoever reads
             such parts differently is explained, and the verdict says that it is incoherent.
+        rule: the rule that is broken by whoever reads the question now so and now otherwise: its id, or the end of it
+            where rules of several operations say the same. Needed where no rule of the system is under a reading of it.
     """
 
     id: str
@@ -60,6 +62,7 @@ class Ambiguity:
     default: str
     flagged: frozenset[str] = frozenset()
     alike: str | None = None
+    rule: str = ""
     _bit: Mapping[str, int] = field(init=False, repr=False)
     _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
     group: int = field(init=False, repr=False)

@@ -155,6 +155,8 @@ class Delivery:
         ends: status name to the readings under which the channel may end with it; one that is missing may not end it.
         unowed: ids of the rules that are broken by a message that nothing owes, and by one that is owed and does not
             come; the nearest first.
+        named: ids of the rules that are broken by a message that names other things than it is about.
+        first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
         unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
     """
 
@@ -163,6 +165,8 @@ class Delivery:
     echoes: Assumption | None = None
     ends: Mapping[str, tuple[Assumption, ...]] = field(factory=dict)
     unowed: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
+    first: tuple[str, ...] = ()
     unending: tuple[str, ...] = ()
 
 

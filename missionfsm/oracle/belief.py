@@ -438,6 +438,14 @@ class Belief:
         """The observed name with a number, or None for one that nobody has seen."""
         return self._names[number] if 0 <= number < len(self._names) else None
 
+    def number(self, name: Name) -> int:
+        """The number of an observed name, `GONE` for one that nothing has."""
+        return self._numbers.get(name, GONE)
+
+    def last_mark(self, channel: Name, track: Hashable) -> int | None:
+        """The number that a channel showed last on a track, or None."""
+        return self._marks.get(channel, _NO_MARKS).get(track)
+
     @property
     def readings(self) -> dict[str, tuple[str, ...]]:
         """For every ambiguity that mattered so far: the readings that some explanation still follows."""

@@ -21,7 +21,7 @@ from missionfsm.kernel.spec import Emission, Spec, Step
 from missionfsm.kernel.system import System
 from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Request, State, Tried
 from missionfsm.pages.naming import PLACES, TEXT, Shared, Writer, dumped
-from missionfsm.tools.check.explain import answer_words
+from missionfsm.tools.check.phrases import answer_words
 
 MOST_STATES = 4_000
 """How many states a page holds, the nearest ones: some megabytes."""

@@ -14,7 +14,7 @@ from missionfsm.kernel.history import Called, Event
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
 from missionfsm.oracle.transcript import Transcript
-from missionfsm.tools.check.explain import event_words, name_words
+from missionfsm.tools.check.phrases import event_words, name_words
 
 SHOWN = 60
 """How many of the last rows are shown at once; those before are folded away."""

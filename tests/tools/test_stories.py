@@ -16,7 +16,8 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import check
-from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story, suspects
+from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
+from missionfsm.tools.check.suspects import suspects
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform, search
 from missionfsm.tools.conform.conversation import Conversation
@@ -154,7 +155,9 @@ def test_an_answer_that_was_excused_before_is_suspected() -> None:
     readings = {one.id: one.default for one in MISSION.spec.ambiguities}
     assert check(MISSION, head(lines[0]), lines[1:-2], readings=readings).violation is None
     assert check(MISSION, head(lines[0]), lines[1:], readings=readings).violation is not None
-    assert "SkipGoal() was answered FAILED_PRECONDITION" in suspects(MISSION, lines, readings)
+    assert [one.says for one in suspects(MISSION, lines, readings)][-1:] == [
+        "SkipGoal() was answered FAILED_PRECONDITION"
+    ]
 
 
 def test_the_pytest_function_fails_for_what_was_found(tmp_path: Path) -> None:

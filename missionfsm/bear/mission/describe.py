@@ -45,7 +45,7 @@ def _message(message: MissionState) -> str:
 
 
 def _goals(goals: tuple[Goal, ...]) -> str:
-    return ", ".join(repr(goal.destination_id) if goal.pose is None else "a pose" for goal in goals)
+    return ", ".join(repr(goal.destination_id) if goal.pose is None else str(goal) for goal in goals)
 
 
 def _wanted(wanted: Wanted) -> str:

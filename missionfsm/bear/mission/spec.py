@@ -43,7 +43,7 @@ from missionfsm.bear.mission.state import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission.stream import OWED, SEQUENCE, TOPIC, listing, matches
+from missionfsm.bear.mission.stream import ALL_LISTED, OWED, SEQUENCE, TOPIC, listing, matches
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.history import Answer
@@ -198,7 +198,15 @@ def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
     ends = {INTERNAL: (), **dict.fromkeys(TRANSPORT, (AM_61["b"],))}
-    return Delivery(skips=AM_47_SKIP["b"], repeats=AM_47_REPEAT["c"], ends=ends, unowed=(OWED.id,))
+    first = tuple(rule.id for rule in OPERATIONS["SubscribeMissionStatus"].promises)
+    return Delivery(
+        skips=AM_47_SKIP["b"],
+        repeats=AM_47_REPEAT["c"],
+        ends=ends,
+        unowed=(OWED.id,),
+        named=(ALL_LISTED.id,),
+        first=first,
+    )
 
 
 # What holds of every robot, and what some robot can come to.

@@ -220,7 +220,7 @@ def _listed(view: Listing, content: Seen) -> Assumed:
         raise _WrongError(ALL_LISTED, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
     if not all(content.named):
         raise _WrongError(ALL_LISTED, f"mission {content.named.index(False)} has no id")
-    assumes = list(_current(view, content.states.current_mission_index))
+    assumes: list[Assumption] = []
     if not view.missions:
         assumes.append(AM_36["a", "c"] if view.fresh else AM_35["a"])
     for index, (mission, message) in enumerate(zip(view.missions, shown, strict=True)):
@@ -230,6 +230,8 @@ def _listed(view: Listing, content: Seen) -> Assumed:
         _goal_index(mission, message, where)
         assumes += _feedback(view, mission, message, where, bare=content.bare[index])
         assumes += _type(view, mission, message, where)
+    # The index is judged last: where the states are wrong, it follows them.
+    assumes += _current(view, content.states.current_mission_index)
     assumes += _first_start(view)
     return tuple(dict.fromkeys(assumes))
 
@@ -334,7 +336,7 @@ def _same_goal(wanted: Goal, shown: Goal) -> bool:
 
 
 def _told(goals: tuple[Goal, ...]) -> str:
-    return "[" + ", ".join(goal.destination_id or "a pose" for goal in goals) + "]"
+    return "[" + ", ".join(str(goal) for goal in goals) + "]"
 
 
 def _goal_index(mission: Mission, message: MissionState, where: str) -> None:

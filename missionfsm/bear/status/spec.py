@@ -70,6 +70,7 @@ def _delivery(topic: Topic) -> Delivery:
         echoes=AS_08[call]["c"] if topic.endpoint in MAPS else None,
         ends=ends,
         unowed=(UPDATES.id,),
+        first=tuple(rule.id for rule in OPERATIONS[topic.endpoint.value].promises),
     )
 
 

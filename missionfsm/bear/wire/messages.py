@@ -86,6 +86,9 @@ class Pose:
     y_meters: float = 0.0
     heading_radians: float = 0.0
 
+    def __str__(self) -> str:
+        return f"pose ({self.x_meters:g}, {self.y_meters:g}, {self.heading_radians:g})"
+
 
 @frozen(cache_hash=True)
 class Goal:
@@ -93,6 +96,9 @@ class Goal:
 
     destination_id: str | None = member("goal")
     pose: Pose | None = member("goal")
+
+    def __str__(self) -> str:
+        return str(self.pose) if self.pose is not None else self.destination_id or "no goal"
 
 
 @frozen

@@ -16,7 +16,7 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.belief import NODES, Belief, Node
 from missionfsm.oracle.parted import Parted
-from missionfsm.tools.check.explain import event_words
+from missionfsm.tools.check.phrases import described, event_words
 
 
 @frozen(eq=False)
@@ -33,7 +33,7 @@ class Ruling:
 
     def __str__(self) -> str:
         words = event_words(self.spec, self.event)
-        return words if self.request is None else f"{self.spec.describe(self.request)} was {words}"
+        return words if self.request is None else f"{described(self.spec, self.request)} was {words}"
 
     @property
     def rules(self) -> tuple[str, ...]:

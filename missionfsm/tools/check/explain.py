@@ -2,226 +2,224 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Any
+from collections.abc import Iterable, Sequence
 
-from attrs import frozen
-
-from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
-from missionfsm.oracle.explanation import Explanation
-from missionfsm.oracle.successors import ExhaustedError, Moves
-from missionfsm.tools.check.verdict import Allowed, Broken, Violation
+from missionfsm.oracle.explanation import Channel
+from missionfsm.tools.check.nearest import CODE, Candidate, Circumstances, Nearest
+from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
+from missionfsm.tools.check.verdict import Allowed, Violation
 
-MOST = 12
+MOST = 8
 """How many alternatives a person is shown."""
 
+ACCUSED = 3
+"""How many rules a violation names at most, the nearest first."""
 
-def told(spec: Spec, rule_ids: Iterable[str]) -> tuple[Broken, ...]:
-    """Rules as a person is told them, each once."""
-    known = spec.rules_by_id
-    found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
-    return tuple(Broken(rule.id, rule.says, str(rule.cite)) for rule in found)
-
-
-def event_words(spec: Spec, event: Event) -> str:
-    """An event in a few words."""
-    if isinstance(event, Called):
-        return spec.describe(event.request)
-    if isinstance(event, Returned):
-        return "answered " + answer_words(event.answer, tuple(map(name_words, event.names)))
-    if isinstance(event, Received):
-        return f"{name_words(event.channel)} showed {spec.describe(event.content)}"
-    if isinstance(event, Ended):
-        return f"{name_words(event.channel)} ended" + (f" with {event.code}" if event.code != OK else " cleanly")
-    if isinstance(event, Driven):
-        return spec.describe(event.event)
-    return "everything settled" if isinstance(event, Settled) else "a stream was cancelled"
+NOTES = 4
+"""How many reasons a person is told."""
 
 
-def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
-    """An answer with its names."""
-    return f"{answer}{' ' + ', '.join(names) if names else ''}"
-
-
-def name_words(name: Any) -> str:  # noqa: ANN401 - a name
-    """A name as a person reads it."""
-    return " ".join(map(str, name)) if isinstance(name, tuple) else str(name)
-
-
-@frozen
-class _Option:
-    what: str
-    rules: tuple[str, ...]
-    assumes: tuple[str, ...]
-
-
-def violation(belief: Belief, event: Event, request: Any) -> Violation:  # noqa: ANN401 - of any system
-    """What is wrong with the event that left a belief without explanations.
-
-    Args:
-        request: what was asked, if the event is an answer.
-    """
-    spec, moves = belief.automaton.spec, belief.automaton.moves
-    moves.reset()
+def violation(belief: Belief, event: Event, about: Circumstances = Circumstances()) -> Violation:  # noqa: B008 - a value
+    """What is wrong with the event that left a belief without explanations."""
+    spec = belief.automaton.spec
+    nearest = Nearest(belief, about)
     observed = event_words(spec, event)
     if isinstance(event, Returned):
-        if request is not None:
-            observed = f"{spec.describe(request)} was {observed}"
-        options = list(_answers(belief, moves, event))
-        rules, notes = _against_answer(spec, event, options, request)
+        if about.request is not None:
+            observed = f"{described(spec, about.request)} was {observed}"
+        found = _against_answer(nearest, event)
     elif isinstance(event, Received):
-        options, rules, notes = _against_message(belief, moves, event)
+        found = _against_message(nearest, event)
     elif isinstance(event, Settled):
-        options, rules, notes = _still_due(belief, moves)
+        found = _still_due(nearest)
     elif isinstance(event, Ended):
-        options, rules, notes = [], _unending(belief, event), ("the stream had to go on",)
+        found = _against_end(nearest, event)
     else:
-        drive = spec.drives[event.event.name] if isinstance(event, Driven) else None  # type: ignore[attr-defined]
-        options, rules, notes = (
-            [],
-            list(drive.impossible if drive else ()),
-            ("nothing that is in a state for it was there",),
-        )
-    merged: dict[str, _Option] = {}
-    for option in options:
-        before = merged.get(option.what)
-        if before is None or len(option.assumes) < len(before.assumes):
-            merged[option.what] = option
-    expected = tuple(
-        Allowed(option.what, told(spec, option.rules), option.assumes) for option in list(merged.values())[:MOST]
+        found = _against_drive(nearest, event)
+    expected, rules, notes = found
+    return Violation(
+        rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
+        observed,
+        _allowed(spec, expected),
+        tuple(dict.fromkeys(printable(note) for note in notes if note))[:NOTES],
     )
-    return Violation(told(spec, rules), observed, expected, tuple(dict.fromkeys(notes))[:MOST])
 
 
-def _reachable(moves: Moves, explanation: Explanation, besides: int | None = None) -> Iterator[Explanation]:
-    try:
-        for sighting in moves.closure([explanation], besides):
-            yield sighting.explanation
-    except ExhaustedError:
-        return
+Found = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]
+"""What could have come, the rules that are broken, and why, in words."""
 
 
-def _answers(belief: Belief, moves: Moves, event: Returned) -> Iterator[_Option]:
-    number = belief.symbol(event)[0][3]
-    for explanation in belief.node.explanations:
-        for here in _reachable(moves, explanation, besides=number):
-            call = next((one for one in here.calls if one.name == number), None)
-            if call is None:
-                continue
-            if call.done:
-                yield _Option(_known(belief, call.done.answer, call.done.names), call.done.rules, ())
-                continue
-            refs = tuple(here.ref(arg) for arg in call.args)
-            for step in moves.outcomes(here.state, call.request, refs):
-                if step.answer is None or not _compatible(here, step.assumes):
-                    continue
-                names = tuple(here.names[ref] if ref < len(here.names) else -2 for ref in step.refs)
-                yield _Option(_known(belief, step.answer, names), step.rules, tuple(map(str, step.assumes)))
+def _allowed(spec: Spec, candidates: Iterable[Candidate]) -> tuple[Allowed, ...]:
+    """What could have come, each once, with the fewest assumptions."""
+    merged: dict[str, Candidate] = {}
+    for one in sorted(candidates, key=lambda one: one.weight):
+        before = merged.get(one.what)
+        if one.what and one.allowed and (before is None or len(one.assumes) < len(before.assumes)):
+            merged[one.what] = one
+    return tuple(
+        Allowed(one.what, rules_in_words(spec, one.rules), one.assumes) for one in list(merged.values())[:MOST]
+    )
 
 
-def _compatible(here: Explanation, assumes: tuple[Assumption, ...]) -> bool:
-    return all(here.assumed & one.group & one.keeps for one in assumes)
+def _lightest(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Those that need least forgiven."""
+    least = min((one.weight for one in candidates), default=0)
+    return [one for one in candidates if one.weight == least]
 
 
-def _known(belief: Belief, answer: Answer, names: tuple[int, ...]) -> str:
-    said = tuple(name_words(belief.name(name) or "a new name") for name in names)
-    return answer_words(answer, said)
+# An answer.
 
 
-def _against_answer(
-    spec: Spec,
-    event: Returned,
-    options: list[_Option],
-    request: Any,  # noqa: ANN401 - of any system
-) -> tuple[list[str], tuple[str, ...]]:
-    codes = {option.what.split(" ")[0] for option in options}
-    code = event.answer.code
-    if code in codes:
-        note = "the code is right, the names in the answer are not"
-        if event.answer.shape is not None:
-            note = f"the result is malformed: {event.answer.shape}"
-        return [rule for option in options if option.what.startswith(code) for rule in option.rules], (note,)
-    rules = [rule for option in options for rule in option.rules]
-    if code != OK and request is not None:
-        operation = spec.operations[spec.request_operation(request)]
-        mine = [rule for rule in operation.refusals if rule.code == code]
-        if not mine:
-            return rules, (f"{code} is not documented for {operation.name}",)
-        conditions = "; ".join(dict.fromkeys(rule.says for rule in mine[:4]))
-        return rules + [rule.id for rule in mine], (f"{code} needs a reason, and none holds: {conditions}",)
-    return rules, ()
+def _against_answer(nearest: Nearest, event: Returned) -> Found:
+    candidates = list(nearest.answers(event))
+    lightest = _lightest(candidates)
+    if not lightest or lightest[0].weight < CODE:
+        rules = [rule for one in lightest for problem in one.problems for rule in problem.rules or one.rules]
+        return candidates, rules, [problem.says for one in lightest[:1] for problem in one.problems]
+    rules, notes = _wrong_code(nearest, event, _lightest([one for one in candidates if one.allowed] or candidates))
+    return candidates, rules, notes
 
 
-def _against_message(belief: Belief, moves: Moves, event: Received) -> tuple[list[_Option], list[str], tuple[str, ...]]:
-    spec = belief.automaton.spec
-    symbol, _ = belief.symbol(event)
-    _, content, _, relations, channel_name = symbol
-    options: list[_Option] = []
-    rules: list[str] = []
-    notes: list[str] = []
-    for relation in relations:
+def _wrong_code(nearest: Nearest, event: Returned, allowed: list[Candidate]) -> tuple[list[str], list[str]]:
+    """None of the allowed answers has the code."""
+    spec, request, code = nearest.spec, nearest.about.request, event.answer.code
+    rules = [rule for one in allowed for rule in one.rules]
+    if code == OK or request is None:
+        return rules, []
+    operation = spec.operations[spec.request_operation(request)]
+    reasons = [rule for rule in operation.refusals if rule.code == code]
+    if code in operation.failures:
+        return _failed_wrongly(nearest, event, rules)
+    if not reasons:
+        return rules, [f"{code} is not documented for {operation.name}"]
+    reasons.sort(key=lambda rule: rule.under is not None)
+    conditions = "; ".join(dict.fromkeys(rule.says for rule in reasons[:ACCUSED]))
+    note = f"{code} needs a reason, and none holds: {conditions}"
+    # What has to be refused is refused wrongly; what has to be done is refused without a reason.
+    refused = [rule for one in allowed if not one.what.startswith(OK) for rule in one.rules]
+    return refused or [rule.id for rule in reasons], [note]
+
+
+def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
+    """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
+    code, spec = event.answer.code, nearest.spec
+    number = nearest.belief.symbol(event)[0][3]
+    done = [
+        (one, call.done)
+        for one in nearest.belief.node.explanations
+        for call in one.calls
+        if call.name == number and call.done is not None
+    ]
+    if not done or len(done) < len(nearest.belief.node.explanations):
+        return rules, [f"{code} comes to this call only where a failure was driven, and none was waiting"]
+    explanation, answer = done[0]
+    shown = [
+        f"{name_words(nearest.belief.name(channel.name))} showed {described(spec, channel.last.view)}"
+        for channel in explanation.channels
+        if channel.last is not None and channel.name >= 0
+    ]
+    names = ", ".join(name_words(known) for one in answer.names if (known := nearest.belief.name(one)) is not None)
+    unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
+    what = f"{names} is there" if names else "it took effect"
+    seen = f": {'; '.join(shown)}" if shown else ""
+    note = f"{code} is documented, but a call that failed has no effect, and {what}{seen}"
+    return unowed or rules, [note]
+
+
+# A message.
+
+
+def _against_message(nearest: Nearest, event: Received) -> Found:
+    spec, belief = nearest.spec, nearest.belief
+    relations = belief.symbol(event)[0][3]
+    for relation, (track, number) in zip(relations, event.marks, strict=True):
         wrong = spec.sequence(relation)
         if isinstance(wrong, Mismatch):
-            return [], [wrong.rule], (wrong.says,)
-    for explanation in belief.node.explanations:
-        found = False
-        for here in _reachable(moves, explanation):
-            for channel in here.channels:
-                if channel.name != channel_name and channel.name >= 0:
-                    continue
-                found = True
-                for owed in channel.owed:
-                    options.append(_Option(spec.describe(owed.view), (), ()))
-                    matched = moves.matches(owed, content)
-                    if isinstance(matched, Mismatch):
-                        rules.append(matched.rule)
-                        notes.append(matched.says)
-                    else:
-                        notes.append("the content is right, the names in it or the readings that it follows are not")
-                if not channel.owed:
-                    rules += spec.delivery(channel.topic).unowed
-                    notes.append("the stream has nothing to show: nothing changed since its last message")
-            if len(options) > MOST:
-                break
-        if not found:
-            rules += spec.unopened
-            notes.append(f"{name_words(event.channel)} is not open")
-    return options, rules, tuple(notes)
+            before = belief.last_mark(event.channel, track)
+            compared = f"{number}" if before is None else f"{number} after {before}"
+            return (), [wrong.rule], [f"{wrong.says}: {compared}"]
+    candidates = list(nearest.messages(event))
+    if not candidates:
+        return (), spec.unopened, [f"{name_words(event.channel)} is not open"]
+    lightest = _lightest(candidates)
+    rules = [rule for one in lightest for problem in one.problems for rule in problem.rules]
+    notes = [problem.says for one in lightest for problem in one.problems]
+    due = [one for one in candidates if not one.passing] or candidates
+    notes += _strangers(nearest, event)
+    if isinstance(event.content, Garbled):
+        return due, rules, notes[:1]
+    return (
+        candidates,
+        rules or [rule for one in candidates for problem in one.problems for rule in problem.rules],
+        notes,
+    )
 
 
-def _unending(belief: Belief, event: Ended) -> list[str]:
+def _strangers(nearest: Nearest, event: Received) -> list[str]:
+    """Names in a message that no call was answered with, and the calls that were answered last."""
+    belief = nearest.belief
+    answered = {name for call in nearest.about.recent for name in call.names}
+    unknown = [name for name in event.names if belief.number(name) < 0 and name not in answered]
+    if not unknown or not nearest.about.recent:
+        return []
+    calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-ACCUSED:])
+    return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
+
+
+def _still_due(nearest: Nearest) -> Found:
+    found: list[Candidate] = []
+    rules: list[str] = []
+    notes: list[str] = []
+    for here in nearest.reachable():
+        for channel in here.channels:
+            due = [owed for owed in channel.owed if not owed.passing]
+            if due:
+                where = _called(nearest, channel)
+                wanted = described(nearest.spec, due[-1].view)
+                delivery = nearest.spec.delivery(channel.topic)
+                found.append(Candidate(f"{where} shows {wanted}", (), (), ()))
+                rules += delivery.unowed if channel.last or not delivery.first else delivery.first
+                last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
+                notes.append(f"{where} did not show {wanted}{last}")
+        if len(found) > MOST:
+            break
+    return found, rules, notes[:2]
+
+
+def _called(nearest: Nearest, channel: Channel) -> str:
+    name = nearest.belief.name(channel.name)
+    return "a stream" if name is None else name_words(name)
+
+
+# An end, and a drive.
+
+
+def _against_end(nearest: Nearest, event: Ended) -> Found:
     """The rules that are broken by the end of a channel: those of its topic, or of a channel that is not open."""
-    spec = belief.automaton.spec
-    (_, _, number), _ = belief.symbol(event)
+    spec = nearest.spec
+    (_, _, number), _ = nearest.belief.symbol(event)
     topics = dict.fromkeys(
         channel.topic
-        for explanation in belief.node.explanations
+        for explanation in nearest.belief.node.explanations
         for channel in explanation.channels
         if channel.name == number
     )
+    if not topics:
+        return (), spec.unopened, [f"{name_words(event.channel)} is not open"]
     ways = [spec.delivery(topic) for topic in topics]
-    return [rule for way in ways for rule in way.unending or way.unowed] or list(spec.unopened)
+    codes = ", ".join(dict.fromkeys(code for way in ways for code in way.ends))
+    note = f"the stream has to go on; it may only end with {codes}" if codes else "the stream has to go on"
+    return (), [rule for way in ways for rule in way.unending or way.unowed], [note]
 
 
-def _still_due(belief: Belief, moves: Moves) -> tuple[list[_Option], list[str], tuple[str, ...]]:
-    spec = belief.automaton.spec
-    options: list[_Option] = []
-    rules: list[str] = []
-    notes: list[str] = []
-    for explanation in belief.node.explanations:
-        for here in _reachable(moves, explanation):
-            for channel in here.channels:
-                due = [owed for owed in channel.owed if not owed.passing]
-                if due:
-                    name = belief.name(channel.name)
-                    where = name_words(name) if name else "a stream"
-                    options.append(_Option(f"{where} shows {spec.describe(due[-1].view)}", (), ()))
-                    notes.append(f"{where} did not show {spec.describe(due[-1].view)}")
-                    rules += spec.delivery(channel.topic).unowed
-            if len(options) > MOST:
-                break
-    return options, rules, tuple(notes[:3])
+def _against_drive(nearest: Nearest, event: Event) -> Found:
+    drive = nearest.spec.drives[event.event.name] if isinstance(event, Driven) else None  # type: ignore[attr-defined]
+    states = dict.fromkeys(described(nearest.spec, one.state) for one in nearest.belief.node.explanations)
+    note = f"it cannot happen in {' or '.join(list(states)[:2])}"
+    return (), drive.impossible if drive else (), [note]

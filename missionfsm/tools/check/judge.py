@@ -9,7 +9,7 @@ from typing import Any
 from attrs import evolve
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Called, Event, Returned, Settled
+from missionfsm.kernel.history import Called, Event, Name, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton, Belief, Tally
@@ -19,6 +19,7 @@ from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
 from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent
+from missionfsm.tools.check.nearest import Call, Circumstances
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
@@ -27,6 +28,10 @@ KEPT = 200
 
 PATIENCE = 1_000
 """How many explanations an event of a recorded history may cost before it waits for those that follow."""
+
+
+RECENT = 6
+"""How many calls that were answered are remembered, to be told with a violation."""
 
 
 class Judge:
@@ -49,6 +54,7 @@ class Judge:
         exhausted: whether it was not within the budget.
         place: where the line is that nothing explains, if it was not the last one that came.
         read, events, succeeded: how many lines and events were taken into account, and answers were OK.
+        recent: the calls that were answered last.
         answers: operation to status name to how often it was answered so.
     """
 
@@ -91,6 +97,8 @@ class Judge:
         self.answers: dict[str, Counter[str]] = {name: Counter() for name in system.spec.operations}
         self.right = True
         self.exhausted = False
+        self.recent: deque[Call] = deque(maxlen=RECENT)
+        self._about: dict[Name, tuple[Name, ...]] = {}
         self._waits = self._unanswered = False
         self._unexplained: Event | None = None
         self._violation: Violation | None = None
@@ -150,14 +158,15 @@ class Judge:
     def _count(self, event: Event, asked: Any, *, open_calls: bool) -> None:  # noqa: ANN401 - of any system
         """Count an event that is explained: what was asked if it is an answer, and whether calls had none then."""
         if type(event) is Returned:
-            if event.answer.code == OK:
-                self.succeeded += 1
-            if asked is not None:  # that of a cancel is no call
-                self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
+            self.succeeded += event.answer.code == OK
+            self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
+            self.recent.append(Call(asked, self._about.pop(event.call, ()), event.answer, event.names))
         elif type(event) is Settled:
             self._unanswered = self._unanswered or self._waits or open_calls
-        elif type(event) is Called and event.lost:
-            self._waits = True
+        elif type(event) is Called:
+            if event.names:
+                self._about[event.call] = event.names
+            self._waits = self._waits or event.lost
 
     def _hold(self, events: tuple[Event, ...], place: int) -> bool:
         """Events wait for those that follow."""
@@ -198,9 +207,9 @@ class Judge:
     def violation(self) -> Violation | None:
         """What is wrong with the event that nothing explains; put into words when it is asked for."""
         if self._unexplained is not None and self._violation is None:
-            found = violation(
-                self.belief.latest if isinstance(self.belief, Parted) else self.belief, self._unexplained, self._asked
-            )
+            about = Circumstances(self._asked, self.rulings.found, tuple(self.recent))
+            belief = self.belief.latest if isinstance(self.belief, Parted) else self.belief
+            found = violation(belief, self._unexplained, about)
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from attrs import evolve
-
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.system import System
-from missionfsm.oracle.transcript import Transcript, head
-from missionfsm.tools.check.explain import answer_words, event_words, name_words
-from missionfsm.tools.check.judge import Judge
-from missionfsm.tools.check.verdict import Violation
+from missionfsm.oracle.transcript import Transcript
+from missionfsm.tools.check.phrases import answer_words, event_words, name_words
 
 
 def story(system: System, history: tuple[JSON, ...]) -> str:
@@ -50,30 +46,6 @@ def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
         yield waiting
 
 
-def suspects(system: System, history: tuple[JSON, ...], readings: dict[str, str] | None = None) -> tuple[str, ...]:
-    """Answers before the last event without which everything can be explained: perhaps one of those was wrong.
-
-    A violation shows where the last excuse died. Where an earlier answer was excused by an assumption that only the
-    last event refuted, that answer is the one to look at.
-    """
-    first, lines = head(history[0]), history[1:]
-    found = []
-    for at, line in enumerate(lines[:-1]):
-        if "return" not in line:
-            continue
-        lost = frozenset({line["return"]})
-        judge = Judge(system, first, readings=readings, lost=lost)
-        rest = (*lines[:at], *lines[at + 1 :])
-        if all(judge.feed(one) for one in rest):
-            call = next(one for one in lines if one.get("call") == line["return"])
-            said = "OK" if "result" in line else line["error"]["status"]
-            request = system.codec.request(
-                call["method"], system.codec.split(call["method"], call.get("params", {}))[1]
-            )
-            found.append(f"{system.spec.describe(request)} was answered {said}")
-    return tuple(found)
-
-
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:
     """A pytest function that judges the history again."""
     import json  # noqa: PLC0415 - text for a file, seldom needed
@@ -103,10 +75,3 @@ def as_mermaid(system: System, history: tuple[JSON, ...]) -> str:
         else:
             lines.append(f"    Note over C,S: {words}")
     return "\n".join(lines) + "\n"
-
-
-def with_suspects(system: System, violation: Violation) -> Violation:
-    """The violation with a note on answers before it that may be the ones that are wrong."""
-    found = suspects(system, violation.history)
-    notes = tuple(f"without this answer everything is explained: {one}" for one in found)
-    return evolve(violation, notes=(*violation.notes, *notes)) if notes else violation

@@ -19,8 +19,9 @@ from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected, held_against
 from missionfsm.tools.check.eliminations import by_ambiguity
-from missionfsm.tools.check.narrate import story, with_suspects
+from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.scope import flagged, held_to_the_text, unchecked, uncovered, untested
+from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Outcome, Verdict
 from missionfsm.tools.conform.conversation import Conversation, Given, Picks
 from missionfsm.tools.conform.coverage import rare

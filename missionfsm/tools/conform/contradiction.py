@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Spec
-from missionfsm.tools.check.explain import told
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 
 
@@ -30,7 +30,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         notes.append(f"{letter} is ruled out: {ruling}")
         last = judge
     return Violation(
-        told(spec, rules),
+        rules_in_words(spec, rules),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
         tuple(notes),

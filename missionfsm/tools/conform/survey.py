@@ -9,7 +9,8 @@ from attrs import frozen
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
-from missionfsm.tools.check.narrate import story, with_suspects
+from missionfsm.tools.check.narrate import story
+from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Verdict, Violation
 from missionfsm.tools.conform.conform import search, verdict_of
 from missionfsm.tools.conform.run import Run

@@ -1,0 +1,361 @@
+"""What nearly explains an event: the explanations that need least forgiven, and what would have to be forgiven them.
+
+An event is a violation when no explanation allows it. Each explanation that died with it died of something: another
+code, another name, a value that is wrong, a reading that was ruled out before, something that nobody made happen. The
+one that died of least says best what is wrong.
+"""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.history import Answer, Name, Received, Returned
+from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Delivery, Mismatch, Spec, Step
+from missionfsm.oracle.belief import Belief
+from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
+from missionfsm.oracle.successors import ExhaustedError
+from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.phrases import answer_words, described, name_words
+
+MOST_LOOKED_AT = 200
+"""How many explanations are looked at, the nearest first."""
+
+READING, NAME, UNDRIVEN, SHAPE, UNOWED, VALUE, CODE = 2, 4, 6, 10, 30, 40, 60
+"""How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least."""
+
+PASSING = 1
+"""How much more it takes to be meant by a message that need not come."""
+
+
+@frozen
+class Call:
+    """A call that was answered: what was asked about which names, and the answer."""
+
+    request: Any
+    about: tuple[Name, ...]
+    answer: Answer
+    names: tuple[Name, ...]
+
+    def words(self, spec: Spec) -> str:
+        """The call and its answer in a few words."""
+        return f"{described(spec, self.request)} → {answer_words(self.answer, tuple(map(name_words, self.names)))}"
+
+
+@frozen
+class Circumstances:
+    """What is known of a conversation besides its belief.
+
+    Attributes:
+        request: what was asked, if the event is an answer.
+        rulings: ambiguity id and letter to the event that ruled it out.
+        recent: the calls that were answered last, the latest last.
+    """
+
+    request: Any = None
+    rulings: Mapping[tuple[str, str], Ruling] = {}
+    recent: tuple[Call, ...] = ()
+
+
+@frozen
+class Problem:
+    """Something that an explanation would have to be forgiven to explain the event.
+
+    Attributes:
+        says: what it is, in words.
+        rules: ids of the rules that are broken by it, the nearest first.
+        weight: how much it takes to forgive it.
+    """
+
+    says: str
+    rules: tuple[str, ...]
+    weight: int
+
+
+@frozen
+class Candidate:
+    """A way in which the event could nearly be explained.
+
+    Attributes:
+        what: what would have been right in the place of the event, in words.
+        rules: ids of the rules by which it would have been.
+        assumes: the readings under which it would have been.
+        problems: what it would have to be forgiven.
+        allowed: whether it could have come.
+    """
+
+    what: str
+    rules: tuple[str, ...]
+    assumes: tuple[str, ...]
+    problems: tuple[Problem, ...]
+    allowed: bool = True
+    passing: bool = False
+
+    @property
+    def weight(self) -> int:
+        """How much it takes to forgive all of it; where that is equal, what assumes least is nearest."""
+        return sum(problem.weight for problem in self.problems) + PASSING * self.passing + len(self.assumes)
+
+
+@frozen
+class _Message:
+    """A message that came: the event, its content, its names and its channel as the oracle numbers them."""
+
+    event: Received
+    content: Any
+    given: Names
+    number: int
+
+
+def _distance(one: str, other: str) -> int:
+    """How far two texts are from each other, from 0 to 9."""
+    return round(9 * (1 - difflib.SequenceMatcher(None, one.split(), other.split(), autojunk=False).ratio()))
+
+
+def rules_about(spec: Spec, assumption: Assumption) -> tuple[str, ...]:
+    """The rules that are broken by whoever reads a question now so and now otherwise."""
+    ambiguity = assumption.of
+    under = [rule.id for rule in spec.all_rules if rule.under is not None and rule.under.of is ambiguity]
+    named = [rule.id for rule in spec.all_rules if ambiguity.rule and rule.id.endswith(ambiguity.rule)]
+    return tuple(dict.fromkeys((*named, *under)))
+
+
+class Nearest:
+    """The candidates for one event, found among the explanations of everything before it."""
+
+    def __init__(self, belief: Belief, about: Circumstances) -> None:
+        self.belief = belief
+        self.about = about
+        self.spec = belief.automaton.spec
+        self.moves = belief.automaton.moves
+        self.moves.reset()
+
+    def reachable(self, besides: int | None = None) -> Iterator[Explanation]:
+        """What the explanations can silently become, the nearest first."""
+        found = self.moves.closure(self.belief.node.explanations, besides)
+        try:
+            for sighting in itertools.islice(found, MOST_LOOKED_AT):
+                yield sighting.explanation
+        except ExhaustedError:
+            return
+
+    # Answers.
+
+    def answers(self, event: Returned) -> Iterator[Candidate]:
+        """Every answer that the call could have had, or could have had under readings that were ruled out."""
+        number = self.belief.symbol(event)[0][3]
+        given = self.belief.symbol(event)[0][2]
+        for here in self.reachable(besides=number):
+            call = next((one for one in here.calls if one.name == number), None)
+            if call is None:
+                continue
+            ready = (*call.ready, call.done) if call.done else call.ready
+            for one in ready:
+                problems = self._answered(here, event, given, one.answer, one.names, one.assumes)
+                yield self._candidate(here, one.answer, one.names, one.rules, one.assumes, problems)
+            if call.done:
+                continue
+            refs = tuple(here.ref(arg) for arg in call.args)
+            for step in self.moves.outcomes(here.state, call.request, refs):
+                if step.answer is not None:
+                    names = tuple(here.names[ref] if ref < len(here.names) else GONE - 1 for ref in step.refs)
+                    problems = self._answered(here, event, given, step.answer, names, step.assumes)
+                    yield self._candidate(here, step.answer, names, step.rules, step.assumes, problems)
+
+    def _candidate(  # noqa: PLR0913 - what a candidate is made of
+        self,
+        here: Explanation,
+        answer: Answer,
+        names: Names,
+        rules: tuple[str, ...],
+        assumes: tuple[Assumption, ...],
+        problems: list[Problem],
+    ) -> Candidate:
+        what = answer_words(answer, tuple(map(self._known, names)))
+        allowed = bool(meet(here.assumed, assumes))
+        return Candidate(what, rules, tuple(map(str, assumes)), tuple(problems), allowed)
+
+    def _answered(  # noqa: PLR0913 - what is compared
+        self,
+        here: Explanation,
+        event: Returned,
+        given: Names,
+        answer: Answer,
+        names: Names,
+        assumes: tuple[Assumption, ...],
+    ) -> list[Problem]:
+        problems = list(self._readings(here, assumes))
+        if answer.code != event.answer.code:
+            return [*problems, Problem("", (), CODE)]
+        ways = self.moves.agreements(answer, event.answer)
+        if not ways:
+            return [*problems, self._shape(answer, event.answer)]
+        problems += self._readings(here, ways[0].assumes)
+        return [*problems, *self._names(here, names, given, event.names, unordered=answer.unordered)]
+
+    def _shape(self, answer: Answer, given: Answer) -> Problem:
+        if isinstance(given.shape, Garbled):
+            return Problem(f"the result is malformed: {given.shape.says}", (), SHAPE)
+        wrong = self.spec.answers(answer.shape, given.shape) if self.spec.answers else None
+        if isinstance(wrong, Mismatch):
+            return Problem(wrong.says, (wrong.rule,), SHAPE)
+        return Problem(f"the result is {given.shape}, expected {answer.shape}", (), SHAPE)
+
+    # Messages.
+
+    def messages(self, event: Received) -> Iterator[Candidate]:
+        """Every message that could have come, and what would have to be so for this one to be one of them."""
+        (_, content, given, relations, number), _ = self.belief.symbol(event)
+        message = _Message(event, content, given, number)
+        for here in self.reachable():
+            before = tuple(self._sequence(here, relations))
+            for channel in here.channels:
+                if channel.name == number or channel.name < GONE:
+                    yield from self._shown(here, channel, message, before)
+            yield from self._undriven(here, message)
+
+    def _sequence(self, here: Explanation, relations: Iterable[str]) -> Iterator[Problem]:
+        """The readings that the numbers of a message need; where they are wrong, nothing else matters."""
+        for relation in relations:
+            right = self.spec.sequence(relation)
+            if not isinstance(right, Mismatch):
+                yield from self._readings(here, right)
+
+    def _shown(
+        self, here: Explanation, channel: Channel, message: _Message, before: tuple[Problem, ...]
+    ) -> Iterator[Candidate]:
+        delivery = self.spec.delivery(channel.topic)
+        skipped: tuple[Assumption, ...] = ()
+        for position, owed in enumerate(channel.owed):
+            needs = (owed.only, *skipped) if owed.only else skipped
+            problems = [*before, *self._readings(here, needs)]
+            if delivery.skips is None and not all(one.passing for one in channel.owed[:position]):
+                problems.append(Problem("what is owed before it was left out", delivery.unowed, UNOWED))
+            problems += self._matched(here, channel, owed, message)
+            words = described(self.spec, owed.view)
+            yield Candidate(words, (), (), tuple(problems), not self._clash(here, needs), owed.passing)
+            if not owed.passing and delivery.skips:
+                skipped = (delivery.skips,)
+        if not channel.owed:
+            yield Candidate("", (), (), (*before, *self._again(here, channel, delivery, message)), allowed=False)
+
+    def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
+        """Nothing is owed: the message is the last one again, or shows what was never reached."""
+        if channel.last is None:
+            yield Problem("nothing is owed to it yet", delivery.unowed, UNOWED)
+            return
+        wrong = self._matched(here, channel, channel.last, message)
+        if wrong:
+            last = described(self.spec, channel.last.view)
+            rules = (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
+            says = f"nothing changed since it showed {last}: " + "; ".join(one.says for one in wrong)
+            yield Problem(says, rules, max(UNOWED, wrong[0].weight))
+        elif delivery.repeats:
+            yield from self._readings(here, (delivery.repeats,))
+        else:
+            yield Problem("it shows again what it showed last, though nothing changed", delivery.unowed, UNOWED)
+
+    def _matched(self, here: Explanation, channel: Channel, owed: Owed, message: _Message) -> list[Problem]:
+        """What keeps a message from being the showing of what is owed."""
+        ways = self.moves.matches(owed, message.content)
+        if isinstance(ways, Mismatch):
+            further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
+            least = SHAPE if isinstance(message.content, Garbled) else VALUE
+            return [Problem(ways.says, (ways.rule,), least + further)]
+        found: list[list[Problem]] = []
+        for way in ways:
+            own = (channel.name, *(owed.names[ref] for ref, _ in way.names))
+            seen = (message.number, *(message.given[at] for _, at in way.names))
+            called = (message.event.channel, *(message.event.names[at] for _, at in way.names))
+            named = self.spec.delivery(channel.topic).named
+            names = [evolve(one, rules=named) for one in self._names(here, own, seen, called)]
+            found.append([*self._readings(here, way.assumes), *names])
+        return min(found, key=lambda problems: sum(one.weight for one in problems))
+
+    def _undriven(self, here: Explanation, message: _Message) -> Iterator[Candidate]:
+        """The message shows what something would lead to that nobody made happen, or a call that failed."""
+        for step, says, rules in self._unseen(here):
+            taken = self.moves.advance(here, step)
+            if taken is None:
+                continue
+            after = taken[0]
+            for channel, before in zip(after.channels, here.channels, strict=False):
+                if channel.name != message.number or len(channel.owed) <= len(before.owed):
+                    continue
+                if channel.owed[-1].optional:  # what may be said at any time tells nothing of what happened
+                    continue
+                if not self._matched(after, channel, channel.owed[-1], message):
+                    unowed = self.spec.delivery(channel.topic).unowed
+                    yield Candidate("", (), (), (Problem(says, (*rules, *unowed), UNDRIVEN),), allowed=False)
+
+    def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...]]]:
+        """Steps that were not taken, with what they are and the rules that are broken if they were."""
+        for drive in self.spec.drives.values():
+            for event in drive.by_itself if drive.name in self.moves.driven else ():
+                says = f"{described(self.spec, event)} would have to happen first, and nobody made it happen"
+                yield from ((step, says, drive.impossible) for step in drive.steps(here.state, event, ()))
+        for call in reversed(self.about.recent):
+            if call.answer.code != OK:
+                refs = tuple(here.ref(self.belief.number(name)) for name in call.about)
+                says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
+                effects = self.moves.effects(here.state, call.request, refs)
+                yield from ((step, says, ()) for step in effects if step.answer and step.answer.code == OK)
+
+    # What has to be forgiven.
+
+    def _clash(self, here: Explanation, assumes: Iterable[Assumption]) -> list[Assumption]:
+        """Those assumptions that contradict what an explanation assumes."""
+        return [one for one in assumes if not here.assumed & one.group & one.keeps]
+
+    def _readings(self, here: Explanation, assumes: Iterable[Assumption]) -> Iterator[Problem]:
+        for one in self._clash(here, assumes):
+            left = one.of.possible(here.assumed)
+            # What ruled the needed readings out, in this explanation; others may have been left by other events.
+            rulings = [self.about.rulings.get((one.of.id, letter)) for letter in one.letters]
+            events = dict.fromkeys(str(ruling) for ruling in rulings if ruling is not None)
+            since = f", since {'; '.join(events)}" if events else ""
+            followed = f"{one.of.id}={'|'.join(left)} is followed{since}"
+            yield Problem(f"it needs {one}, but {followed}", rules_about(self.spec, one), READING)
+
+    def _names(
+        self, here: Explanation, own: Names, seen: Names, called: tuple[Name, ...], *, unordered: bool = False
+    ) -> list[Problem]:
+        if unordered:
+            return self._named_together(own, called)
+        if len(own) != len(seen):
+            return [Problem(f"it names {len(seen)}, expected {len(own)}: {self._list(own)}", (), NAME)]
+        if unify(here, list(zip(own, seen, strict=True))):
+            return []
+        found = []
+        for mine, number, name in zip(own, seen, called, strict=True):
+            if mine == number or (mine < GONE and self._is_new(here, number)):
+                continue
+            expected = self._known(mine) if mine >= 0 else "a name that nothing had before"
+            found.append(f"it names {name_words(name)} where it should name {expected}")
+        return [Problem("; ".join(found) or f"it names {self._list(own)} twice", (), NAME)]
+
+    def _named_together(self, own: Names, called: tuple[Name, ...]) -> list[Problem]:
+        known = {self.belief.name(one) for one in own if one >= 0}
+        if len(own) == len(called) and known <= set(called):
+            return []
+        return [
+            Problem(f"it names {', '.join(map(name_words, called)) or 'nothing'}, expected {self._list(own)}", (), NAME)
+        ]
+
+    def _is_new(self, here: Explanation, number: int) -> bool:
+        held = {*here.names, *here.gone, *(channel.name for channel in here.channels)}
+        return number not in held and number != GONE
+
+    def _known(self, name: int) -> str:
+        known = self.belief.name(name)
+        return "a new name" if known is None else name_words(known)
+
+    def _list(self, names: Names) -> str:
+        return ", ".join(map(self._known, names)) or "nothing"

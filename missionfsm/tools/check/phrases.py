@@ -1,0 +1,49 @@
+"""Events, answers, names and rules in words, each on one line whatever an implementation put into them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.text import printable
+from missionfsm.tools.check.verdict import Broken
+
+
+def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[Broken, ...]:
+    """Rules as a person is told them, each once."""
+    known = spec.rules_by_id
+    found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
+    return tuple(Broken(rule.id, rule.says, str(rule.cite)) for rule in found)
+
+
+def described(spec: Spec, value: Any) -> str:  # noqa: ANN401 - a request, a view, a state or an event of any system
+    """A value of a system in a few words, on one line."""
+    return printable(spec.describe(value))
+
+
+def event_words(spec: Spec, event: Event) -> str:
+    """An event in a few words."""
+    if isinstance(event, Called):
+        return described(spec, event.request)
+    if isinstance(event, Returned):
+        return "answered " + answer_words(event.answer, tuple(map(name_words, event.names)))
+    if isinstance(event, Received):
+        return f"{name_words(event.channel)} showed {described(spec, event.content)}"
+    if isinstance(event, Ended):
+        return f"{name_words(event.channel)} ended" + (f" with {event.code}" if event.code != OK else " cleanly")
+    if isinstance(event, Driven):
+        return described(spec, event.event)
+    return "everything settled" if isinstance(event, Settled) else "a stream was cancelled"
+
+
+def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
+    """An answer with its names."""
+    return printable(f"{answer}{' ' + ', '.join(names) if names else ''}")
+
+
+def name_words(name: Any) -> str:  # noqa: ANN401 - a name
+    """A name as a person reads it."""
+    return printable(" ".join(map(str, name)) if isinstance(name, tuple) else str(name))

@@ -256,7 +256,7 @@ class Nearest:
             last = described(self.spec, channel.last.view)
             rules = (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
             says = f"nothing changed since it showed {last}: " + "; ".join(one.says for one in wrong)
-            yield Problem(says, rules, max(UNOWED, wrong[0].weight))
+            yield Problem(says, rules, UNOWED + wrong[0].weight)
         elif delivery.repeats:
             yield from self._readings(here, (delivery.repeats,))
         else:

@@ -287,6 +287,9 @@ class Spec:
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
         matches: (view, content) to the ways in which the message shows the view, or why it does not.
         delivery: topic to how its messages travel.
+        looks: (view, content) to what is remembered of a message that came, so that an owed one which looks the same is
+            not due: nobody could tell it from the one before. It is the content itself, or None where only an equal
+            view looks the same, as in systems whose messages have names.
         sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
             `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
         concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
@@ -322,6 +325,7 @@ class Spec:
     request_operation: Callable[[Any], str]
     ambiguities: tuple[Ambiguity, ...] = ()
     failing: Callable[[Any, str], Failure | None] = lambda _, __: None
+    looks: Callable[[View, Any], Hashable] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr

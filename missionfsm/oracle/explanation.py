@@ -54,6 +54,7 @@ class Owed:
 
     A `passing` one may be left out, since its state does not last or since nobody has to say it. In the second case,
     where it is `optional`, it may also come once things have settled; one that `stays` may come any number of times.
+    `looks` is what one that has come looked like, where the specification wants it to be remembered (`Spec.looks`).
     """
 
     view: View
@@ -62,6 +63,7 @@ class Owed:
     only: Assumption | None = None
     optional: bool = False
     stays: bool = False
+    looks: Hashable = None
 
 
 @value(cache_hash=True)
@@ -155,7 +157,9 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         return Ready(one.answer, each(one.names), one.assumes, one.rules) if one.names else one
 
     def owed(one: Owed) -> Owed:
-        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays) if one.names else one
+        if not one.names:
+            return one
+        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.looks)
 
     return Explanation(
         explanation.state,

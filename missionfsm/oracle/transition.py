@@ -244,13 +244,37 @@ class Oracle:
         repeats = delivery.echoes if echo else delivery.repeats
         if channel.last and repeats and again:
             yield channel.last, channel.owed, meet(assumed, (repeats,))
+        ways: tuple[int, ...] = (assumed,)
         for index, owed in enumerate(() if echo else channel.owed):
             left = channel.owed[index if owed.stays else index + 1 :]
-            yield owed, left, meet(assumed, (owed.only,)) if owed.only else assumed
-            if not owed.passing:
-                assumed = meet(assumed, (delivery.skips,)) if delivery.skips else 0
-            if not assumed:
+            for way in ways:
+                yield owed, left, meet(way, (owed.only,)) if owed.only else way
+            ways = tuple(dict.fromkeys(after for way in ways for after in self._past(channel, owed, way)))
+            if not ways:
                 return
+
+    def _past(self, channel: Channel, owed: Owed, assumed: int) -> tuple[int, ...]:
+        """What is assumed where a channel does not show something that it owes: any of these, or it has to show it."""
+        if owed.passing:
+            return (assumed,)
+        same = self._unchanged(channel, owed, assumed)
+        skips = self.spec.delivery(channel.topic).skips
+        skipped = meet(assumed, (skips,)) if skips else 0
+        return same if assumed in same or not skipped else (*same, skipped)
+
+    def _unchanged(self, channel: Channel, owed: Owed, assumed: int) -> tuple[int, ...]:
+        """What is assumed where an owed message shows what the channel showed last, so that nobody could tell it."""
+        last = channel.last
+        if last is None:
+            return ()
+        if (owed.view, owed.names) == (last.view, last.names):
+            return (assumed,)
+        if last.looks is None or owed.names:
+            return ()
+        matches = self.moves.matches(owed, last.looks)
+        if isinstance(matches, Mismatch):
+            return ()
+        return tuple(after for match in matches if (after := meet(assumed, match.assumes)))
 
     def _shown(  # noqa: PLR0913 - what a message is made of
         self,
@@ -274,7 +298,8 @@ class Oracle:
                 agreed = meet(assumption, match.assumes)
                 if not agreed:
                     continue
-                shown = Channel(channel.name, channel.topic, Owed(owed.view, owed.names), left)
+                last = Owed(owed.view, owed.names, looks=self.spec.looks(owed.view, content))
+                shown = Channel(channel.name, channel.topic, last, left)
                 channels = (*here.channels[:position], shown, *here.channels[position + 1 :])
                 after = here.but(assumed=agreed, channels=channels)
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
@@ -295,11 +320,10 @@ class Oracle:
         for position, channel in enumerate(explanation.channels):
             if channel.name != name or (topic is not None and channel.topic != topic):
                 continue
-            assumed = explanation.assumed
-            if not all(owed.passing for owed in channel.owed):
-                skips = self.spec.delivery(channel.topic).skips
-                assumed = meet(assumed, (skips,)) if skips else 0
-            if assumed:
+            ways: tuple[int, ...] = (explanation.assumed,)
+            for owed in channel.owed:
+                ways = tuple(dict.fromkeys(after for before in ways for after in self._past(channel, owed, before)))
+            for assumed in ways:
                 passed = _offering(channel)
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
                 yield explanation.but(assumed=assumed, channels=channels), channel.topic
@@ -351,27 +375,36 @@ class Oracle:
                 here = sighting.explanation
                 if self.moves.outdone(seen, here):
                     continue
-                rest = None if self.moves.urgent(here.state) else self._nothing_owed(here)
-                if rest:
+                rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here))
+                for rest in rests:
                     yield Sighting(rest, sighting.rules)
-                if rest is None or rest.assumed != here.assumed:
+                if here.assumed not in (rest.assumed for rest in rests):
                     later += (Sighting(one.explanation, sighting.rules + one.rules) for one in self.moves.silent(here))
             todo = later
 
-    def _nothing_owed(self, explanation: Explanation) -> Explanation | None:
-        """The explanation in which every channel has shown where things stand, or None if one has not."""
-        assumed, channels = explanation.assumed, []
+    def _nothing_owed(self, explanation: Explanation) -> Iterator[Explanation]:
+        """The explanations in which every channel has shown where things stand; none if one has not."""
+        ways: tuple[int, ...] = (explanation.assumed,)
         for channel in explanation.channels:
             due = [owed for owed in channel.owed if not owed.passing]
             if due:
-                # What is back where the subscriber saw it last may stay unsaid by one that sends only the latest.
-                skips = self.spec.delivery(channel.topic).skips
-                told = channel.last and (due[-1].view, due[-1].names) == (channel.last.view, channel.last.names)
-                assumed = meet(assumed, (skips,)) if skips and told else 0
-            channels.append(
-                Channel(channel.name, channel.topic, channel.last, _offers(channel)) if channel.owed else channel
-            )
-        return tidy(explanation.but(assumed=assumed, channels=tuple(channels))) if assumed else None
+                ways = tuple(dict.fromkeys(after for before in ways for after in self._told(channel, due, before)))
+        if ways:
+            channels = tuple(_offering(channel) if channel.owed else channel for channel in explanation.channels)
+            for assumed in ways:
+                yield tidy(explanation.but(assumed=assumed, channels=channels))
+
+    def _told(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
+        """What is assumed where the subscriber knows all that a channel owes, since it saw that last.
+
+        What is back where the subscriber saw it last may stay unsaid by one that sends only the latest.
+        """
+        ways: tuple[int, ...] = (assumed,)
+        for owed in due:
+            ways = tuple(after for before in ways for after in self._unchanged(channel, owed, before))
+        skips = self.spec.delivery(channel.topic).skips
+        skipped = meet(assumed, (skips,)) if skips and assumed not in ways else 0
+        return (*ways, *self._unchanged(channel, due[-1], skipped)) if skipped else ways
 
 
 def _offering(channel: Channel) -> Channel:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from status_helpers import (
+    DRIVES,
     SETTLED,
     WORLDS,
     at,
@@ -25,6 +26,7 @@ from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.verdict import Outcome
 
 BATTERY, ONLINE, ROBOT = "SubscribeBatteryStatus", "SubscribeOnlineStatus", "SubscribeRobotStatus"
+ERRORS = "SubscribeErrorCodes"
 R1 = WORLDS[0]["robots"][0]
 FIRST = R1["state"]["battery"]
 SECOND = WORLDS[0]["robots"][1]["state"]["battery"]
@@ -53,6 +55,37 @@ def readings(found: Judge, entry: str) -> tuple[str, ...]:
     assert found.violation is None
     [letters] = [left for one, left in found.verdict().readings.items() if f"{one}.".startswith(f"{entry}.")]
     return letters
+
+
+def _errors(stream: int, robot: str, number: int, codes: Any) -> Any:
+    return {"stream": stream, "message": {"errorCodes": {robot: {"metadata": metadata(number), "codes": codes}}}}
+
+
+def test_what_looks_like_the_message_before_is_not_due() -> None:
+    """An empty error list and none look the same: who saw one is owed nothing at the other; who saw codes is."""
+    watched = opened(1, ERRORS, by_ids("r3"))
+    never = [*watched, _errors(1, "r3", 1, []), report("r3", "errorCodes", {"codes": []}), SETTLED]
+    assert conforms(*never, world=WORLDS[1])
+    code = {"code": 7, "severity": "SEVERITY_LOW", "message": ""}
+    assert not conforms(*never, report("r3", "errorCodes", {"codes": [code]}), SETTLED, world=WORLDS[1])
+    withheld = [*watched, SETTLED, report("r3", "errorCodes", {"codes": []})]
+    assert conforms(*withheld, _errors(1, "r3", 1, []), SETTLED, world=WORLDS[1])
+    assert not conforms(*withheld, SETTLED, world=WORLDS[1])
+
+
+def test_topics_may_differ_in_what_they_show_of_what_was_never_reported() -> None:
+    """AS-09: a battery may be withheld where an empty error list is shown; one topic is read in one way."""
+    battery_first = [*opened(1, BATTERY, by_ids("r3")), SETTLED]
+    codes = [*opened(2, ERRORS, by_ids("r3")), _errors(2, "r3", 1, []), SETTLED]
+    assert conforms(*battery_first, *codes, world=WORLDS[1])
+    again = [*opened(3, ERRORS, by_ids("r3")), SETTLED]
+    assert not conforms(*battery_first, *codes, *again, world=WORLDS[1])
+
+
+@pytest.mark.parametrize("drives", [(), DRIVES])
+def test_internal_may_come_to_a_subscription_whoever_drives_faults(drives: tuple[str, ...]) -> None:
+    """It stands in the table of every subscription, and faults are armed for GetRobotStatus alone."""
+    assert conforms(*refused(BATTERY, by_ids("r1"), "INTERNAL"), *SUBSCRIBED, drives=drives)
 
 
 # The first message.

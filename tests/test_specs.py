@@ -170,7 +170,7 @@ def test_the_worked_example_comes_out_as_it_is_told() -> None:
     verdict = check(mission, transcript.head(head), lines)
     assert verdict.conforms
     assert verdict.readings["AM-09"] == ("a",)
-    assert verdict.readings["AM-17.last"] == ("a", "d")
+    assert verdict.readings["AM-17.last.base-navigate"] == ("a", "d")
     refused = {"error": {"status": "FAILED_PRECONDITION"}}
     ending = [line if line.get("return") != 5 else {"return": 5, **refused} for line in lines]
     other = check(mission, transcript.head(head), ending)

@@ -31,6 +31,9 @@ from missionfsm.kernel.values import value
 State = Any
 """A frozen, hashable value of the system."""
 
+ONCE_HAD = -1
+"""In the place of the position of a name: the state has it no more."""
+
 View = Any
 """What one message shows, as a frozen, hashable value; names are left out and stand beside it."""
 
@@ -279,7 +282,8 @@ class Spec:
         initial: the state in a world (the parameters that `reset` is given, as a value of the system).
         operations: what callers may ask, by name.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
-            are the positions of the request's names among those of the state, None for one that the state has not.
+            are the positions of the request's names among those of the state, None for one that the state has not, or
+            `ONCE_HAD` for one that it had once, if the spec `recalls` names.
         failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated
             among the outcomes.
         drives: what a tester may make happen, by name.
@@ -299,6 +303,7 @@ class Spec:
         rules: all rules of the system that belong to no operation.
         answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
             why they do not; None where they have to be equal.
+        recalls: whether it matters to its outcomes that a name was something's once.
         decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
@@ -334,6 +339,7 @@ class Spec:
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
+    recalls: bool = False
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...]], bool] | None = None

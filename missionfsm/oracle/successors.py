@@ -11,7 +11,7 @@ from typing import Any
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, meet
-from missionfsm.kernel.spec import Failure, Match, Mismatch, Spec, Step
+from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
     GONE,
@@ -194,7 +194,7 @@ class Moves:
         return explanation.but(calls=tuple(calls))
 
     def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
-        refs = tuple(explanation.ref(arg) for arg in call.args)
+        refs = self.refs(explanation, call.args)
         for step in self.idle(explanation.state, call.request, refs):
             names = tuple(explanation.names[ref] for ref in step.refs)
             if self.may_answer(call, step.answer, names):  # type: ignore[arg-type]  # an idle step has an answer
@@ -225,12 +225,22 @@ class Moves:
             return None
         return failure
 
+    def refs(self, explanation: Explanation, args: Names) -> tuple[int | None, ...]:
+        """The positions of a request's names, as `Spec.outcomes` takes them."""
+        found = tuple(map(explanation.ref, args))
+        if self.spec.recalls and None in found:
+            return tuple(
+                ONCE_HAD if ref is None and (arg == GONE or arg in explanation.gone) else ref
+                for ref, arg in zip(found, args, strict=True)
+            )
+        return found
+
     def addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
         """The explanation with the positions of a request's names.
 
         A name that nothing has may be that of something whose name was not seen yet.
         """
-        yield explanation, tuple(explanation.ref(arg) for arg in args)
+        yield explanation, self.refs(explanation, args)
         for arg in args:
             if arg != GONE and explanation.ref(arg) is None:
                 for own in explanation.names:

@@ -37,16 +37,16 @@ def test_the_event_that_ruled_a_reading_out_is_named() -> None:
     )
     verdict = check(MISSION, head(HEAD), lines)
     told = "ClearMissionStatus() was answered OK"
-    assert (verdict.readings["AM-33"], verdict.ruled_out["AM-33"]) == (("a",), {"b": told, "c": told})
-    assert f"  AM-33 = a (not b, c: {told})" in str(verdict).splitlines()
-    assert verdict.to_json()["ruled_out"]["AM-33"] == {"b": told, "c": told}
+    assert (verdict.readings["AM-33.fresh"], verdict.ruled_out["AM-33.fresh"]) == (("a",), {"b": told, "c": told})
+    assert f"  AM-33.fresh = a (not b, c: {told})" in str(verdict).splitlines()
+    assert verdict.to_json()["ruled_out"]["AM-33.fresh"] == {"b": told, "c": told}
 
 
 def test_a_reading_that_was_asked_for_was_ruled_out_by_nothing() -> None:
     """Only events rule readings out; what a user decides beforehand is no event."""
     lines = call(1, "ClearMissionStatus", {}, result={"missionIds": []})
-    verdict = check(MISSION, head(HEAD), lines, readings={"AM-33": "a"})
-    assert "AM-33" not in verdict.ruled_out
+    verdict = check(MISSION, head(HEAD), lines, readings={"AM-33.fresh": "a"})
+    assert "AM-33.fresh" not in verdict.ruled_out
 
 
 @pytest.mark.parametrize("name", names())
@@ -100,8 +100,8 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     [
         (
             "ClearMissionStatus/FAILED_PRECONDITION/nothing-is-listed",
-            {"AM-33": ("a",)},
-            "only under AM-33=b, which is not followed",
+            {"AM-33.cleared": ("a",)},
+            "only under AM-33.cleared=b, which is not followed",
         ),
         ("ChargeRobot/NOT_FOUND/the-robot-has-no-contact-dock", {}, "and that in 1 of 8 worlds"),
         ("UpdateMission/NOT_FOUND/the-mission-has-ended-and-another-is-active", {}, "no step in "),

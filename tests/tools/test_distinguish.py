@@ -36,7 +36,7 @@ def trials(name: str) -> tuple[Trial, ...]:
     return lab.trials(ambiguity, tuple(ambiguity.readings))
 
 
-@pytest.mark.parametrize("name", ["AM-08", "AM-09", "AM-14.ended", "AM-17.last", "AM-33", "AM-36"])
+@pytest.mark.parametrize("name", ["AM-08", "AM-09", "AM-14.ended", "AM-17.last.servi-delivery", "AM-33.fresh", "AM-36"])
 def test_an_experiment_tells_what_it_says(name: str) -> None:
     """The reference under the reading that it follows is explained; with one that it is against, it is not."""
     found = trials(name)
@@ -93,7 +93,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "letter"), [("AM-09", "b"), ("AM-17.patrol", "b")])
+@pytest.mark.parametrize(("name", "letter"), [("AM-09", "b"), ("AM-17.patrol.servi-delivery-patrol", "b")])
 def test_a_run_decides_what_it_can(name: str, letter: str) -> None:
     """After a whole run with experiments nothing is open that one for the reading really followed would decide."""
     verdict = conform(

@@ -17,7 +17,7 @@ from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import show, with_bare_feedback
 from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Family, Fault, Kind, World
-from missionfsm.bear.mission.stream import Listing, Seen, without_ids
+from missionfsm.bear.mission.stream import MORE, Listing, Seen, without_ids
 from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.messages import Command, Goal, MissionStates
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel, key_of, read, unknown_fields, write
@@ -205,6 +205,7 @@ _IDS = {
     "ClearMissionStatus": wire.MissionIds,
 }
 _NAMED, _LISTED = Answer(OK), Answer(OK, unordered=True)
+_WITH_MORE = Answer(OK, MORE), Answer(OK, MORE, unordered=True)
 
 
 def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
@@ -224,13 +225,16 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     try:
         if kind is None:
             read(wire.Empty, result)
-            return _NAMED, ()
+            said = [name for name, value in result.items() if value is not None]
+            return (Answer(OK, Garbled(f"it has {brief(said[0])}; the answer has no fields")) if said else _NAMED), ()
         found: wire.MissionId | wire.MissionIds = read(kind, result)
     except MalformedError as error:
         return Answer(OK, Garbled(str(error)), unordered), ()
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
     if not all(ids):
         return Answer(OK, Garbled("a mission id is missing"), unordered), ()
+    if unknown_fields(kind, result):
+        return _WITH_MORE[unordered], ids
     return _LISTED if unordered else _NAMED, ids
 
 
@@ -250,18 +254,19 @@ def write_answer(method: str, _: Answer, names: tuple[Name, ...]) -> JSON:
 def strip(message: JSON) -> tuple[Part, ...]:
     """The mission ids of a status message, its sequence number, and the message without them.
 
-    What is not of the documented form is left in, for `content` to find.
+    What is not of the documented form, or worth a remark, is left in for `content` to find.
     """
     if not isinstance(message, dict):
         return (((), (), message),)
     rest = message.copy()
     marks: tuple[Mark, ...] = ()
     metadata = message.get("metadata")
-    number = _sequence_number(metadata) if isinstance(metadata, dict) else None
-    if number is None:
-        rest["metadata"] = metadata
-    else:
+    number, left = _sequence_number(metadata) if isinstance(metadata, dict) else (None, metadata)
+    if number is not None:
         marks = ((None, number),)
+    if number is None or left:
+        rest["metadata"] = left
+    else:
         del rest["metadata"]
     key = "missionStates" if message.get("missionStates") is not None else "mission_states"
     states = message.get(key)
@@ -296,45 +301,57 @@ def _nameless(missions: list[JSON]) -> tuple[tuple[Name, ...], list[JSON]] | Non
 _USUAL_TIMESTAMP = re.compile(USUAL_TIMESTAMP)
 
 
-def _sequence_number(metadata: dict[str, JSON]) -> int | None:
-    """The sequence number of well-formed metadata; None where they are malformed."""
+def _sequence_number(metadata: dict[str, JSON]) -> tuple[int | None, JSON]:
+    """The sequence number of well-formed metadata, None where they are malformed, and what is left to be looked at.
+
+    That is everything where they are malformed; otherwise what is not documented, and that a timestamp is absent.
+    """
     number, timestamp = metadata.get("sequenceNumber"), metadata.get("timestamp")
     if type(number) is int and type(timestamp) is str and len(metadata) == 2:
         usual = 0 <= number < 1 << 63 and _USUAL_TIMESTAMP.fullmatch(timestamp)
         if usual:
-            return number  # by far the commonest form, read without further ado
+            return number, None  # by far the commonest form, read without further ado
     try:
-        return read(wire.EventMetadata, metadata).sequence_number
+        found = read(wire.EventMetadata, metadata)
     except MalformedError:
-        return None
+        return None, metadata
+    left = {name: metadata[name] for name in unknown_fields(wire.EventMetadata, metadata)}
+    return found.sequence_number, {"timestamp": None, **left} if found.timestamp is None else left
 
 
 def content(rest: JSON) -> Seen | Garbled:
     """What a stripped status message shows."""
     bare: list[bool] = []
+    metadata: JSON = {}
     if isinstance(rest, dict) and "metadata" in rest:
-        return Garbled(_about_metadata(rest["metadata"]))
+        metadata = rest["metadata"]
+        wrong = _about_metadata(metadata)
+        if wrong:
+            return Garbled(wrong)
+        rest = {name: value for name, value in rest.items() if name != "metadata"}
     try:
-        status = read(wire.MissionStatus, _wrapped_feedback(rest, bare))
+        wrapped = _wrapped_feedback(rest, bare)
+        status = read(wire.MissionStatus, wrapped)
     except MalformedError as error:
         return Garbled(str(error))
     states = status.mission_states or MissionStates()
     named = tuple(bool(one.mission_id) for one in states.missions)
-    return Seen(without_ids(states), named, tuple(bare))
+    more = unknown_fields(wire.MissionStatus, wrapped) or unknown_fields(wire.EventMetadata, metadata)
+    return Seen(without_ids(states), named, tuple(bare), "timestamp" not in metadata, bool(more))
 
 
 _MAYBE_BARE = ("serviFeedback", "cartiFeedback", "servi_feedback", "carti_feedback")
 
 
 def _about_metadata(metadata: JSON) -> str:
-    """What is wrong with metadata that are left in a message."""
+    """What is wrong with metadata that are left in a message; nothing where they are only worth a remark."""
     if metadata is None:
         return "metadata: it is missing"
     try:
         read(wire.EventMetadata, metadata)
     except MalformedError as error:
         return str(error.inside("metadata"))
-    return "metadata: they cannot be read"
+    return ""
 
 
 def _wrapped_feedback(rest: JSON, bare: list[bool]) -> JSON:

@@ -25,9 +25,9 @@ _Frame = tuple[World, Mission | None, bool, bool, Fault | None]
 _Ops = tuple[tuple[Op, tuple[int, ...]], ...]
 
 
-_Move = tuple[int, int, int, bool, _Ops]
+_Move = tuple[int, int, int, bool, bool, _Ops]
 """An edit as numbers: the frame after it where missions wait then, and where none does; how many missions it adds, and
-whether it makes room by taking the ended ones off the list; what becomes of the lists."""
+whether it makes room by taking the ended ones off the list, and those that wait; what becomes of the lists."""
 
 
 class Shortcut:
@@ -85,8 +85,8 @@ class Shortcut:
         room = self._most - len(done) - (self._frame[frame][1] is not None) - len(pending)
         found: list[Code] = []
         add = found.append
-        for busy, idle, added, forgets, ops in moves:
-            if added <= room or (forgets and added <= room + len(done)):
+        for busy, idle, added, forgets, drops, ops in moves:
+            if added <= room or added <= room + forgets * len(done) + drops * len(pending):
                 if not ops:
                     add((busy if pending else idle, done, pending))
                 else:
@@ -96,7 +96,7 @@ class Shortcut:
         starts = self._starts.get((frame, head))
         if starts is None:
             starts = self._starts[frame, head] = self._due(code)
-        for busy, idle, _, _, ops in starts:
+        for busy, idle, _, _, _, ops in starts:
             ended, waiting = self._moved(ops, done, pending)
             add((busy if waiting else idle, ended, waiting))
         return found
@@ -113,9 +113,11 @@ class Shortcut:
                 pending = pending[1:]
             elif op is Op.FORGET_ENDED:
                 done = ()
-            elif op is Op.CANCEL_QUEUE:
-                gone = (self._mission[one].moved("cancel with the queue") for one in pending)
-                done, pending = (*done, *self._numbers_ended(gone)), ()
+            elif op is Op.END_QUEUE:
+                move = _MOVES[what[0]]
+                done, pending = (*done, *self._numbers_ended(self._mission[one].moved(move) for one in pending)), ()
+            elif op is Op.HOLD:
+                pending = what + pending[1:]
             elif op is Op.PUT_FIRST:
                 pending = what + pending
             elif op is Op.DROP_QUEUE:
@@ -173,6 +175,10 @@ class Shortcut:
             elif op is Op.END:
                 ops.append((op, self._numbers_ended((what,))))
                 active = None
+            elif op is Op.HOLD:
+                ops.append((op, self._numbers((what,))))
+            elif op is Op.END_QUEUE:
+                ops.append((op, (_MOVES.index(what),)))
             elif op in _LISTED:
                 ops.append((op, ()))
                 active = what if op is Op.START else None if op is Op.CLEAR else active
@@ -187,10 +193,12 @@ class Shortcut:
         busy = self._frame_number((world, active, halted, fresh, fault))
         idle = self._frame_number((world, active, False, fresh, fault))
         forgets = any(op in (Op.FORGET_ENDED, Op.CLEAR) for op, _ in edit)
-        return busy, idle, added, forgets, tuple(ops)
+        drops = any(op is Op.DROP_QUEUE for op, _ in edit)
+        return busy, idle, added, forgets, drops, tuple(ops)
 
 
-_LISTED = frozenset({Op.START, Op.CANCEL_QUEUE, Op.DROP_QUEUE, Op.FORGET_ENDED, Op.CLEAR})
+_LISTED = frozenset({Op.START, Op.DROP_QUEUE, Op.FORGET_ENDED, Op.CLEAR})
+_MOVES = ("cancel with the queue", "fail with the queue")
 _COUNTED = Mission(Kind.RETURN, state=State.STATE_SUCCEEDED)
 
 
@@ -221,5 +229,6 @@ def _possible(robot: Situation, target: Target) -> bool:
         Target.ACTIVE: robot.active is not None,
         Target.QUEUED: robot.queued,
         Target.ENDED: robot.ended,
+        Target.CLEARED: True,
         Target.UNKNOWN: True,
     }[target]

@@ -16,28 +16,38 @@ from missionfsm.bear.mission.inputs import Call, Request, Target, Wanted
 from missionfsm.bear.mission.operations import OPERATIONS, ranking
 from missionfsm.bear.mission.readings import (
     AM_06,
+    AM_07,
     AM_09,
+    AM_09_SKIP,
     AM_10,
+    AM_10_START,
     AM_12_HALTED,
     AM_13,
     AM_17_LAST,
     AM_17_PATROL,
     AM_18,
     AM_19,
+    AM_19_RETURN,
     AM_25,
     AM_27,
     AM_29,
     AM_30,
-    AM_34_GAP,
-    AM_34_HALTED,
+    AM_34,
     AM_37_QUEUED,
     AM_41,
     AM_43,
+    AM_45_NONE,
     AM_45_WHEN,
+    AM_53,
     AM_61,
     AM_64,
+    AM_64_AUTOMATIC,
+    BLOCKED,
+    GAP,
+    HALTED,
+    part_of,
 )
-from missionfsm.bear.mission.rules import CHARGING, LAST_GOAL
+from missionfsm.bear.mission.rules import ABILITY, CHARGING, LAST_GOAL
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     GOALLESS,
@@ -72,7 +82,7 @@ from missionfsm.kernel.rules import (
     Rule,
     decide,
 )
-from missionfsm.kernel.spec import Failure
+from missionfsm.kernel.spec import ONCE_HAD, Failure
 from missionfsm.kernel.values import value
 
 Assumed = tuple[Assumption, ...]
@@ -92,6 +102,8 @@ class Outcome:
     whose: str = NOBODY
     assumes: Assumed = ()
     rules: tuple[str, ...] = ()
+    applied: bool = True
+    """See `missionfsm.kernel.spec.Step`."""
 
 
 @functools.lru_cache(maxsize=100_000)
@@ -108,6 +120,10 @@ def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcom
         else:
             rules = tuple(rule.id for rule in decision.rules)
             found.append(Outcome(decision.code, assumes=decision.assumes, rules=rules))
+        if robot.world.blocked and operation.name in AM_53 and all(rule.kind == ABILITY for rule in decision.rules):
+            # The request was accepted, and a robot that is unable to start does not confirm.
+            late = (*decision.assumes, AM_53[operation.name]["t"])
+            found.append(Outcome(DEADLINE_EXCEEDED, assumes=late, applied=False))
     found = [faulty for one in found for faulty in _with_fault(robot, one, operation.failures)]
     found.sort(key=lambda one: one.code != OK)
     return tuple(found)
@@ -151,14 +167,15 @@ def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
 # Missions that come.
 
 
-def _accepted(robot: Situation, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
+def _accepted(robot: Situation, call: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
     """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
 
     Args:
+        call: the operation.
         waits: whether it does not start at once.
     """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
-    for mission, assumes in _as_possible(robot, wanted.kind, wanted.goals):
+    for mission, assumes in _as_possible(robot, call, wanted.kind, wanted.goals):
         if wanted.kind not in AUTOMATIC:
             yield mission, assumes
             continue
@@ -167,28 +184,31 @@ def _accepted(robot: Situation, wanted: Wanted, *, waits: bool) -> Iterator[tupl
             # Selecting when it is created and when it starts is the same for a mission that starts at once.
             yield evolve(mission, goal=NOT_CHOSEN), assumes
         else:
-            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, AM_45_WHEN["i", "j"])
-            yield evolve(mission, goal=chosen), (*assumes, AM_45_WHEN["h"])
+            when = AM_45_WHEN[part_of(wanted.kind)]
+            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, when["i", "j"])
+            yield evolve(mission, goal=chosen), (*assumes, when["h"])
 
 
-def _as_possible(robot: Situation, kind: Kind, goals: tuple[Goal, ...]) -> Iterator[tuple[Mission, Assumed]]:
+def _as_possible(robot: Situation, call: str, kind: Kind, goals: tuple[Goal, ...]) -> Iterator[tuple[Mission, Assumed]]:
     """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
     reasons = []
     if is_missing(robot.world, goals):
-        reasons.append((AM_43["b"], AM_43["d"]))
+        reasons.append((AM_43[call]["b"], AM_43[call]["d"]))
     if is_foreign(robot.world, kind):
-        reasons.append((AM_41["c"], AM_41["d"]))
+        reasons.append((AM_41[call]["c"], AM_41[call]["d"]))
     for how in itertools.product(*reasons):
         at_once = any(one in how for one, _ in reasons)
         yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
 
 
-def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> list[tuple[tuple[Mission, ...], Assumed]]:
+def _all_accepted(robot: Situation, call: str, wanted: tuple[Wanted, ...]) -> list[tuple[tuple[Mission, ...], Assumed]]:
     """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
-    waits = robot.active is not None or robot.queued or robot.world.blocked
+    first = robot.active is None and not robot.queued
+    held = first and robot.world.blocked
+    waits = not first or held
     ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), ANYTHING)]
     for one in wanted:
-        accepted = tuple(_accepted(robot, one, waits=waits))
+        accepted = tuple(_accepted(robot, call, one, waits=waits))
         ways = [
             ((*missions, mission), (*assumed, *assumes) if assumes else assumed, left)
             for missions, assumed, before in ways
@@ -196,66 +216,121 @@ def _all_accepted(robot: Situation, wanted: tuple[Wanted, ...]) -> list[tuple[tu
             if (left := meet(before, assumes))
         ]
         waits = True
-    return [(missions, tuple(dict.fromkeys(assumed))) for missions, assumed, _ in ways]
+    return [
+        ((evolve(missions[0], first=call), *missions[1:]) if held else missions, tuple(dict.fromkeys(assumed)))
+        for missions, assumed, _ in ways
+    ]
 
 
-def _listed_anew(robot: Situation, edit: Edit) -> Iterator[Way]:
+def _listed_anew(robot: Situation, call: str, edit: Edit) -> Iterator[Way]:
     """AM-13: the new missions follow the ended ones, or replace them."""
     if not robot.ended:
         yield edit, ()
         return
-    yield edit, (AM_13["a"],)
-    yield ((Op.FORGET_ENDED, None), *edit), (AM_13["b"],)
+    yield edit, (AM_13[call]["a"],)
+    yield ((Op.FORGET_ENDED, None), *edit), (AM_13[call]["b"],)
+
+
+def waiting(robot: Situation) -> str:
+    """Why missions wait where none is active: a part of AM-07, AM-34 and AM-37."""
+    return HALTED if robot.halted else BLOCKED if robot.world.blocked else GAP
 
 
 def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
     paused = (AM_06["b"],) if robot.active is not None else ()
-    for missions, assumes in _all_accepted(robot, call.request.wanted):
-        for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
+    operation = call.request.operation
+    for missions, assumes in _all_accepted(robot, operation, call.request.wanted):
+        for edit, anew in _listed_anew(robot, operation, ((Op.ADD, missions),)):
             yield Outcome(OK, edit, ADDED, (*paused, *assumes, *anew))
 
 
 def _create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
     (wanted,) = call.request.wanted
-    each = tuple(evolve(wanted, goals=(goal,)) for goal in wanted.goals)
+    for parts, how in _workflow_missions(wanted):
+        for missions, assumes in _all_accepted(robot, "CreateMissionWorkflow", parts):
+            for edit, anew in _listed_anew(robot, "CreateMissionWorkflow", ((Op.ADD, missions),)):
+                yield from _joining(robot, edit, (*how, *assumes, *anew))
+
+
+def _joining(robot: Situation, edit: Edit, assumes: Assumed) -> Iterator[Outcome]:
+    """AM-07: a workflow joins the missions that wait, or replaces them; a halted queue may go on with it."""
+    if not robot.queued:
+        yield Outcome(OK, edit, ADDED, assumes)
+        return
+    how = AM_07[waiting(robot)]
+    yield Outcome(OK, edit, ADDED, (*assumes, how["b"]))
+    yield Outcome(OK, ((Op.DROP_QUEUE, None), *edit, (Op.HALT, False)), ADDED, (*assumes, how["r"]))
+    if robot.halted:
+        yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, how["b"]))
+
+
+@functools.lru_cache(maxsize=1_000)
+def _workflow_missions(wanted: Wanted) -> tuple[tuple[tuple[Wanted, ...], Assumed], ...]:
+    """AM-25, AM-27: the missions that a workflow may create, with their goals."""
+    assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - as above
+    part = part_of(wanted.kind)
+    many, point = AM_25[part], AM_27[part]
+    back, place = Wanted(Kind.RETURN), (RETURN_POINT,)
+
+    def to(*goals: Goal) -> Wanted:
+        return evolve(wanted, goals=goals)
+
+    whole = wanted.goals
+    each = tuple(map(to, whole))
     ways: list[tuple[tuple[Wanted, ...], Assumed]] = [
-        ((wanted,), (AM_25["a"], AM_27["a"])),
-        ((evolve(wanted, goals=(*wanted.goals, RETURN_POINT)),), (AM_25["a"], AM_27["b"])),
-        ((wanted, Wanted(Kind.RETURN)), (AM_25["b"],)),
-        (each, (AM_25["c"],)),
-        ((*each, Wanted(Kind.RETURN)), (AM_25["d"],)),
+        ((wanted,), (many["a"], point["a"])),
+        ((to(*whole, *place),), (many["a"], point["b"])),
+        ((wanted, back), (many["b"],)),
+        (each, (many["c"],)),
+        ((*each, back), (many["d"],)),
     ]
-    for parts, how in ways:
-        for missions, assumes in _all_accepted(robot, parts):
-            for edit, anew in _listed_anew(robot, ((Op.ADD, missions),)):
-                yield Outcome(OK, edit, ADDED, (*how, *assumes, *anew))
-                if robot.halted:
-                    yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*how, *assumes, *anew))
+    others = (
+        (to(*whole, *place), back),
+        (to(*place, *whole),),
+        (to(*place, *whole, *place),),
+        (to(*whole, *place, *place),),
+        (back, wanted),
+        (back, wanted, back),
+        (wanted, back, back),
+        tuple(to(goal, *place) for goal in whole),
+        tuple(itertools.chain.from_iterable((one, back) for one in each)),
+        *(tuple(to(*group) for group in groups) for groups in _groups(whole)),
+    )
+    known = {parts for parts, _ in ways}
+    return (*ways, *((parts, (many["x"],)) for parts in dict.fromkeys(others) if parts not in known))
+
+
+def _groups(goals: tuple[Goal, ...]) -> Iterator[tuple[tuple[Goal, ...], ...]]:
+    """Every way to cut goals into groups of which none is empty."""
+    for cuts in itertools.product((False, True), repeat=len(goals) - 1):
+        ends = [0, *(at for at, cut in enumerate(cuts, 1) if cut), len(goals)]
+        yield tuple(goals[begin:end] for begin, end in itertools.pairwise(ends))
 
 
 def _append(robot: Situation, call: Call) -> Iterator[Outcome]:
-    for missions, assumes in _all_accepted(robot, call.request.wanted):
+    operation = call.request.operation
+    for missions, assumes in _all_accepted(robot, operation, call.request.wanted):
         edit: Edit = ((Op.ADD, missions),)
         if robot.halted:
-            yield Outcome(OK, edit, ADDED, (*assumes, AM_12_HALTED["a"]))
-            yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, AM_12_HALTED["c"]))
+            how = AM_12_HALTED[operation]
+            yield Outcome(OK, edit, ADDED, (*assumes, how["a"]))
+            yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, how["c"]))
         else:
             yield Outcome(OK, edit, ADDED, assumes)
 
 
 def _charge(robot: Situation, _: Call) -> Iterator[Outcome]:
-    charge = (Mission(Kind.CHARGE),)
-    waiting = robot.active is None and robot.queued
-    ways: list[Way] = (
-        [
-            (((Op.ADD, charge), (Op.HALT, False)), (AM_37_QUEUED["b"],)),
-            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (AM_37_QUEUED["c"],)),
+    alone = robot.active is None and not robot.queued
+    charge = (Mission(Kind.CHARGE, first="ChargeRobot" if alone and robot.world.blocked else ""),)
+    ways: list[Way] = [(((Op.ADD, charge),), ())]
+    if robot.active is None and robot.queued:
+        how = AM_37_QUEUED[waiting(robot)]
+        ways = [
+            (((Op.ADD, charge), (Op.HALT, False)), (how["b"],)),
+            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (how["c"],)),
         ]
-        if waiting
-        else [(((Op.ADD, charge),), ())]
-    )
     for edit, assumes in ways:
-        for whole, anew in _listed_anew(robot, edit):
+        for whole, anew in _listed_anew(robot, "ChargeRobot", edit):
             yield Outcome(OK, whole, ADDED, (*assumes, *anew))
 
 
@@ -263,14 +338,16 @@ def _charge(robot: Situation, _: Call) -> Iterator[Outcome]:
 
 
 def _with_queue(robot: Situation, how: Ambiguity, ended: Edit) -> Iterator[Way]:
-    """AM-09, AM-10: the waiting missions go on, halt, are cancelled too or vanish."""
+    """AM-09, AM-10: the waiting missions go on, halt, are cancelled too, vanish, or fail too."""
     if not robot.queued:
         yield ended, ()
         return
     yield ended, (how["a"],)
     yield (*ended, (Op.HALT, True)), (how["b"],)
-    yield (*ended, (Op.CANCEL_QUEUE, None)), (how["c"],)
+    yield (*ended, (Op.END_QUEUE, "cancel with the queue")), (how["c"],)
     yield (*ended, (Op.DROP_QUEUE, None)), (how["d"],)
+    if "e" in how.readings:
+        yield (*ended, (Op.END_QUEUE, "fail with the queue")), (how["e"],)
 
 
 def end(mission: Mission, trigger: str) -> Edit:
@@ -287,16 +364,21 @@ def _cancelled(robot: Situation, mission: Mission) -> Iterator[Way]:
     return _with_queue(robot, AM_09, end(mission, "cancel"))
 
 
-def failed(robot: Situation, mission: Mission) -> Iterator[Way]:
+def failed(robot: Situation, mission: Mission, how: Ambiguity = AM_10) -> Iterator[Way]:
     """The ways in which the active mission fails."""
-    return _with_queue(robot, AM_10, end(mission, "fail"))
+    return _with_queue(robot, how, end(mission, "fail"))
+
+
+def failed_to_start(robot: Situation, mission: Mission) -> Iterator[Way]:
+    """The ways in which a mission fails that cannot be done, as it starts."""
+    return failed(robot, mission, AM_10_START)
 
 
 def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
     if not robot.queued:
         yield Outcome(OK, ((Op.CLEAR, None),) if robot.ended else (), GONE)
         return
-    which = AM_34_HALTED if robot.halted else AM_34_GAP
+    which = AM_34[waiting(robot)]
     yield Outcome(OK, ((Op.CLEAR, None),), GONE, (which["a"],))
     yield Outcome(OK, ((Op.FORGET_ENDED, None),) if robot.ended else (), GONE, (which["b"],))
 
@@ -312,35 +394,44 @@ def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
     mission = robot.active
     assert mission is not None, "without an active mission it is refused"  # noqa: S101 - as above
     if mission.kind in GOALLESS:
-        yield from _skip_last(robot, mission, AM_17_LAST, (AM_19["a"],))
-        yield Outcome(FAILED_PRECONDITION, assumes=(AM_19["b"],), rules=_cited(CHARGING[FAILED_PRECONDITION]))
-        yield Outcome(INTERNAL, assumes=(AM_19["c"],), rules=_cited(CHARGING[INTERNAL]))
+        how = AM_19 if mission.kind is Kind.CHARGE else AM_19_RETURN
+        yield from _skip_last(robot, mission, how, CHARGING, ())
+        if "g" in how.readings:  # one of several goals that nobody was told
+            yield Outcome(OK, (), ACTIVE)
     elif mission.kind in AUTOMATIC:
         yield from _skip_automatic(robot, mission)
     elif mission.goal + 1 < len(mission.goals) and not mission.finishing:
         yield Outcome(OK, become(evolve(mission, goal=mission.goal + 1)), ACTIVE)
     elif mission.kind in PATROLS and not mission.finishing:
-        yield from _skip_last(robot, mission, AM_17_PATROL, ())
+        yield from _skip_last(robot, mission, AM_17_PATROL[part_of(mission.kind)], LAST_GOAL, ())
     else:
-        yield from _skip_last(robot, mission, AM_17_LAST, ())
+        yield from _skip_last(robot, mission, _last(mission), LAST_GOAL, ())
+
+
+def _last(mission: Mission) -> Ambiguity:
+    """AM-17: what skipping the last goal does; a patrol that is finishing does not wrap."""
+    return {**AM_17_LAST, **AM_17_PATROL}[part_of(mission.kind)]
 
 
 def _skip_automatic(robot: Situation, mission: Mission) -> Iterator[Outcome]:
     free = free_goal(mission.goals, robot.world, mission.goal)
     follows = mission.goal + 1 < len(mission.goals) and mission.goal != NOT_CHOSEN
+    how = AM_18[part_of(mission.kind)]
     for letter, goal in (("a", free), ("b", mission.goal + 1 if follows else NOT_CHOSEN), ("c", NOT_CHOSEN)):
         if goal == NOT_CHOSEN or mission.finishing:
-            yield from _skip_last(robot, mission, AM_17_LAST, (AM_18[letter],))
+            yield from _skip_last(robot, mission, _last(mission), LAST_GOAL, (how[letter],))
         else:
-            yield Outcome(OK, become(evolve(mission, goal=goal)), ACTIVE, (AM_18[letter],))
+            yield Outcome(OK, become(evolve(mission, goal=goal)), ACTIVE, (how[letter],))
 
 
-def _skip_last(robot: Situation, mission: Mission, how: Ambiguity, assumes: Assumed) -> Iterator[Outcome]:
+def _skip_last(
+    robot: Situation, mission: Mission, how: Ambiguity, refusals: Mapping[str, Rule], assumes: Assumed
+) -> Iterator[Outcome]:
     succeeded = evolve(mission, state=State.STATE_RUNNING).moved("succeed")
     yield Outcome(OK, ((Op.END, succeeded),), ACTIVE, (*assumes, how["a"]))
     for code, letter in ((FAILED_PRECONDITION, "b"), (INTERNAL, "c")):
-        yield Outcome(code, assumes=(*assumes, how[letter]), rules=_cited(LAST_GOAL[code]))
-    for edit, queue in _cancelled(robot, mission):
+        yield Outcome(code, assumes=(*assumes, how[letter]), rules=_cited(refusals[code]))
+    for edit, queue in _with_queue(robot, AM_09_SKIP, end(mission, "cancel")):
         yield Outcome(OK, edit, ACTIVE, (*assumes, how["d"], *queue))
     if "f" in how.readings:
         again = evolve(mission, goal=0)
@@ -358,20 +449,20 @@ def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
 
 def _pause(_: Situation, mission: Mission) -> Iterator[Way]:
     if mission.state is State.STATE_PAUSED:
-        yield (), (AM_29["b"],)
+        yield (), (AM_29["pause"]["b"],)
     else:
         yield become(evolve(mission, state=State.STATE_PAUSED)), ()
 
 
 def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
     if mission.state is State.STATE_RUNNING:
-        yield (), (AM_29["b"],)
+        yield (), (AM_29["resume"]["b"],)
         return
     running = evolve(mission, state=State.STATE_RUNNING)
     if mission.kind in AUTOMATIC:
         yield from reselected(robot.world, running, resumed=True)
     elif mission.goal:
-        yield become(running), (AM_64["a", "c"],)
+        yield become(running), (AM_64["a"],)
         yield become(evolve(running, goal=0)), (AM_64["b"],)
     else:
         yield become(running), ()
@@ -380,14 +471,27 @@ def _resume(robot: Situation, mission: Mission) -> Iterator[Way]:
 def reselected(world: World, mission: Mission, *, resumed: bool = False) -> Iterator[Way]:
     """AM-45, AM-64: a NavigateAuto mission keeps its goal, or selects again on the way or when it is resumed."""
     best = free_goal(mission.goals, world)
-    if best in (mission.goal, NOT_CHOSEN) or mission.goal == NOT_CHOSEN:
+    if mission.goal in (best, NOT_CHOSEN):
         yield become(mission), ()
         return
-    again = become(evolve(mission, goal=best))
-    yield become(mission), (AM_45_WHEN["h", "i"], AM_64["a", "b"]) if resumed else (AM_45_WHEN["h", "i"],)
-    yield again, (AM_45_WHEN["j"],)
-    if resumed:
-        yield again, (AM_45_WHEN["h", "i"], AM_64["c"])
+    when = AM_45_WHEN[part_of(mission.kind)]
+    yield become(mission), (when["h", "i"], AM_64_AUTOMATIC["a"]) if resumed else (when["h", "i"],)
+    for edit, assumes in _selected_anew(mission, best):
+        yield edit, (when["j"], *assumes)
+        if resumed:
+            yield edit, (when["h", "i"], AM_64_AUTOMATIC["c"], *assumes)
+
+
+def _selected_anew(mission: Mission, best: int) -> Iterator[Way]:
+    """AM-45: it goes to the best goal; where none is free it waits, there or nowhere, fails or takes the first."""
+    if best != NOT_CHOSEN:
+        yield become(evolve(mission, goal=best)), ()
+        return
+    none = AM_45_NONE[part_of(mission.kind)]
+    yield become(mission), (none["a"],)
+    yield become(evolve(mission, goal=NOT_CHOSEN)), (none["a"],)
+    yield become(evolve(mission, doomed=True)), (none["b"],)
+    yield become(evolve(mission, goal=0)), (none["d"],)
 
 
 def _finish(_: Situation, mission: Mission) -> Iterator[Way]:
@@ -425,6 +529,8 @@ def target(robot: Robot, ref: int | None) -> Target:
     """Where the mission with a position in the list stands."""
     if ref is None:
         return Target.UNKNOWN
+    if ref == ONCE_HAD:
+        return Target.CLEARED
     if ref < len(robot.done):
         return Target.ENDED
     return Target.ACTIVE if robot.active is not None and ref == len(robot.done) else Target.QUEUED

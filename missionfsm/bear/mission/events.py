@@ -7,8 +7,8 @@ from collections.abc import Hashable, Iterable, Iterator
 
 from attrs import evolve
 
-from missionfsm.bear.mission.effects import Way, become, end, failed, reselected
-from missionfsm.bear.mission.readings import AM_45_NONE, AM_53_THEN
+from missionfsm.bear.mission.effects import Way, become, end, failed, failed_to_start, reselected
+from missionfsm.bear.mission.readings import AM_45_NONE, AM_53_THEN, QUEUE, part_of
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     NOT_CHOSEN,
@@ -38,9 +38,15 @@ def due(world: World, active: Mission | None, head: Mission | None, *, halted: b
     """
     if active is not None:
         return tuple(_due_of_active(world, active, queued=queued))
-    if head is None or halted or world.blocked:
+    if head is None or halted or (world.blocked and head.held):
         return ()
-    return tuple(_started(world, head))
+    if not world.blocked:
+        return tuple(_started(world, head))
+    then = AM_53_THEN[head.first or QUEUE]
+    return (
+        (((Op.HOLD, evolve(head, held=True)),), (then["p", "f"],)),
+        *((edit, (then["s"], *assumes)) for edit, assumes in _started(world, head)),
+    )
 
 
 def _started(world: World, head: Mission) -> Iterator[Way]:
@@ -53,14 +59,15 @@ def _started(world: World, head: Mission) -> Iterator[Way]:
     if chosen != NOT_CHOSEN:
         yield ((Op.START, evolve(running, goal=chosen)),), ()
         return
-    yield ((Op.START, running),), (AM_45_NONE["a", "c"],)
-    yield ((Op.START, evolve(running, doomed=True)),), (AM_45_NONE["b"],)
-    yield ((Op.START, evolve(running, goal=0)),), (AM_45_NONE["d"],)
+    none = AM_45_NONE[part_of(head.kind)]
+    yield ((Op.START, running),), (none["a"],)
+    yield ((Op.START, evolve(running, doomed=True)),), (none["b"],)
+    yield ((Op.START, evolve(running, goal=0)),), (none["d"],)
 
 
 def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
     if active.doomed:
-        yield from _failing(world, active, queued=queued)
+        yield from failed_to_start(_alone(world, active, queued=queued), active)
     elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
         chosen = free_goal(active.goals, world)
         if chosen != NOT_CHOSEN:
@@ -77,15 +84,16 @@ def by_itself(
         queued: whether others wait behind that one, or behind the active mission.
     """
     if active is not None and active.hopeless:
-        yield from _failing(world, active, queued=queued)
-    elif active is None and head is not None and world.blocked and not halted:
+        yield from failed(_alone(world, active, queued=queued), active)
+    elif active is None and head is not None and world.blocked and head.held and not halted:
         running = head.moved("start")
-        for edit, assumes in _failing(world, running, queued=queued):
-            yield ((Op.START, running), *edit), (AM_53_THEN["f"], *assumes)
+        for edit, assumes in failed_to_start(_alone(world, running, queued=queued), running):
+            yield ((Op.START, running), *edit), (AM_53_THEN[head.first or QUEUE]["f"], *assumes)
 
 
-def _failing(world: World, mission: Mission, *, queued: bool) -> Iterator[Way]:
-    return failed(Situation(world, mission, queued, True, False, False, None), mission)  # noqa: FBT003
+def _alone(world: World, mission: Mission, *, queued: bool) -> Situation:
+    """A robot of which nothing else matters."""
+    return Situation(world, mission, queued, True, False, False, None)  # noqa: FBT003
 
 
 @value(cache_hash=True)
@@ -101,8 +109,9 @@ def goal_reached(robot: Situation) -> Iterable[Way]:
     mission = robot.active
     if mission is None or mission.state is not State.STATE_RUNNING or mission.kind is Kind.CHARGE:
         return
-    if mission.kind is Kind.RETURN:  # it goes to one place
+    if mission.kind is Kind.RETURN:  # nobody was told how many goals it has
         yield end(mission, "succeed"), ()
+        yield (), ()
         return
     if mission.goal == NOT_CHOSEN or _cannot_arrive(robot.world, mission):
         return

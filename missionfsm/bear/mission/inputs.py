@@ -53,7 +53,8 @@ class Target(enum.Enum):
     ACTIVE = "active"
     QUEUED = "waiting"
     ENDED = "ended"
-    UNKNOWN = "not listed"
+    CLEARED = "not listed any more"
+    UNKNOWN = "never listed"
 
 
 @value(cache_hash=True)

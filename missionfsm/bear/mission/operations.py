@@ -2,40 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+
+from attrs import evolve
 
 from missionfsm.bear.mission.inputs import Call
-from missionfsm.bear.mission.readings import AM_01, AM_04, AM_38_RUNNING
+from missionfsm.bear.mission.readings import (
+    AM_01,
+    AM_01_BLOCKED,
+    AM_04,
+    AM_04_NO_ID,
+    AM_11,
+    AM_12_HALTED,
+    AM_12_PAUSED,
+    AM_38_BUSY,
+    AM_41,
+    AM_43,
+    AM_44,
+    AM_44_AUTOMATIC,
+    AM_45_REFUSED,
+    AM_53,
+    AM_58,
+    DOCK,
+    LOCATION,
+)
 from missionfsm.bear.mission.rules import (
+    ABILITY,
     CHARGING,
+    CHARGING_WHILE_WAITING,
+    CLEARING_WHILE_WAITING,
     EITHER,
+    FORM,
+    GOALS,
     LAST_GOAL,
     NO_DOCK,
     SHAPE,
     STATE,
+    WORKFLOW_WHILE_WAITING,
     WRONG_ID,
     a_destination_is_not_on_the_map,
     a_field_is_unknown,
     a_goal_is_invalid,
     a_goal_occurs_twice,
-    a_mission_is_about_to_start,
+    a_goal_occurs_twice_in_the_list,
     a_mission_is_paused,
-    a_mission_is_queued,
     a_mission_is_running,
     a_mission_is_running_or_paused,
-    a_mission_waits_in_a_halted_queue,
     a_paused_mission_cannot_be_finished,
     a_paused_mission_counts_as_running,
     another_mission_is_active,
     another_mission_is_active_or_queued,
-    another_mission_is_queued,
     another_mission_is_running_or_queued,
     charging_cannot_be_paused,
     every_mission_has_ended,
+    id_situation,
     no_goal_is_free,
     no_goal_is_free_now,
     no_mission_is_running,
     nothing_is_listed,
+    nothing_was_ever_listed,
     the_command_is_not_set,
     the_goals_do_not_match_the_mission_type,
     the_map_has_no_charging_location,
@@ -57,6 +82,7 @@ from missionfsm.bear.mission.rules import (
     the_robot_is_unable_to_start_charging,
     the_workflow_is_for_another_family,
     there_is_nothing_to_clear,
+    there_never_was_anything_to_clear,
 )
 from missionfsm.bear.mission.state import MISSION, SYSTEM, Situation
 from missionfsm.kernel.readings import Assumption
@@ -71,23 +97,49 @@ from missionfsm.kernel.rules import (
     promise,
 )
 
-_FORMAT = (
-    the_request_is_empty,
-    the_request_is_malformed,
-    a_goal_is_invalid,
-    the_goals_do_not_match_the_mission_type,
-    a_destination_is_not_on_the_map,
-    a_goal_occurs_twice,
-    a_field_is_unknown,
-)
-_MISSION = (
-    *_FORMAT,
-    the_mission_is_for_another_family,
-    the_robot_is_of_another_family,
-    no_goal_is_free,
-    no_goal_is_free_now,
-)
-_APPEND = (the_mission_queue_is_empty, every_mission_has_ended, no_mission_is_running, the_queue_is_halted)
+
+def _under(rule: Rule, assumption: Assumption) -> Rule:
+    """A refusal that holds under a reading."""
+    return evolve(rule, under=assumption)
+
+
+def _format(call: str) -> tuple[Rule, ...]:
+    return (
+        the_request_is_empty,
+        the_request_is_malformed,
+        a_goal_is_invalid,
+        the_goals_do_not_match_the_mission_type,
+        _under(a_destination_is_not_on_the_map, AM_43[call]["a"]),
+        _under(a_goal_occurs_twice, AM_44[call]["i"]),
+        _under(a_field_is_unknown, AM_58[call]["b"]),
+    )
+
+
+def _mission(call: str) -> tuple[Rule, ...]:
+    return (
+        *_format(call),
+        _under(a_goal_occurs_twice_in_the_list, AM_44_AUTOMATIC[call]["i"]),
+        _under(the_mission_is_for_another_family, AM_41[call]["a"]),
+        _under(the_robot_is_of_another_family, AM_41[call]["b"]),
+        _under(no_goal_is_free, AM_45_REFUSED[call]["c"]),
+        _under(no_goal_is_free_now, AM_45_REFUSED[call]["c"]),
+    )
+
+
+def _append(call: str) -> tuple[Rule, ...]:
+    return (
+        *_mission(call),
+        the_mission_queue_is_empty,
+        _under(every_mission_has_ended, AM_11[call]["b"]),
+        _under(no_mission_is_running, AM_12_PAUSED[call]["b"]),
+        _under(the_queue_is_halted, AM_12_HALTED[call]["b"]),
+    )
+
+
+def _no_fields(call: str) -> tuple[Rule, ...]:
+    return (the_request_is_malformed, _under(a_field_is_unknown, AM_58[call]["b"]))
+
+
 _COMMAND = (the_mission_is_already_paused, the_mission_is_not_paused, a_paused_mission_cannot_be_finished)
 _ONE_ID = promise(
     "the-answer-names-the-new-mission",
@@ -153,13 +205,17 @@ OPERATIONS: Mapping[str, Operation] = {
     for one in (
         _operation(
             "CreateMission",
-            (*_MISSION, another_mission_is_active_or_queued, the_robot_is_unable_to_start_any_mission),
+            (
+                *_mission("CreateMission"),
+                another_mission_is_active_or_queued,
+                _under(the_robot_is_unable_to_start_any_mission, AM_53["CreateMission"]["a"]),
+            ),
             _ONE_ID,
         ),
         _operation(
             "CreateMissionBatch",
             (
-                *_MISSION,
+                *_mission("CreateMissionBatch"),
                 another_mission_is_running_or_queued,
                 a_paused_mission_counts_as_running,
                 the_robot_is_unable_to_start,
@@ -169,25 +225,24 @@ OPERATIONS: Mapping[str, Operation] = {
         _operation(
             "CreateMissionWorkflow",
             (
-                *_FORMAT,
+                *_format("CreateMissionWorkflow"),
                 the_workflow_is_for_another_family,
                 another_mission_is_active,
-                another_mission_is_queued,
-                the_robot_is_unable_to_start_any_mission,
+                *WORKFLOW_WHILE_WAITING,
+                _under(the_robot_is_unable_to_start_any_mission, AM_53["CreateMissionWorkflow"]["a"]),
             ),
             _WORKFLOW_IDS,
         ),
-        _operation("AppendMission", (*_MISSION, *_APPEND), _ONE_ID, _APPENDED),
-        _operation("AppendMissionBatch", (*_MISSION, *_APPEND), _ALL_IDS, _APPENDED),
+        _operation("AppendMission", _append("AppendMission"), _ONE_ID, _APPENDED),
+        _operation("AppendMissionBatch", _append("AppendMissionBatch"), _ALL_IDS, _APPENDED),
         _operation(
             "ChargeRobot",
             (
-                the_request_is_malformed,
-                a_field_is_unknown,
+                *_no_fields("ChargeRobot"),
                 a_mission_is_running,
                 a_mission_is_paused,
-                a_mission_is_queued,
-                the_robot_is_unable_to_start_charging,
+                *CHARGING_WHILE_WAITING,
+                _under(the_robot_is_unable_to_start_charging, AM_53["ChargeRobot"]["a"]),
                 *NO_DOCK,
                 the_map_has_no_charging_location,
             ),
@@ -196,13 +251,13 @@ OPERATIONS: Mapping[str, Operation] = {
         _operation(
             "ClearMissionStatus",
             (
-                the_request_is_malformed,
-                a_field_is_unknown,
+                *_no_fields("ClearMissionStatus"),
                 a_mission_is_running_or_paused,
                 nothing_is_listed,
                 there_is_nothing_to_clear,
-                a_mission_is_about_to_start,
-                a_mission_waits_in_a_halted_queue,
+                nothing_was_ever_listed,
+                there_never_was_anything_to_clear,
+                *CLEARING_WHILE_WAITING,
             ),
             _CLEARED,
             failures=(INTERNAL,),
@@ -210,8 +265,7 @@ OPERATIONS: Mapping[str, Operation] = {
         _operation(
             "SkipGoal",
             (
-                the_request_is_malformed,
-                a_field_is_unknown,
+                *_no_fields("SkipGoal"),
                 the_robot_is_not_on_a_mission,
                 the_mission_is_paused,
                 *LAST_GOAL.values(),
@@ -226,7 +280,7 @@ OPERATIONS: Mapping[str, Operation] = {
                 the_mission_id_is_missing,
                 the_request_is_malformed,
                 the_command_is_not_set,
-                a_field_is_unknown,
+                _under(a_field_is_unknown, AM_58["UpdateMission"]["b"]),
                 the_robot_is_on_no_mission,
                 the_mission_is_still_queued,
                 *WRONG_ID,
@@ -237,7 +291,7 @@ OPERATIONS: Mapping[str, Operation] = {
         ),
         _operation(
             "SubscribeMissionStatus",
-            (the_request_is_malformed, a_field_is_unknown),
+            _no_fields("SubscribeMissionStatus"),
             _SNAPSHOT,
             failures=(INTERNAL,),
             streaming=True,
@@ -248,45 +302,80 @@ OPERATIONS: Mapping[str, Operation] = {
 
 def ranking(robot: Situation, call: Call) -> Ranking:
     """Which codes may be answered where several rules hold, and what that assumes about AM-01, AM-04 or AM-38."""
-    ranks = {"UpdateMission": _rank_update, "ChargeRobot": _rank_charge}.get(call.request.operation, _rank_create)
-    return lambda holding: ranks(robot, holding)
+    operation = call.request.operation
+    if operation == "UpdateMission":
+        return lambda holding: _rank_update(id_situation(robot, call), holding)
+    if operation == "ChargeRobot":
+        return _rank_charge
+    return lambda holding: _rank_format_and_state(operation, holding)
 
 
 Ranked = Iterator[tuple[str, tuple[Assumption, ...]]]
 
 
-def _rank_create(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
+def _codes(holding: Iterable[Rule]) -> Iterator[str]:
+    return iter(dict.fromkeys(str(one.code) for one in holding))
+
+
+def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     """AM-01: the format first, the state first, or the state between shape and goals.
 
-    Where no state forbids the call, there is nothing that could come first.
+    Where no state forbids the call, there is nothing that could come first. What cannot be decoded is
+    INVALID_ARGUMENT whatever is looked at first, since there is no request to look at anything for.
     """
-    if not any(one.kind == STATE for one in holding):
-        yield from ((code, ()) for code in dict.fromkeys(str(one.code) for one in holding))
+    about = [
+        ambiguity
+        for kind, ambiguity in ((STATE, AM_01[operation]), (ABILITY, AM_01_BLOCKED.get(operation)))
+        if ambiguity is not None and any(one.kind == kind and one.code == FAILED_PRECONDITION for one in holding)
+    ]
+    invalid = [one for one in holding if one.code == INVALID_ARGUMENT]
+    if not about or not invalid:
+        yield from ((code, ()) for code in _codes(holding))
         return
-    early = any(one.kind in (SHAPE, EITHER) for one in holding if one.code == INVALID_ARGUMENT)
-    sure = any(one.kind == SHAPE for one in holding if one.code == INVALID_ARGUMENT)
-    yield INVALID_ARGUMENT, (AM_01["a", "c"] if early else AM_01["a"],)
-    yield FAILED_PRECONDITION, (AM_01["b"] if sure else AM_01["b", "c"],)
+    if any(one.kind == FORM for one in invalid):
+        yield INVALID_ARGUMENT, ()
+    early = any(one.kind in (FORM, SHAPE, EITHER) for one in invalid)
+    sure = any(one.kind in (FORM, SHAPE) for one in invalid)
+    yield INVALID_ARGUMENT, tuple(one["a", "c"] if early and "c" in one.readings else one["a"] for one in about)
+    for one in about:
+        yield FAILED_PRECONDITION, (one["b"] if sure or "c" not in one.readings else one["b", "c"],)
 
 
-def _rank_update(robot: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-04: the command, the id or the state is looked at first."""
-    for code, about_command in dict.fromkeys((str(one.code), one.kind == SHAPE) for one in holding):
-        forbidden = robot.active is None and any(one.code == FAILED_PRECONDITION for one in holding)
-        if any(one.name == the_robot_is_on_no_mission.name for one in holding):
-            # An id that cannot be read cannot be looked for either.
-            yield code, (AM_04["a", "b"] if about_command else AM_04["c"],)
-        elif about_command:
-            yield code, (AM_04["a"] if forbidden else AM_04["a", "c"],)
-        else:
-            yield code, (AM_04["b", "c"],)
-
-
-def _rank_charge(_: Situation, holding: tuple[Rule, ...]) -> Ranked:
-    """AM-38: the running mission or the missing charger is answered for."""
-    busy = any(one.kind == STATE for one in holding)
+def _rank_update(situation: str, holding: tuple[Rule, ...]) -> Ranked:
+    """AM-04: the command or the id is answered for."""
+    about = AM_04_NO_ID if situation == AM_04_NO_ID.id.partition(".")[2] else AM_04.get(situation)
     for code, kind in dict.fromkeys((str(one.code), one.kind) for one in holding):
-        if not busy or kind == SHAPE:
+        if about is None or kind == FORM:
             yield code, ()
         else:
-            yield code, (AM_38_RUNNING["e" if kind == STATE else "f"],)
+            yield code, (about["a"] if kind == SHAPE else about.besides("a"),)
+
+
+_BUSY = {
+    a_mission_is_running.name: "running",
+    a_mission_is_paused.name: "paused",
+}
+"""What forbids to charge whatever the robot is equipped with: parts of AM-38.
+
+Missions that wait and a robot that is unable to start one are not ranked: they are seldom met together with a charger
+that is missing, and each may be read in several ways already.
+"""
+
+
+def _rank_charge(holding: tuple[Rule, ...]) -> Ranked:
+    """AM-38: the mission is answered for, or what is missing."""
+    late: tuple[Assumption, ...] = ()
+    if any(one.kind == FORM for one in holding):
+        yield INVALID_ARGUMENT, ()
+        late = (AM_01["ChargeRobot"]["b"],)
+    left = [one for one in holding if one.kind != FORM]
+    busy = [(_BUSY[one.name], str(one.code)) for one in left if one.name in _BUSY]
+    missing = [(DOCK if one.name == NO_DOCK[0].name else LOCATION, str(one.code)) for one in left if one.kind == GOALS]
+    if not busy or not missing:
+        yield from ((code, late) for code in _codes(left))
+        return
+    yield from ((code, late) for code in _codes(one for one in left if one.kind != GOALS and one.name not in _BUSY))
+    for _, code in busy:
+        yield code, (*late, *(AM_38_BUSY[state][what]["e"] for what, _ in missing for state, _ in busy))
+    for what, code in missing:
+        yield code, (*late, *(AM_38_BUSY[state][what]["f"] for state, _ in busy))

@@ -75,6 +75,6 @@ SKETCHES = (
         simple=lambda robot, _: forget_ended(robot),
         prompts=_PROMPTS,
         drives=_DRIVES,
-        contrasts=("AM-09=b", "AM-09=c", "AM-10=b", "AM-11=b"),
+        contrasts=("AM-09=b", "AM-09=c", "AM-10=b"),
     ),
 )

@@ -7,11 +7,13 @@ from typing import Any
 
 from missionfsm.bear.mission.readings import (
     AM_08,
+    AM_26,
     AM_35,
     AM_36,
     AM_50_MEMBER,
     AM_50_SHAPE,
     AM_51,
+    part_of,
 )
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
@@ -21,7 +23,7 @@ from missionfsm.bear.mission.state import (
     RETURN_POINT,
     Mission,
 )
-from missionfsm.bear.mission.stream import FAMILY_TYPES, MEMBERS, TYPES, UNNAMED, Listing, current_index, waiting_as
+from missionfsm.bear.mission.stream import FAMILY_TYPES, MEMBERS, TYPES, Listing, current_index, waiting_as
 from missionfsm.bear.wire.messages import (
     BaseFeedback,
     BaseStatus,
@@ -91,8 +93,8 @@ def _shown_feedback(view: Listing, mission: Mission, choice: int) -> MissionFeed
 def _shown_type(view: Listing, mission: Mission, choice: int) -> MissionType | None:
     if mission.kind in GOALLESS:
         return None
-    if mission.kind in UNNAMED:
-        which = UNNAMED[mission.kind]
+    if mission.kind in AM_26:
+        which = AM_26[mission.kind]
         undocumented: Any = 7
         number = _pick(
             choice,
@@ -104,7 +106,7 @@ def _shown_type(view: Listing, mission: Mission, choice: int) -> MissionType | N
         )
         return MissionType(servi_type=number)
     of_family = FAMILY_TYPES.get((mission.kind, view.family))
-    if of_family is not None and meet(choice, (AM_51["b"],)):
+    if of_family is not None and meet(choice, (AM_51[part_of(mission.kind)]["b"],)):
         return of_family
     return TYPES[mission.kind][0]
 

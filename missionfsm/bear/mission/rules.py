@@ -2,36 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import functools
+from collections.abc import Mapping
 
 from missionfsm.bear.mission.inputs import Call, Defect, Target, Wanted
 from missionfsm.bear.mission.readings import (
+    AM_02_CLEARED,
     AM_02_ENDED,
+    AM_02_QUEUED,
     AM_02_UNKNOWN,
     AM_03,
-    AM_04,
+    AM_04_NO_ID,
     AM_06,
     AM_07,
-    AM_11,
-    AM_12_HALTED,
-    AM_12_PAUSED,
     AM_16,
     AM_29,
     AM_31,
     AM_33,
-    AM_34_GAP,
-    AM_34_HALTED,
+    AM_34,
     AM_37_PAUSED,
     AM_37_QUEUED,
     AM_38_DOCK,
     AM_40,
-    AM_41,
-    AM_43,
-    AM_44,
-    AM_45_NONE,
-    AM_53,
-    AM_53_CHARGE,
-    AM_58,
+    BLOCKED,
+    BUSY,
+    GAP,
+    HALTED,
+    IDLE,
 )
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
@@ -44,7 +41,7 @@ from missionfsm.bear.mission.state import (
     is_missing,
 )
 from missionfsm.bear.wire.messages import Command, State
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
     INTERNAL,
@@ -55,8 +52,12 @@ from missionfsm.kernel.rules import (
     rule,
 )
 
-SHAPE, GOALS, EITHER, STATE = "shape", "goals", "either", "state"
-"""What a rule looks at; AM-01 read as c ranks them, and EITHER may be checked with the shape or with the goals."""
+FORM, SHAPE, GOALS, EITHER, STATE, ABILITY = "form", "shape", "goals", "either", "state", "ability"
+"""What a rule looks at; AM-01 read as c ranks them, and EITHER may be checked with the shape or with the goals.
+
+A request of the wrong FORM cannot be decoded: whoever looks at something else first cannot do so without a request.
+STATE is about the missions, ABILITY about whether the robot can start one.
+"""
 
 
 def _wanted(call: Call) -> tuple[Wanted, ...]:
@@ -72,13 +73,13 @@ def the_request_is_empty(_: Situation, call: Call) -> bool:
     return Defect.EMPTY in call.request.defects
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=SHAPE)
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=FORM)
 def the_request_is_malformed(_: Situation, call: Call) -> bool:
     """The request is not of the documented form: a wrong type, an unknown name, two members of a oneof."""
     return Defect.FORMAT in call.request.defects
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["SubscribeMissionStatus", "Errors"], under=AM_58["b"], kind=SHAPE)
+@rule(INVALID_ARGUMENT, cite=MISSION["SubscribeMissionStatus", "Errors"], kind=FORM)
 def a_field_is_unknown(_: Situation, call: Call) -> bool:
     """The request has a field that is not documented, and such a request is taken for malformed.
 
@@ -102,16 +103,26 @@ def the_goals_do_not_match_the_mission_type(_: Situation, call: Call) -> bool:
     return Defect.MATCH in call.request.defects
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], under=AM_44["i"], kind=EITHER)
+def _occurs_twice(wanted: Wanted) -> bool:
+    return len(set(wanted.goals)) < len(wanted.goals)
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=EITHER)
 def a_goal_occurs_twice(_: Situation, call: Call) -> bool:
     """A goal occurs twice in one mission, and that is taken for invalid (AM-44)."""
-    return any(len(set(wanted.goals)) < len(wanted.goals) for wanted in _wanted(call))
+    return any(wanted.kind not in AUTOMATIC and _occurs_twice(wanted) for wanted in _wanted(call))
+
+
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], kind=EITHER)
+def a_goal_occurs_twice_in_the_list(_: Situation, call: Call) -> bool:
+    """A goal occurs twice in the list of a NavigateAuto mission, and that is taken for invalid (AM-44)."""
+    return any(wanted.kind in AUTOMATIC and _occurs_twice(wanted) for wanted in _wanted(call))
 
 
 # The request and the world.
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_43["a"], kind=GOALS)
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], kind=GOALS)
 def a_destination_is_not_on_the_map(robot: Situation, call: Call) -> bool:
     """A destination_id is not the display name of a destination on the robot's map.
 
@@ -124,7 +135,7 @@ def _is_for_another_family(robot: Situation, kind: Kind | None) -> bool:
     return kind is not None and is_foreign(robot.world, kind)
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], under=AM_41["a"], kind=EITHER)
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], kind=EITHER)
 def the_mission_is_for_another_family(robot: Situation, call: Call) -> bool:
     """The mission is specific to a family that the robot is not of.
 
@@ -133,7 +144,7 @@ def the_mission_is_for_another_family(robot: Situation, call: Call) -> bool:
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Request"], under=AM_41["b"], kind=EITHER)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Request"], kind=EITHER)
 def the_robot_is_of_another_family(robot: Situation, call: Call) -> bool:
     """The robot is not of the family that the mission is for (AM-41 read as a matter of state)."""
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
@@ -152,13 +163,13 @@ def _no_goal_is_free(robot: Situation, call: Call) -> bool:
     )
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], under=AM_45_NONE["c"], kind=GOALS)
+@rule(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], kind=GOALS)
 def no_goal_is_free(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is checked when it is created (AM-45)."""
     return _no_goal_is_free(robot, call)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], under=AM_45_NONE["c"], kind=GOALS)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], kind=GOALS)
 def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is a state that forbids to create it (AM-45)."""
     return _no_goal_is_free(robot, call)
@@ -189,19 +200,19 @@ def a_paused_mission_counts_as_running(robot: Situation, _: Call) -> bool:
     return _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=ABILITY)
 def the_robot_is_unable_to_start(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission."""
     return robot.world.blocked
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_53["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=ABILITY)
 def the_robot_is_unable_to_start_any_mission(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission, which forbids every call that creates a first one (AM-53)."""
     return robot.world.blocked
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_53_CHARGE["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], kind=ABILITY)
 def the_robot_is_unable_to_start_charging(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission, and charging is one (AM-53)."""
     return robot.world.blocked
@@ -213,10 +224,36 @@ def another_mission_is_active(robot: Situation, _: Call) -> bool:
     return robot.active is not None
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], under=AM_07["a"], kind=STATE)
-def another_mission_is_queued(robot: Situation, _: Call) -> bool:
-    """A mission waits, which forbids a workflow as it forbids a mission (AM-07)."""
-    return robot.active is None and robot.queued
+def _waits(where: str, robot: Situation, _: Call) -> bool:
+    """Whether missions wait and none is active, in one of the situations in which that can be so."""
+    found = HALTED if robot.halted else BLOCKED if robot.world.blocked else GAP
+    return robot.active is None and robot.queued and found == where
+
+
+def _about_waiting(operation: str, under: Mapping[str, Assumption], *rules: tuple[str, str, str]) -> tuple[Rule, ...]:
+    """A refusal for each situation in which missions wait and none is active: the situation, its name, what it says."""
+    return tuple(
+        Rule(
+            name,
+            says,
+            "",
+            MISSION[operation, "Errors"] if operation != "ClearMissionStatus" else MISSION[operation],
+            FAILED_PRECONDITION,
+            functools.partial(_waits, where),
+            under[where],
+            STATE,
+        )
+        for where, name, says in rules
+    )
+
+
+WORKFLOW_WHILE_WAITING = _about_waiting(
+    "CreateMissionWorkflow",
+    {where: one["a"] for where, one in AM_07.items()},
+    (GAP, "another-mission-is-queued", "A mission waits, which forbids a workflow as it forbids a mission (AM-07)."),
+    (HALTED, "another-mission-waits-in-a-halted-queue", "A mission waits in a halted queue (AM-07)."),
+    (BLOCKED, "another-mission-cannot-start", "A mission waits that the robot is unable to start (AM-07)."),
+)
 
 
 def _nothing_listed(robot: Situation) -> bool:
@@ -229,7 +266,7 @@ def the_mission_queue_is_empty(robot: Situation, _: Call) -> bool:
     return _nothing_listed(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_11["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], kind=STATE)
 def every_mission_has_ended(robot: Situation, _: Call) -> bool:
     """Every listed mission has ended, and those are not in the queue any more (AM-11)."""
     return robot.active is None and not robot.queued and robot.ended
@@ -239,13 +276,13 @@ def _is_paused(robot: Situation) -> bool:
     return robot.active is not None and robot.active.state is State.STATE_PAUSED
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_12_PAUSED["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], kind=STATE)
 def no_mission_is_running(robot: Situation, _: Call) -> bool:
     """The active mission is paused, and only a running one can be appended to (AM-12)."""
     return _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], under=AM_12_HALTED["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], kind=STATE)
 def the_queue_is_halted(robot: Situation, _: Call) -> bool:
     """The queue is halted, and only a running mission can be appended to (AM-12)."""
     return robot.active is None and robot.queued and robot.halted
@@ -266,10 +303,13 @@ def a_mission_is_paused(robot: Situation, _: Call) -> bool:
     return _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], under=AM_37_QUEUED["a"], kind=STATE)
-def a_mission_is_queued(robot: Situation, _: Call) -> bool:
-    """A mission waits and must be cleared first (AM-37)."""
-    return robot.active is None and robot.queued
+CHARGING_WHILE_WAITING = _about_waiting(
+    "ChargeRobot",
+    {where: one["a"] for where, one in AM_37_QUEUED.items()},
+    (GAP, "a-mission-is-queued", "A mission waits and must be cleared first (AM-37)."),
+    (HALTED, "a-mission-waits-in-a-halted-queue", "A mission waits in a halted queue (AM-37)."),
+    (BLOCKED, "a-mission-cannot-start", "A mission waits that the robot is unable to start (AM-37)."),
+)
 
 
 def _charger_rule(code: str, letter: str) -> Rule:
@@ -311,28 +351,37 @@ def a_mission_is_running_or_paused(robot: Situation, _: Call) -> bool:
     return robot.active is not None
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["cleared"]["b"], kind=STATE)
 def nothing_is_listed(robot: Situation, _: Call) -> bool:
-    """There is nothing to clear (AM-33)."""
-    return _nothing_listed(robot)
+    """There is nothing left to clear (AM-33)."""
+    return _nothing_listed(robot) and not robot.fresh
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["c"], kind=SHAPE)
+@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["cleared"]["c"], kind=SHAPE)
 def there_is_nothing_to_clear(robot: Situation, _: Call) -> bool:
-    """There is nothing to clear, so the request means nothing (AM-33)."""
-    return _nothing_listed(robot)
+    """There is nothing left to clear, so the request means nothing (AM-33)."""
+    return _nothing_listed(robot) and not robot.fresh
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus"], under=AM_34_GAP["c"], kind=STATE)
-def a_mission_is_about_to_start(robot: Situation, _: Call) -> bool:
-    """A mission is about to start, and all must have ended (AM-34)."""
-    return robot.active is None and robot.queued and not robot.halted
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["fresh"]["b"], kind=STATE)
+def nothing_was_ever_listed(robot: Situation, _: Call) -> bool:
+    """There never was anything to clear (AM-33)."""
+    return robot.fresh
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus"], under=AM_34_HALTED["c"], kind=STATE)
-def a_mission_waits_in_a_halted_queue(robot: Situation, _: Call) -> bool:
-    """A mission waits, and all must have ended (AM-34)."""
-    return robot.active is None and robot.queued and robot.halted
+@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["fresh"]["c"], kind=SHAPE)
+def there_never_was_anything_to_clear(robot: Situation, _: Call) -> bool:
+    """There never was anything to clear, so the request means nothing (AM-33)."""
+    return robot.fresh
+
+
+CLEARING_WHILE_WAITING = _about_waiting(
+    "ClearMissionStatus",
+    {where: one["c"] for where, one in AM_34.items()},
+    (GAP, "a-mission-is-about-to-start", "A mission is about to start, and all must have ended (AM-34)."),
+    (HALTED, "a-mission-waits-in-a-halted-queue", "A mission waits, and all must have ended (AM-34)."),
+    (BLOCKED, "a-mission-cannot-start", "A mission waits that the robot is unable to start (AM-34)."),
+)
 
 
 @rule(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], kind=STATE)
@@ -358,7 +407,7 @@ LAST_GOAL = {
 }
 CHARGING = {
     code: _consequence(
-        code, "charging-has-no-goals", "The robot charges or returns, which has no goals of its own (AM-19)."
+        code, "charging-has-no-goals", "The robot charges or returns, which the page gives no goals (AM-19)."
     )
     for code in (FAILED_PRECONDITION, INTERNAL)
 }
@@ -379,95 +428,125 @@ def the_mission_id_is_missing(_: Situation, call: Call) -> bool:
     return Defect.EMPTY in call.request.defects
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_04["c"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_04_NO_ID["c"], kind=STATE)
 def the_robot_is_on_no_mission(robot: Situation, call: Call) -> bool:
     """No mission is active, and the request does not say readably which one it is about (AM-04)."""
     return call.target is None and robot.active is None
 
 
 @rule(NOT_FOUND, cite=MISSION["UpdateMission", "Errors"], kind=STATE)
-def the_mission_is_still_queued(_: Situation, call: Call) -> bool:
-    """The mission still waits, and waiting missions cannot be updated."""
-    return call.target is Target.QUEUED
+def the_mission_is_still_queued(robot: Situation, call: Call) -> bool:
+    """The mission still waits behind the active one, and waiting missions cannot be updated."""
+    return call.target is Target.QUEUED and robot.active is not None
 
 
-def _id_rule(code: str, name: str, says: str, under: Assumption, holds: Callable[[Situation, Call], bool]) -> Rule:
-    return Rule(name, says, "", MISSION["UpdateMission", "Errors"], code, holds, under, STATE)
+def id_situation(robot: Situation, call: Call) -> str:
+    """What a mission id that is not the active mission's means: a part of AM-04."""
+    if call.target is None:
+        return "no-id"
+    if call.target in (Target.UNKNOWN, Target.CLEARED) and _nothing_listed(robot):
+        return "fresh" if robot.fresh else _TARGETS[call.target]
+    return f"{_TARGETS[call.target]}-{IDLE if robot.active is None else BUSY}"
 
 
-def _ended(robot: Situation, call: Call) -> bool:
-    return call.target is Target.ENDED and robot.active is None
+_TARGETS = {
+    Target.ACTIVE: "active",
+    Target.QUEUED: "queued",
+    Target.ENDED: "ended",
+    Target.CLEARED: "cleared",
+    Target.UNKNOWN: "unknown",
+}
 
 
-def _ended_while_another_is_active(robot: Situation, call: Call) -> bool:
-    return call.target is Target.ENDED and robot.active is not None
+def _wrong_id(situation: str, name: str, says: str, ambiguity: Ambiguity, codes: Mapping[str, str]) -> tuple[Rule, ...]:
+    """Refusals of an id that means something else than the active mission: the letters to the codes."""
+    return tuple(
+        Rule(
+            name,
+            says,
+            "",
+            MISSION["UpdateMission", "Errors"],
+            code,
+            lambda robot, call: id_situation(robot, call) == situation,
+            ambiguity[letter],
+            STATE,
+        )
+        for letter, code in codes.items()
+    )
 
 
-def _unknown(robot: Situation, call: Call) -> bool:
-    return call.target is Target.UNKNOWN and robot.active is None and not _nothing_listed(robot)
-
-
-def _unknown_while_another_is_active(robot: Situation, call: Call) -> bool:
-    return call.target is Target.UNKNOWN and robot.active is not None
-
-
-def _no_mission(robot: Situation, call: Call) -> bool:
-    return call.target is Target.UNKNOWN and _nothing_listed(robot)
-
-
-WRONG_ID = (
-    _id_rule(
-        FAILED_PRECONDITION, "the-mission-has-ended", "The mission has ended.", AM_02_ENDED["a", "c", "e"], _ended
-    ),
-    _id_rule(NOT_FOUND, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["b"], _ended),
-    _id_rule(INVALID_ARGUMENT, "the-mission-has-ended", "The mission is not active.", AM_02_ENDED["d"], _ended),
-    _id_rule(
-        FAILED_PRECONDITION,
-        "the-mission-has-ended-and-another-is-active",
-        "The mission has ended.",
-        AM_02_ENDED["a"],
-        _ended_while_another_is_active,
-    ),
-    _id_rule(
-        NOT_FOUND,
-        "the-mission-has-ended-and-another-is-active",
-        "Another mission is active.",
-        AM_02_ENDED["b", "c"],
-        _ended_while_another_is_active,
-    ),
-    _id_rule(
-        INVALID_ARGUMENT,
-        "the-mission-has-ended-and-another-is-active",
-        "Another mission is active.",
-        AM_02_ENDED["d", "e"],
-        _ended_while_another_is_active,
-    ),
-    _id_rule(INVALID_ARGUMENT, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["a"], _unknown),
-    _id_rule(NOT_FOUND, "the-mission-is-not-listed", "No such mission is listed.", AM_02_UNKNOWN["b"], _unknown),
-    _id_rule(
-        FAILED_PRECONDITION,
-        "the-mission-is-not-listed",
-        "No mission is active.",
-        AM_02_UNKNOWN["e", "f"],
-        _unknown,
-    ),
-    _id_rule(
-        INVALID_ARGUMENT,
-        "the-mission-is-not-listed-and-another-is-active",
-        "The id is not that of the active mission.",
-        AM_02_UNKNOWN["a", "e"],
-        _unknown_while_another_is_active,
-    ),
-    _id_rule(
-        NOT_FOUND,
-        "the-mission-is-not-listed-and-another-is-active",
-        "The id is not that of the active mission.",
-        AM_02_UNKNOWN["b", "f"],
-        _unknown_while_another_is_active,
-    ),
-    _id_rule(FAILED_PRECONDITION, "the-robot-has-no-mission", "The robot has no mission.", AM_03["a"], _no_mission),
-    _id_rule(NOT_FOUND, "the-robot-has-no-mission", "The robot has no mission.", AM_03["b"], _no_mission),
-    _id_rule(INVALID_ARGUMENT, "the-robot-has-no-mission", "The robot has no mission.", AM_03["c"], _no_mission),
+_ENDED_CODES = {"a": FAILED_PRECONDITION, "b": NOT_FOUND, "d": INVALID_ARGUMENT}
+_GONE_CODES = {"a": INVALID_ARGUMENT, "b": NOT_FOUND, "e": FAILED_PRECONDITION}
+_NO_MISSION_CODES = {"a": FAILED_PRECONDITION, "b": NOT_FOUND, "c": INVALID_ARGUMENT}
+WRONG_ID = tuple(
+    rule
+    for rules in (
+        _wrong_id(
+            "queued-idle",
+            "the-mission-still-waits-and-none-is-active",
+            "The mission still waits, and no mission is active.",
+            AM_02_QUEUED,
+            {"a": NOT_FOUND, "b": FAILED_PRECONDITION},
+        ),
+        _wrong_id("ended-idle", "the-mission-has-ended", "The mission has ended.", AM_02_ENDED[IDLE], _ENDED_CODES),
+        _wrong_id(
+            "ended-busy",
+            "the-mission-has-ended-and-another-is-active",
+            "The mission has ended, and another is active.",
+            AM_02_ENDED[BUSY],
+            _ENDED_CODES,
+        ),
+        _wrong_id(
+            "cleared-idle",
+            "the-mission-is-not-listed-any-more",
+            "The mission is not listed any more.",
+            AM_02_CLEARED[IDLE],
+            _GONE_CODES,
+        ),
+        _wrong_id(
+            "cleared-busy",
+            "the-mission-is-not-listed-any-more-and-another-is-active",
+            "The mission is not listed any more, and another is active.",
+            AM_02_CLEARED[BUSY],
+            _GONE_CODES,
+        ),
+        _wrong_id(
+            "unknown-idle",
+            "the-mission-is-not-listed",
+            "No such mission was ever listed.",
+            AM_02_UNKNOWN[IDLE],
+            _GONE_CODES,
+        ),
+        _wrong_id(
+            "unknown-busy",
+            "the-mission-is-not-listed-and-another-is-active",
+            "No such mission was ever listed, and another is active.",
+            AM_02_UNKNOWN[BUSY],
+            _GONE_CODES,
+        ),
+        _wrong_id(
+            "fresh",
+            "the-robot-never-had-a-mission",
+            "The robot never had a mission.",
+            AM_03["fresh"],
+            _NO_MISSION_CODES,
+        ),
+        _wrong_id(
+            "unknown",
+            "the-robot-has-no-mission",
+            "The robot has no mission, and no such mission was ever listed.",
+            AM_03["unknown"],
+            _NO_MISSION_CODES,
+        ),
+        _wrong_id(
+            "cleared",
+            "the-robot-has-no-mission-any-more",
+            "The robot has no mission; this one was listed once.",
+            AM_03["cleared"],
+            _NO_MISSION_CODES,
+        ),
+    )
+    for rule in rules
 )
 """AM-02, AM-03: the rows overlap on ids that are not the active mission's, and each way to share them is a reading."""
 
@@ -476,13 +555,13 @@ def _asks(call: Call, command: Command) -> bool:
     return call.target is Target.ACTIVE and call.request.command is command
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["pause"]["a"], kind=STATE)
 def the_mission_is_already_paused(robot: Situation, call: Call) -> bool:
     """The mission is paused already (AM-29)."""
     return _asks(call, Command.COMMAND_PAUSE) and _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["resume"]["a"], kind=STATE)
 def the_mission_is_not_paused(robot: Situation, call: Call) -> bool:
     """The mission is not paused, so it cannot be resumed (AM-29)."""
     return _asks(call, Command.COMMAND_RESUME) and not _is_paused(robot)

@@ -24,7 +24,7 @@ from missionfsm.bear.mission.events import Happening, by_itself, due, happens
 from missionfsm.bear.mission.foresight import foresees
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
-from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_61, AMBIGUITIES
+from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_58_SENT, AM_61, AMBIGUITIES
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     ENDED,
@@ -43,15 +43,24 @@ from missionfsm.bear.mission.state import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission.stream import ALL_LISTED, OWED, SEQUENCE, TOPIC, listing, matches
+from missionfsm.bear.mission.stream import ALL_LISTED, MORE, OWED, SEQUENCE, TOPIC, listing, matches
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
-from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Emission, Invariant, Mismatch, Opening, Spec, Step
-
-_BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
+from missionfsm.kernel.spec import (
+    Abstraction,
+    Delivery,
+    Drive,
+    Emission,
+    Invariant,
+    Match,
+    Mismatch,
+    Opening,
+    Spec,
+    Step,
+)
 
 _MOVES = {
     trigger: promise(
@@ -67,15 +76,21 @@ _NEXT_GOAL = promise(
 RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
 
 
-def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tuple[Emission, ...], tuple[int, ...]]:
-    """What an edit does to a robot, to its names and to those who watch, and the names that vanish."""
+def _edited(
+    robot: Robot, edit: Edit, call: str = ""
+) -> tuple[Robot, tuple[int, ...] | None, tuple[Emission, ...], tuple[int, ...]]:
+    """What an edit does to a robot, to its names and to those who watch, and the names that vanish.
+
+    Args:
+        call: the operation that makes it.
+    """
     if not edit:
         return robot, None, (), ()
     after = apply(edit, robot)
     names, gone = renumber(edit, robot)
     before, shown = listing(robot), listing(after)
     if after.pending and not (robot.active or robot.pending or robot.world.blocked):
-        shown = evolve(shown, created=True)
+        shown = evolve(shown, created=call)
     emits: tuple[Emission, ...] = ()
     if not shown.looks_like(before):
         # Where a goal was selected that the index may have shown already, nobody can tell.
@@ -84,8 +99,8 @@ def _edited(robot: Robot, edit: Edit) -> tuple[Robot, tuple[int, ...] | None, tu
 
 
 def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
-    """AM-09, AM-10: a mission may be seen to have ended before those that wait are cancelled or vanish with it."""
-    kept = tuple((op, what) for op, what in edit if op not in (Op.CANCEL_QUEUE, Op.DROP_QUEUE))
+    """AM-09, AM-10: a mission may be seen to have ended before those that wait end or vanish with it."""
+    kept = tuple((op, what) for op, what in edit if op not in (Op.END_QUEUE, Op.DROP_QUEUE))
     if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
         yield Emission(TOPIC, listing(apply(kept, robot)), renumber(kept, robot)[0], optional=True)
 
@@ -99,12 +114,12 @@ _answer = functools.cache(Answer)
 
 
 def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
-    after, names, emits, refs = _edited(robot, outcome.edit)
+    after, names, emits, refs = _edited(robot, outcome.edit, request.operation)
     if outcome.whose == ADDED:
         before = len(robot.listed)
         refs = tuple(sorted(name for name in names or () if name >= before))
-        if request.operation in _BATCHES:
-            emits = (*_growing(robot, outcome.edit), *emits)
+        if request.operation in AM_54:
+            emits = (*_growing(robot, outcome.edit, AM_54[request.operation]["b"]), *emits)
     elif outcome.whose == ACTIVE:
         refs = (len(robot.done),)
     elif outcome.whose != GONE:
@@ -118,15 +133,27 @@ def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
         assumes=outcome.assumes,
         answer=answer,
         refs=refs,
+        applied=outcome.applied,
     )
 
 
-def _growing(robot: Robot, edit: Edit) -> Iterator[Emission]:
-    """AM-54: what a subscriber may see of a batch before it is complete."""
+LARGEST_SEEN_STARTING = 12
+"""The size of a batch up to which it is imagined that its first mission runs before it is complete: each size more
+makes a message more to be imagined."""
+
+
+def _growing(robot: Robot, edit: Edit, only: Assumption) -> Iterator[Emission]:
+    """AM-54: what a subscriber may see of several new missions before they are complete: the first may run already."""
     added = next(what for op, what in edit if op is Op.ADD)
     for size in range(1, len(added)):
         part = tuple((op, what[:size]) if op is Op.ADD else (op, what) for op, what in edit)
-        yield Emission(TOPIC, listing(apply(part, robot)), renumber(part, robot)[0], only=AM_54["b"])
+        grown = apply(part, robot)
+        names = renumber(part, robot)[0]
+        yield Emission(TOPIC, listing(grown), names, only=only)
+        if grown.active is None and len(added) <= LARGEST_SEEN_STARTING:
+            for start, _ in due(grown.world, None, grown.pending[0], halted=grown.halted, queued=True):
+                if any(op is Op.START for op, _ in start):
+                    yield Emission(TOPIC, listing(apply(start, grown)), names, only=only)
 
 
 def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
@@ -192,6 +219,13 @@ def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
     if relation in ("first", "larger", "zero"):
         return ()
     return Mismatch(SEQUENCE.id, f"the sequence number is {relation}")
+
+
+def _answers(_: object, given: object) -> tuple[Match, ...] | Mismatch:
+    """AM-58: an answer may have fields that are not documented."""
+    if given == MORE:
+        return (Match((AM_58_SENT["answers"]["b"],)),)
+    return Mismatch("", str(given))
 
 
 @functools.cache
@@ -303,6 +337,8 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         urgent=_urgent,
         spontaneous=_spontaneous,
         matches=matches,
+        answers=_answers,
+        recalls=True,
         delivery=_delivery,
         sequence=_sequence,
         names=lambda robot: len(robot.listed),

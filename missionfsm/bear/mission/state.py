@@ -63,7 +63,7 @@ FAMILY: Mapping[Kind, Family | None] = {
 """The family that a kind of mission is for; None where it is for all."""
 
 RETURN_POINT = Goal(destination_id="")
-"""The goal that a workflow may add by itself (AM-27): which one it is, nobody is told."""
+"""A goal that a workflow may add by itself (AM-25, AM-27): which one it is, nobody is told."""
 
 LIFECYCLE: Chart[State] = Chart(
     "mission",
@@ -80,8 +80,12 @@ LIFECYCLE: Chart[State] = Chart(
         ("fail", State.STATE_RUNNING, State.STATE_FAILED),
         ("fail", State.STATE_PAUSED, State.STATE_FAILED),
         ("cancel with the queue", State.STATE_DEFAULT, State.STATE_CANCELED),
+        ("fail with the queue", State.STATE_DEFAULT, State.STATE_FAILED),
     ),
-    {"cancel with the queue": "only where AM-09 or AM-10 is read as c"},
+    {
+        "cancel with the queue": "only where AM-09 or AM-10 is read as c",
+        "fail with the queue": "only where AM-10 is read as e",
+    },
 )
 """The lifecycle of one mission; waiting is reported as STATE_DEFAULT (AM-08)."""
 
@@ -99,6 +103,8 @@ class Mission:
         finishing: it was told to finish and will, at its current goal (AM-30 read as b).
         doomed: it was accepted although it cannot be done, and fails once it is started (AM-41 c, AM-43 b, AM-45 b).
         hopeless: it was accepted although it cannot be done, and fails on the way (AM-41 d, AM-43 d).
+        first: the call that made it, if it is the first of a queue and the robot was unable to start it (AM-53).
+        held: it waits since the robot is unable to start it (AM-53.then read as p or f).
     """
 
     kind: Kind
@@ -108,6 +114,8 @@ class Mission:
     finishing: bool = False
     doomed: bool = False
     hopeless: bool = False
+    first: str = ""
+    held: bool = False
 
     def moved(self, trigger: str) -> Mission:
         """The mission after a move of its lifecycle. Raises ValueError where that is not a move."""
@@ -122,13 +130,15 @@ class Mission:
             finishing=False,
             doomed=self.doomed and goes_on,
             hopeless=self.hopeless and goes_on,
+            first="",
+            held=False,
         )
 
     @property
     def visible(self) -> Mission:
         """What a subscriber can tell of it."""
-        if self.finishing or self.doomed or self.hopeless:
-            return evolve(self, finishing=False, doomed=False, hopeless=False)
+        if self.finishing or self.doomed or self.hopeless or self.first or self.held:
+            return evolve(self, finishing=False, doomed=False, hopeless=False, first="", held=False)
         return self
 
 
@@ -213,7 +223,8 @@ class Op(enum.Enum):
     START = "the first waiting mission becomes active as this one"
     ADD = "these missions are appended"
     PUT_FIRST = "these missions are put before those that wait"
-    CANCEL_QUEUE = "all waiting missions are cancelled"
+    HOLD = "the first waiting mission becomes this one"
+    END_QUEUE = "all waiting missions end by this move"
     DROP_QUEUE = "all waiting missions vanish"
     FORGET_ENDED = "the ended missions vanish"
     CLEAR = "all missions vanish"
@@ -245,8 +256,10 @@ def apply(edit: Edit, robot: Robot) -> Robot:
             pending, fresh = pending + what, False
         elif op is Op.PUT_FIRST:
             pending, fresh = what + pending, False
-        elif op is Op.CANCEL_QUEUE:
-            done, pending = (*done, *(one.moved("cancel with the queue") for one in pending)), ()
+        elif op is Op.HOLD:
+            pending = (what, *pending[1:])
+        elif op is Op.END_QUEUE:
+            done, pending = (*done, *(one.moved(what) for one in pending)), ()
         elif op is Op.DROP_QUEUE:
             pending = ()
         elif op is Op.FORGET_ENDED:
@@ -281,7 +294,7 @@ def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]
             added = list(range(new, new + len(what)))
             new += len(what)
             pending = pending + added if op is Op.ADD else added + pending
-        elif op is Op.CANCEL_QUEUE:
+        elif op is Op.END_QUEUE:
             done, pending = done + pending, []
         elif op is Op.DROP_QUEUE:
             gone, pending = gone + pending, []

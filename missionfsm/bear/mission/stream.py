@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from attrs import evolve
 
@@ -11,14 +11,17 @@ from missionfsm.bear.mission.readings import (
     AM_08,
     AM_14_ENDED,
     AM_14_GAP,
-    AM_14_PAUSED,
+    AM_14_HALTED,
     AM_26,
     AM_35,
     AM_36,
+    AM_49,
     AM_50_MEMBER,
     AM_50_SHAPE,
     AM_51,
+    AM_58_SENT,
     AM_63,
+    part_of,
 )
 from missionfsm.bear.mission.state import (
     ENDED,
@@ -46,20 +49,22 @@ from missionfsm.bear.wire.messages import (
     State,
 )
 from missionfsm.kernel.codec import Garbled
-from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
 from missionfsm.kernel.values import value
 
 TOPIC = "mission status"
+MORE = "with fields that are not documented"
+"""The shape of an answer that has more than it should (AM-58)."""
 
 
 @value(cache_hash=True)
 class Listing:
     """What a status message shows: the listed missions in order, which of them is active, and on what robot.
 
-    `fresh`: no mission was ever assigned. `held`: the first mission waits since it cannot start, which nobody sees.
-    `created`: the first mission that waits has just been created and has nothing to wait for.
+    `fresh`: no mission was ever assigned. `held`: none of those that wait is going to start, which nobody sees.
+    `created`: the call that has just made the first mission that waits, which has nothing to wait for.
     """
 
     missions: tuple[Mission, ...]
@@ -67,7 +72,7 @@ class Listing:
     family: Family
     fresh: bool = False
     held: bool = False
-    created: bool = False
+    created: str = ""
 
     def looks_like(self, other: Listing) -> bool:
         """Whether a subscriber could not tell it from the other."""
@@ -91,7 +96,7 @@ def listing(robot: Robot) -> Listing:
         len(robot.done) if robot.active else None,
         robot.world.family,
         robot.fresh,
-        not robot.done and robot.active is None and bool(robot.pending) and (robot.halted or robot.world.blocked),
+        robot.active is None and bool(robot.pending) and (robot.halted or robot.pending[0].held),
     )
 
 
@@ -99,12 +104,15 @@ def listing(robot: Robot) -> Listing:
 class Seen:
     """A status message without its mission ids and metadata; `named` tells which missions have an id.
 
-    `bare` tells of each mission whether its feedback came as a bare enum instead of a message.
+    `bare` tells of each mission whether its feedback came as a bare enum instead of a message; `timed` whether the
+    message says when it was recorded; `more` whether it has fields that are not documented.
     """
 
     states: MissionStates
     named: tuple[bool, ...]
     bare: tuple[bool, ...]
+    timed: bool = True
+    more: bool = False
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:
@@ -167,13 +175,6 @@ FAMILY_TYPES: Mapping[tuple[Kind, Family], MissionType] = {
     (Kind.BASE_NAVIGATE, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE][0],
     (Kind.BASE_NAVIGATE_AUTO, Family.CARTI): TYPES[Kind.CARTI_NAVIGATE_AUTO][0],
 }
-UNNAMED: Mapping[Kind, Ambiguity] = {
-    Kind.SERVI_BIRTHDAY: AM_26[0],
-    Kind.SERVI_HOSTING: AM_26[1],
-    Kind.SERVI_HOSTING_PATROL: AM_26[2],
-}
-"""Workflows whose types no enum names (AM-26)."""
-
 Assumed = tuple[Assumption, ...]
 
 
@@ -193,10 +194,19 @@ def matches(view: Listing, content: Seen | Garbled) -> tuple[Match, ...] | Misma
             assumes: Assumed = _placeholder(view, content)
         else:
             assumes = _listed(view, content)
+        assumes = (*_about(content), *assumes)
     except _WrongError as wrong:
         return wrong.mismatch
     # Readings that contradict each other in one message leave no explanation; the belief would find out as well.
     return (Match(assumes, tuple((index, index) for index in range(len(view.missions))), _SHOWN),)
+
+
+def _about(content: Seen) -> Iterator[Assumption]:
+    """AM-49, AM-58: what is assumed of a message whatever it shows."""
+    if not content.timed:
+        yield AM_49["b"]
+    if content.more:
+        yield AM_58_SENT["messages"]["b"]
 
 
 def _placeholder(view: Listing, content: Seen) -> Assumed:
@@ -238,23 +248,20 @@ def _listed(view: Listing, content: Seen) -> Assumed:
 
 def _first_start(view: Listing) -> Assumed:
     """AM-63: a mission that was created and is seen waiting did not run at once."""
-    waiting = view.active is None and view.missions and not view.held
-    first = all(one.state is State.STATE_DEFAULT for one in view.missions)
-    return (AM_63["b"],) if waiting and (first or view.created) else ()
+    return (AM_63[view.created]["b"],) if view.created else ()
 
 
 def current_index(view: Listing) -> Mapping[int, Assumed]:
     """The values that current_mission_index may have, and what each assumes (AM-14)."""
     if view.active is not None:
-        if view.missions[view.active].state is State.STATE_PAUSED:
-            return {view.active: (AM_14_PAUSED["f"],), -1: (AM_14_PAUSED["g"],)}
         return {view.active: ()}
     ended = sum(mission.state in ENDED for mission in view.missions)
     if ended == len(view.missions):
         return {-1: (AM_14_ENDED["a"],), ended - 1: (AM_14_ENDED["b"],)} if ended else {-1: ()}
+    how = AM_14_HALTED if view.held else AM_14_GAP
     if not ended:
-        return {-1: (AM_14_GAP["c", "d"],), 0: (AM_14_GAP["e"],)}
-    return {-1: (AM_14_GAP["c"],), ended - 1: (AM_14_GAP["d"],), ended: (AM_14_GAP["e"],)}
+        return {-1: (how["c", "d"],), 0: (how["e"],)}
+    return {-1: (how["c"],), ended - 1: (how["d"],), ended: (how["e"],)}
 
 
 def _current(view: Listing, index: int) -> Assumed:
@@ -292,15 +299,17 @@ def _name(state: State | int) -> str:
 
 
 def _goals(mission: Mission, message: MissionState, where: str) -> None:
-    if mission.kind in GOALLESS:
+    if mission.kind is Kind.RETURN:
+        return
+    if mission.kind is Kind.CHARGE:
         if len(message.goals) > 1:
             raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected its own place at most")
         return
     wanted = mission.goals
-    if wanted and wanted[-1] == RETURN_POINT:
-        if len(message.goals) != len(wanted):
-            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected {len(wanted)}")
-        wanted = (*wanted[:-1], message.goals[-1])
+    if RETURN_POINT in wanted and len(message.goals) == len(wanted):
+        wanted = tuple(
+            any_one if goal == RETURN_POINT else goal for goal, any_one in zip(wanted, message.goals, strict=True)
+        )
     if not _same_goals(wanted, message.goals):
         raise _WrongError(GOALS, f"{where} has the goals {_told(message.goals)}, expected {_told(wanted)}")
 
@@ -388,17 +397,17 @@ def _type(view: Listing, mission: Mission, message: MissionState, where: str) ->
     shown = message.mission_type or MissionType()
     if mission.kind in GOALLESS:
         return ()
-    if mission.kind in UNNAMED:
+    if mission.kind in AM_26:
         if shown.base_type is not None or shown.carti_type is not None:
             raise _WrongError(TYPE, f"{where} has a type of another family")
         number = shown.servi_type or ServiType.SERVI_TYPE_UNKNOWN
         documented = isinstance(number, ServiType)
-        return (UNNAMED[mission.kind]["a" if not number else "c" if documented else "b"],)
+        return (AM_26[mission.kind]["a" if not number else "c" if documented else "b"],)
     expected = TYPES[mission.kind]
     if shown in expected:
-        return (AM_51["a"],) if (mission.kind, view.family) in FAMILY_TYPES else ()
+        return (AM_51[part_of(mission.kind)]["a"],) if (mission.kind, view.family) in FAMILY_TYPES else ()
     if shown == FAMILY_TYPES.get((mission.kind, view.family)):
-        return (AM_51["b"],)
+        return (AM_51[part_of(mission.kind)]["b"],)
     if mission.kind in (Kind.SERVI_DELIVERY, Kind.SERVI_DELIVERY_PATROL) and shown == MissionType():
         return ()
     raise _WrongError(TYPE, f"{where} has {_type_name(shown)}, expected {_type_name(expected[0])}")

@@ -63,7 +63,23 @@ _FOREIGN: dict[str, tuple[JSON, ...]] = {
     "servi": (of_family("carti", "traverseMission", TABLES[0]),),
     "carti": (of_family("servi", "bussingMission", TABLES[0]),),
 }
-_TWICE = auto(TABLES[0], TABLES[0])
+_SEVERAL = {"servi": "deliveryMission", "carti": "traverseMission"}
+
+
+def _odd(family: str) -> Iterator[JSON]:
+    """Missions that are wrong, or may be taken for it, in a way of the robot's family: late in a list, or twice."""
+    yield auto(TABLES[0], TABLES[0])
+    yield auto(TABLES[0], "nowhere")
+    if family in _SEVERAL:
+        which = _SEVERAL[family]
+        yield of_family(family, which, TABLES[0], TABLES[1], TABLES[0])
+        yield of_family(family, which, *TABLES, "nowhere")
+        yield of_family(family, which, TABLES[0], "")
+        goals = {"goals": goals_at(TABLES[0])}
+        yield {f"{family}Mission": {which: goals, "navigateMission": {"goal": goals_at(TABLES[1])[0]}}}
+        yield {f"{family}Mission": {which: goals, "navigateAutoMission": goals}}
+        yield {**of_family(family, which, TABLES[0]), **base({"destinationId": TABLES[1]})}
+
 
 _WORKFLOWS: dict[str, tuple[str, ...]] = {
     "base": (),
@@ -90,6 +106,9 @@ _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
     {"serviWorkflow": {"delivery": {"goals": goals_at(TABLES[0])}}, "cartiWorkflow": {}},
     {"serviWorkflow": []},
     {"serviWorkflow": {"bussing": {"goals": goals_at(TABLES[0], TABLES[0])}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at(TABLES[0])}, "bussing": {"goals": goals_at(TABLES[1])}}},
+    {"cartiWorkflow": {"traverse": {"goals": goals_at(TABLES[0])}, "traversePatrol": {"goals": goals_at(TABLES[1])}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at(*TABLES, "nowhere")}}},
     {"cartiWorkflow": {"traverse": {"goals": goals_at(TABLES[0])}}},
     {"serviWorkflow": {"hosting": {"goals": goals_at(TABLES[0])}}},
 )
@@ -101,7 +120,6 @@ def _updates() -> Iterator[Prompt]:
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_DANCE"}})
-    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": 9}})
     yield Prompt("UpdateMission", {"missionCommand": {"command": "COMMAND_CANCEL"}})
     yield Prompt("UpdateMission", {})
     yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_PAUSE"}, "x": 1})
@@ -113,18 +131,19 @@ def _wrapped(mission: JSON) -> JSON:
 
 def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
     good = tuple(_missions(family, bounds.get("goals")))
-    bad = (*_DEFECTIVE, *_FOREIGN[family], _TWICE)
+    bad = (*_DEFECTIVE, *_FOREIGN[family], *_odd(family))
     for method in ("CreateMission", "AppendMission"):
         yield from (Prompt(method, _wrapped(mission)) for mission in (*good, *bad))
         yield Prompt(method, {"mission": good[0], "urgency": "high"})
-        yield Prompt(method, [])
     for method in ("CreateMissionBatch", "AppendMissionBatch"):
         for size in range(1, bounds.get("batch") + 1):
             for first in range(0, len(good), 2):
                 batch = [_wrapped(good[(first + index) % len(good)]) for index in range(size)]
                 yield Prompt(method, {"missions": batch})
         yield from (Prompt(method, {"missions": [_wrapped(good[0]), _wrapped(mission)]}) for mission in bad)
-        yield Prompt(method, {"missions": [_wrapped(bad[5]), _wrapped(good[0])]})
+        for wrong in (_DEFECTIVE[5], _FOREIGN[family][0]):
+            yield Prompt(method, {"missions": [_wrapped(wrong), _wrapped(good[0])]})
+            yield Prompt(method, {"missions": [*map(_wrapped, good[:3]), _wrapped(wrong)]})
         yield Prompt(method, {"missions": []})
         yield Prompt(method, {})
         yield Prompt(method, {"missions": [good[0]]})
@@ -135,7 +154,6 @@ def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
         yield Prompt(method, {})
         yield Prompt(method, {"x": 1})
-        yield Prompt(method, "all")
 
 
 def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:

@@ -162,7 +162,7 @@ class Nearest:
                 yield self._candidate(here, one.answer, one.names, one.rules, one.assumes, problems)
             if call.done:
                 continue
-            refs = tuple(here.ref(arg) for arg in call.args)
+            refs = self.moves.refs(here, call.args)
             for step in self.moves.outcomes(here.state, call.request, refs):
                 if step.answer is not None:
                     names = tuple(here.names[ref] if ref < len(here.names) else GONE - 1 for ref in step.refs)
@@ -303,7 +303,7 @@ class Nearest:
                 yield from ((step, says, drive.impossible) for step in drive.steps(here.state, event, ()))
         for call in reversed(self.about.recent):
             if call.answer.code != OK:
-                refs = tuple(here.ref(self.belief.number(name)) for name in call.about)
+                refs = self.moves.refs(here, tuple(map(self.belief.number, call.about)))
                 says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
                 effects = self.moves.effects(here.state, call.request, refs)
                 yield from ((step, says, ()) for step in effects if step.answer and step.answer.code == OK)

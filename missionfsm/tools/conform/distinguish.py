@@ -275,7 +275,7 @@ class _Search:
         """
         first: Step | None = None
         for position, (model, here) in enumerate(zip(self.models, node.here, strict=True)):
-            refs = tuple(here.names.index(name) if name in here.names else None for name in move.names)
+            refs = tuple(map(here.ref, move.names))
             step = (model.happening if move.driven else model.outcome)(here.state, move.what, refs)
             if position and step is not first:
                 return False

@@ -13,7 +13,7 @@ from attrs import field, frozen
 from missionfsm.kernel.alphabet import ANY_NAME, Bounds, Prompt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import ANYTHING, meet
-from missionfsm.kernel.spec import Invariant, Spec, Step
+from missionfsm.kernel.spec import ONCE_HAD, Invariant, Spec, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.placeholders import fill, slots
 
@@ -341,8 +341,8 @@ def firings(
 
 
 def references(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None, ...]]:
-    """Every way in which names can be those of a state."""
-    positions = (None, *range(spec.names(here)))
+    """Every way in which names can be those of a state, or not any more."""
+    positions = (None, *((ONCE_HAD,) if spec.recalls else ()), *range(spec.names(here)))
     return itertools.product(*(positions if one else (None,) for one in free))
 
 

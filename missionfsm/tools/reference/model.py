@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
-from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
+from missionfsm.kernel.spec import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 
 REMEMBERED = 1_000
@@ -50,6 +50,7 @@ class Snapshot:
         minted: how many names have been given out.
         numbered: the number of the last event; 1 is that of the beginning. Every stream that shows an event shows it
             under its number.
+        gone: those that the state has no more, if it matters (see `Spec.recalls`).
     """
 
     state: Any
@@ -57,6 +58,13 @@ class Snapshot:
     channels: tuple[Open, ...] = ()
     minted: int = 0
     numbered: int = 1
+    gone: frozenset[Name] = frozenset()
+
+    def ref(self, name: Name) -> int | None:
+        """The position of a name, as `Spec.outcomes` takes it."""
+        if name in self.names:
+            return self.names.index(name)
+        return ONCE_HAD if name in self.gone else None
 
 
 @frozen
@@ -137,8 +145,7 @@ class Model:
 
     def call(self, here: Snapshot, request: object, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
         """Ask something: the snapshot after it and what comes of it."""
-        refs = tuple(here.names.index(name) if name in here.names else None for name in names)
-        step = self.outcome(here.state, request, refs)
+        step = self.outcome(here.state, request, tuple(map(here.ref, names)))
         after, sent, mentioned = self._take(here, step, ())
         after, sent = self._settle(after, sent)
         return after, Reply(step.answer, mentioned, tuple(sent), step.rules)
@@ -159,8 +166,7 @@ class Model:
 
     def drive(self, here: Snapshot, event: Any, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:  # noqa: ANN401
         """Make something happen; the reply says whether it applied."""
-        refs = tuple(here.names.index(name) if name in here.names else None for name in names)
-        step = self.happening(here.state, event, refs)
+        step = self.happening(here.state, event, tuple(map(here.ref, names)))
         if step is None:
             return here, Reply(None, happened=False)
         here, names = self._brought(here, step, names)
@@ -218,6 +224,8 @@ class Model:
         pool += reversed(given)
         names = here.names if step.names is None else tuple(pool[ref] for ref in step.names)
         after = evolve(here, state=step.after, names=names, minted=minted)
+        if self.system.spec.recalls and names is not here.names and (lapsed := set(here.names).difference(names)):
+            after = evolve(after, gone=here.gone | lapsed)
         if step.closes:
             after = evolve(after, channels=tuple(one for one in after.channels if one.topic not in step.closes))
         sent: list[Sent] = []

@@ -303,6 +303,9 @@ class Spec:
         rules: all rules of the system that belong to no operation.
         answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
             why they do not; None where they have to be equal.
+        lasting: the content of a message to what of the thing with each of its names may never change as long as it is
+            there: pairs of a relation, such as ``goals changed``, which `sequence` is asked about once it changes, and
+            of a value. None where nothing is known to last.
         recalls: whether it matters to its outcomes that a name was something's once.
         decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
             is not. It speaks for `outcomes`: whoever replaces those drops it.
@@ -339,6 +342,7 @@ class Spec:
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
     answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
+    lasting: Callable[[Any], tuple[tuple[tuple[str, Hashable], ...], ...]] | None = None
     recalls: bool = False
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None

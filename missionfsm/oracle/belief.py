@@ -200,6 +200,7 @@ class Belief:
 
     __slots__ = (
         "_given_up",
+        "_lasting",
         "_latest",
         "_marks",
         "_names",
@@ -225,6 +226,7 @@ class Belief:
         self._numbers: dict[Name, int] = {}
         self._retired: dict[Name, None] = {}
         self._given_up: dict[Name, None] = {}
+        self._lasting: dict[Name, tuple[tuple[str, Hashable], ...]] = {}
         self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
         self._renumbered: set[tuple[Name, Hashable]] = set()
@@ -265,6 +267,10 @@ class Belief:
         """Remember what an event says of the numbers on a channel."""
         if type(event) is Received:
             self._latest[event.channel] = event
+            lasting = self.automaton.spec.lasting
+            if lasting is not None:
+                for name, shown in zip(event.names, lasting(event.content), strict=False):
+                    self._lasting.setdefault(name, shown)
             if event.marks:
                 self._mark(event.channel, event.marks)
         elif type(event) is Driven:
@@ -284,6 +290,7 @@ class Belief:
         other._names, other._numbers = self._names.copy(), self._numbers.copy()  # noqa: SLF001 - of the same class
         other._retired, other._given_up = self._retired.copy(), self._given_up.copy()  # noqa: SLF001
         other._marks = {channel: tracks.copy() for channel, tracks in self._marks.items()}  # noqa: SLF001
+        other._lasting = self._lasting.copy()  # noqa: SLF001
         other._latest = self._latest.copy()  # noqa: SLF001
         other._renumbered = self._renumbered.copy()  # noqa: SLF001
         return other
@@ -346,6 +353,8 @@ class Belief:
                 channel = self._number_anew(event.channel, new)
             args = self._number(event.names, new) if event.names else ()
             relations = self._relations(event.channel, event.marks) if event.marks else ()
+            if event.names and self.automaton.spec.lasting is not None:
+                relations += self._changes(event)
             return (Received, event.content, args, relations, channel), new
         if type(event) is Settled:
             return (Settled,), new
@@ -375,6 +384,18 @@ class Belief:
             return self.node.width + new.index(name)
         new.append(name)
         return self.node.width + len(new) - 1
+
+    def _changes(self, event: Received) -> tuple[str, ...]:
+        """What a message changes of what may never change; asking changes nothing."""
+        lasting = self.automaton.spec.lasting
+        found: dict[str, None] = {}
+        for name, shown in zip(event.names, lasting(event.content) if lasting else (), strict=False):
+            known = self._lasting.get(name, shown)
+            if known is not shown and known != shown:
+                found.update(
+                    dict.fromkeys(after[0] for before, after in zip(known, shown, strict=True) if before != after)
+                )
+        return tuple(found)
 
     def _relations(self, channel: Name, marks: tuple[tuple[Hashable, int], ...]) -> tuple[str, ...]:
         """How the numbers of a message compare with those before; asking changes nothing."""
@@ -429,6 +450,7 @@ class Belief:
         self._numbers = {name: number for number, name in enumerate(self._names)}
 
     def _retire(self, name: Name) -> None:
+        self._lasting.pop(name, None)
         self._retired[name] = None
         self._unmark(name)
         if len(self._retired) > REMEMBERED:

@@ -43,12 +43,25 @@ from missionfsm.bear.mission.state import (
     renumber,
     situation,
 )
-from missionfsm.bear.mission.stream import ALL_LISTED, MORE, OWED, SEQUENCE, TOPIC, listing, matches
+from missionfsm.bear.mission.stream import (
+    ALL_LISTED,
+    GOALS,
+    GOALS_CHANGED,
+    MORE,
+    OWED,
+    SEQUENCE,
+    TOPIC,
+    TYPE,
+    TYPE_CHANGED,
+    lasting,
+    listing,
+    matches,
+)
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, Assumption, meet
-from missionfsm.kernel.rules import INTERNAL, OK, Operation, promise
+from missionfsm.kernel.rules import INTERNAL, OK, Operation, Waiver, promise
 from missionfsm.kernel.spec import (
     Abstraction,
     Delivery,
@@ -109,6 +122,15 @@ def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules:
     after, names, emits, _ = _edited(robot, edit)
     return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
 
+
+WAIVERS = (
+    Waiver(
+        "one-number-stands-for-one-state",
+        "Numbers are compared within one stream; that two streams show one state under one number is not checked.",
+        MISSION["SubscribeMissionStatus", "EventMetadata"],
+        ("SubscribeMissionStatus",),
+    ),
+)
 
 _answer = functools.cache(Answer)
 
@@ -215,9 +237,14 @@ def _drive(robot: Robot, happening: Happening, _: tuple[int | None, ...]) -> tup
     return tuple(_step(robot, edit, assumes, rules) for edit, assumes in happens(situation(robot), happening))
 
 
+_CHANGED = {TYPE_CHANGED: TYPE.id, GOALS_CHANGED: GOALS.id}
+
+
 def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
     if relation in ("first", "larger", "zero"):
         return ()
+    if relation in _CHANGED:
+        return Mismatch(_CHANGED[relation], f"a mission that was listed before has its {relation}")
     return Mismatch(SEQUENCE.id, f"the sequence number is {relation}")
 
 
@@ -338,7 +365,9 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         spontaneous=_spontaneous,
         matches=matches,
         answers=_answers,
+        lasting=lasting,
         recalls=True,
+        waived=WAIVERS,
         delivery=_delivery,
         sequence=_sequence,
         names=lambda robot: len(robot.listed),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -296,6 +296,33 @@ def waiting_as(*, pointed: bool) -> Mapping[State | int, tuple[str, ...]]:
 
 def _name(state: State | int) -> str:
     return state.name if isinstance(state, State) else f"state {state}"
+
+
+TYPE_CHANGED, GOALS_CHANGED = "type changed", "goals changed"
+
+
+@functools.lru_cache(maxsize=10_000)
+def lasting(content: Seen | Garbled) -> tuple[tuple[tuple[str, Hashable], ...], ...]:
+    """A mission keeps its type and its goals as long as it is listed, also where nothing says which they are."""
+    if isinstance(content, Garbled) or not all(content.named):
+        return ()
+    return tuple(
+        ((TYPE_CHANGED, _shown_type(one)), (GOALS_CHANGED, tuple(map(_rounded, one.goals))))
+        for one in content.states.missions
+    )
+
+
+def _shown_type(message: MissionState) -> Hashable:
+    shown = message.mission_type or MissionType()
+    given = ((name, getattr(shown, name)) for name in ("base_type", "servi_type", "carti_type"))
+    return next(((name, number) for name, number in given if number), None)
+
+
+def _rounded(goal: Goal) -> Hashable:
+    if goal.pose is None:
+        return goal.destination_id
+    numbers = (goal.pose.x_meters, goal.pose.y_meters, goal.pose.heading_radians)
+    return tuple(float(f"{number:.5g}") for number in numbers)
 
 
 def _goals(mission: Mission, message: MissionState, where: str) -> None:

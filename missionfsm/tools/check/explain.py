@@ -138,7 +138,11 @@ def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tupl
 def _against_message(nearest: Nearest, event: Received) -> Found:
     spec, belief = nearest.spec, nearest.belief
     relations = belief.symbol(event)[0][3]
-    for relation, (track, number) in zip(relations, event.marks, strict=True):
+    for relation in relations[len(event.marks) :]:
+        wrong = spec.sequence(relation)
+        if isinstance(wrong, Mismatch):
+            return (), [wrong.rule], [wrong.says]
+    for relation, (track, number) in zip(relations, event.marks, strict=False):
         wrong = spec.sequence(relation)
         if isinstance(wrong, Mismatch):
             before = belief.last_mark(event.channel, track)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.bear.mission.samples import CANCEL, COMMANDS, FINISH, PAUSE, TABLES, auto, base, of_family
+from missionfsm.bear.mission.samples import CANCEL, COMMANDS, FINISH, PAUSE, RESUME, TABLES, auto, base, of_family
 from missionfsm.kernel.alphabet import ANY_NAME, Line
 from missionfsm.kernel.codec import JSON
 
@@ -89,4 +89,41 @@ def _choices() -> Iterator[tuple[Line, ...]]:
         yield (_SUBSCRIBE, *behind, *occupied, *_drive("missionSucceeded"), *_call("SkipGoal"))
 
 
-SCRIPTS = (*_choices(), *_commands(), *_patrols())
+def _again() -> Iterator[tuple[Line, ...]]:
+    """What was done once is done once more: pauses, skips, and calls that fail on the way."""
+    four = of_family("servi", "deliveryMission", *TABLES, TABLES[0])
+    begun = (_SUBSCRIBE, *_call("CreateMission", {"mission": four}))
+    pause, resume, skip, reached = _command(0, PAUSE), _command(0, RESUME), _call("SkipGoal"), _drive("goalReached")
+    yield (*begun, *pause, *resume, *pause, *resume, *reached, *pause, *resume, *reached, *reached, *reached)
+    yield (*begun, *skip, *skip, *skip, *skip)
+    yield (*begun, *reached, *pause, *skip, *resume, *skip, *reached, *reached)
+    for status in ("INTERNAL", "DEADLINE_EXCEEDED"):
+        fault = _drive("fault", status=status, applied=False)
+        for command in COMMANDS:
+            yield (*begun, *reached, *fault, *_command(0, command), *_command(0, command), *reached)
+        batch = {"missions": [_SINGLE, {"mission": four}, _SINGLE]}
+        yield (*begun, *fault, *_call("AppendMissionBatch", batch), *_drive("missionSucceeded"), *reached)
+        yield (_SUBSCRIBE, *fault, *_call("CreateMissionBatch", batch), *reached, *reached)
+
+
+def _impossible() -> Iterator[tuple[Line, ...]]:
+    """Missions that should have been refused are followed to their end, if they were not."""
+    foreign = of_family("carti", "traverseMission", *TABLES)
+    nowhere = of_family("servi", "deliveryMission", *TABLES, "nowhere")
+    for mission in (foreign, nowhere):
+        on = (*_drive("goalReached") * 4, *_drive("missionSucceeded"))
+        batch = {"missions": [_SINGLE, {"mission": mission}]}
+        yield (_SUBSCRIBE, *_call("CreateMission", {"mission": mission}), *on)
+        yield (_SUBSCRIBE, *_call("CreateMissionBatch", batch), *_drive("missionSucceeded"), *on)
+        begun = (_SUBSCRIBE, *_call("CreateMission", _SINGLE))
+        yield (*begun, *_call("AppendMission", {"mission": mission}), *_drive("missionSucceeded"), *on)
+        yield (
+            *begun,
+            *_call("AppendMissionBatch", batch),
+            *_drive("missionSucceeded"),
+            *_drive("missionSucceeded"),
+            *on,
+        )
+
+
+SCRIPTS = (*_choices(), *_commands(), *_patrols(), *_again(), *_impossible())

@@ -82,6 +82,31 @@ def test_topics_may_differ_in_what_they_show_of_what_was_never_reported() -> Non
     assert not conforms(*battery_first, *codes, *again, world=WORLDS[1])
 
 
+def test_a_robot_that_was_never_connected_may_be_shown_as_disconnected() -> None:
+    """AS-09: it is offline or unreachable, so that STATE_DISCONNECTED is true of it, before any report and after."""
+    unseen = [*opened(1, ONLINE, by_ids("r3")), online_message(1, r3=(1, "STATE_DISCONNECTED")), SETTLED]
+    assert conforms(*unseen, world=WORLDS[1])
+    gone = [*opened(1, ONLINE, by_ids("r1")), online_message(1, r1=(1, "STATE_CONNECTED"))]
+    gone += [report("r1", "connection", None), online_message(1, r1=(2, "STATE_DISCONNECTED")), SETTLED]
+    assert conforms(*gone)
+
+
+def test_an_offline_robot_without_errors_may_be_withheld_where_one_that_is_not_offline_is_shown() -> None:
+    """AS-09: a robot that is offline and has never reported the topic is a situation of its own."""
+    shown = [*opened(1, ERRORS, by_ids("r3")), _errors(1, "r3", 1, []), SETTLED]
+    offline = [report("r3", "connection", {"state": "STATE_DISCONNECTED"}), *opened(2, ERRORS, by_ids("r3")), SETTLED]
+    assert conforms(*shown, *offline, world=WORLDS[1])
+
+
+def test_an_empty_arm_of_a_selector_may_be_no_arm() -> None:
+    """AS-04: the list of ids and the location are two situations, each read by itself."""
+    no_location = {"selector": {"robotIds": {"ids": ["r1"]}, "locationId": ""}}
+    no_ids = {"selector": {"robotIds": {"ids": []}, "locationId": "L2"}}
+    served = [*opened(1, BATTERY, no_location), battery_message(1, "r1", 5, FIRST), SETTLED]
+    assert conforms(*served, *refused(BATTERY, no_ids, "INVALID_ARGUMENT"))
+    assert not conforms(*served, *refused(BATTERY, no_location, "INVALID_ARGUMENT"))
+
+
 @pytest.mark.parametrize("drives", [(), DRIVES])
 def test_internal_may_come_to_a_subscription_whoever_drives_faults(drives: tuple[str, ...]) -> None:
     """It stands in the table of every subscription, and faults are armed for GetRobotStatus alone."""

@@ -302,14 +302,14 @@ def _plain(names: _Names) -> Iterator[Prompt]:
 
 
 _SHOWN: Mapping[Endpoint, tuple[str, tuple[JSON, ...]]] = {
-    Endpoint.BATTERY: ("battery", _BATTERIES[:2]),
+    Endpoint.BATTERY: ("battery", (_BATTERIES[1], _BATTERIES[5], _BATTERIES[0])),
     Endpoint.ERRORS: ("errorCodes", (_ERRORS[4], _ERRORS[1])),
     Endpoint.NAVIGATION: ("navigationState", _NAVIGATIONS[:2]),
-    Endpoint.NETWORK: ("wifi", _NETWORKS[:2]),
+    Endpoint.NETWORK: ("wifi", (_NETWORKS[3], _NETWORKS[0], _NETWORKS[1])),
     Endpoint.ONLINE: ("connection", _CONNECTIONS[::-1]),
-    Endpoint.ROBOT: ("battery", _BATTERIES[:2]),
+    Endpoint.ROBOT: ("battery", (_BATTERIES[5], _BATTERIES[0], _BATTERIES[1])),
 }
-"""For each subscription a part of the state that it shows, and two values of it."""
+"""For each subscription a part of the state that it shows, and values of it, one after the other nearly the same."""
 
 
 def _scripts(names: _Names) -> Iterator[tuple[Line, ...]]:

@@ -22,6 +22,7 @@ from missionfsm.bear.status.readings import (
     AS_04_BLANK,
     AS_07,
     AS_07_UNKNOWN,
+    AS_09_GONE,
     AS_09_OFFLINE,
     AS_09_UNKNOWN,
     AS_09_UNSET,
@@ -114,7 +115,7 @@ def _arms(request: Request) -> Iterator[tuple[Request, Assumed]]:
         yield by_location, (question["b"],)
         yield by_ids, (question["e"],)
     else:
-        question = AS_04_BLANK[request.operation]
+        question = AS_04_BLANK["location" if request.ids else "ids"][request.operation]
         yield request, (question["a"],)
         yield by_ids if request.ids else by_location, (question["z"],)
 
@@ -183,7 +184,7 @@ def _question(fleet: Fleet, endpoint: Endpoint, robot: Robot) -> Ambiguity | Non
     if endpoint is Endpoint.NETWORK:
         return AS_27_OFFLINE if fleet.unheard else shown.unlinked if shown else None
     if shown is None:
-        return AS_09_UNKNOWN[endpoint.value]
+        return (AS_09_GONE if robot.offline and endpoint.value in AS_09_GONE else AS_09_UNKNOWN)[endpoint.value]
     offline = (robot.offline or fleet.unheard) and endpoint is not Endpoint.ONLINE
     return AS_09_OFFLINE[endpoint.value] if offline else None
 
@@ -283,16 +284,25 @@ def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assu
         question = AS_09_UNSET[endpoint.value]
         for letter in question.readings:
             after = reporting(robot, part, None, keep=letter == "a")
-            yield from _shown(fleet, robot, after, part, (*assumes, question[letter]), unset=letter == "c")
+            yield from _shown(
+                fleet, robot, after, part, (*assumes, question[letter]), unset=_unset(after, endpoint, letter)
+            )
     else:
         yield from _shown(fleet, robot, reporting(robot, part, value), part, assumes)
+
+
+def _unset(robot: Robot, endpoint: Endpoint, letter: str) -> View | None:
+    """AS-09: what a stream shows of a topic that is not reported any more; None for nothing."""
+    if letter == "e":
+        return View(robot.id, endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED))
+    return blank(robot, endpoint) if letter == "c" else None
 
 
 _UNSET = tuple(one for one in Endpoint if one.value in AS_09_UNSET)
 
 
 def _shown(  # noqa: PLR0913 - what a report is made of
-    fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: bool = False
+    fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: View | None = None
 ) -> Iterator[Step]:
     """What a change of a robot shows, in every combination of the readings that matter."""
     into = fleet.put(after)
@@ -345,11 +355,11 @@ def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assump
             yield emits, (one, *assumed)
 
 
-def _topical(before: Robot, after: Robot, endpoint: Endpoint, *, unset: bool) -> Iterator[Way]:
+def _topical(before: Robot, after: Robot, endpoint: Endpoint, *, unset: View | None) -> Iterator[Way]:
     """A stream with a single topic, after a report about that topic."""
     if unset:
         only = AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else None
-        yield from _addressed(after, endpoint, blank(after, endpoint), only=only)
+        yield from _addressed(after, endpoint, unset, only=only)
         return
     shown = view(after, endpoint)
     if shown is None or shown == view(before, endpoint):

@@ -130,13 +130,21 @@ AS_04 = _asked(
     "a",
     flagged="be",
 )
-AS_04_BLANK = _asked(
-    SUBSCRIPTIONS,
-    "AS-04.blank",
-    "a selector has robot ids and a location, one of which is empty: what is answered?",
-    {"a": "INVALID_ARGUMENT", "z": "the other one is followed, since what is empty is not set"},
-    "a",
-)
+AS_04_BLANK: Mapping[str, Question] = {
+    arm: _asked(
+        SUBSCRIPTIONS,
+        f"AS-04.blank-{arm}",
+        f"a selector has {says}: what is answered?",
+        {"a": "INVALID_ARGUMENT", "z": "the other one is followed, since what is empty is not set"},
+        "a",
+    )
+    for arm, says in (
+        ("ids", "no robot ids in its list and a location"),
+        ("location", "robot ids and an empty location"),
+    )
+}
+"""By the arm that is empty."""
+
 AS_05 = _asked(
     SUBSCRIPTIONS,
     "AS-05",
@@ -235,6 +243,13 @@ AS_09_UNKNOWN = Question(
         for call in (BATTERY, ERRORS, NAVIGATION, ONLINE, ROBOT)
     }
 )
+AS_09_GONE = _asked(
+    (BATTERY, ERRORS, NAVIGATION, ROBOT),
+    "AS-09.gone",
+    "what does a new stream show first of an offline robot of which nothing is known that it could show?",
+    _NOTHING_KNOWN,
+    "b",
+)
 _UNREPORTED = {"a": "it is left out", "c": "with UNKNOWN values"}
 AS_09_PART: Mapping[str, Question] = {
     part: _asked(
@@ -248,12 +263,18 @@ AS_09_PART: Mapping[str, Question] = {
 }
 """By the part of the state."""
 
-AS_09_UNSET = _asked(
-    (BATTERY, ERRORS, NAVIGATION, ONLINE),
-    "AS-09.unset",
-    "what does a stream show once the robot does not report its topic any more?",
-    {"a": "what was known last stays", "b": "nothing", "c": "UNKNOWN values"},
-    "a",
+_UNSET = {"a": "what was known last stays", "b": "nothing", "c": "UNKNOWN values"}
+AS_09_UNSET = Question(
+    {
+        call: Ambiguity(
+            f"AS-09.unset.{call}",
+            f"{call}: what does a stream show once the robot does not report its topic any more?",
+            {**_UNSET, "e": "STATE_DISCONNECTED"} if call == ONLINE else _UNSET,
+            default="a",
+            alike="AS-09.unset",
+        )
+        for call in (BATTERY, ERRORS, NAVIGATION, ONLINE)
+    }
 )
 AS_12_HYBRID = Ambiguity(
     "AS-12.hybrid",

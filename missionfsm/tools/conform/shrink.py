@@ -82,7 +82,7 @@ class _Shrinker:
         """Leave out runs of actions, long ones first, until none can go; whether any went."""
         before = len(self.actions)
         size = max(1, before // 2)
-        while size:
+        while size > 0:  # without anything done there is nothing to leave out
             few = len(self.actions) <= FEW
             at = 0
             while at < len(self.actions):

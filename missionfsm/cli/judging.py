@@ -27,7 +27,16 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
-from missionfsm.cli.overgrpc import Force, GrpcAddress, SettleSeconds, TlsFile, TokenFile, WorldFile, over_grpc
+from missionfsm.cli.overgrpc import (
+    Force,
+    GrpcAddress,
+    SettleSeconds,
+    TlsFile,
+    TokenFile,
+    WorldFile,
+    in_binary,
+    over_grpc,
+)
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
@@ -159,7 +168,7 @@ def conform(  # noqa: PLR0913 - options of the command
             child: Subject = over_grpc(
                 system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
             )
-            examples = examples or GRPC_EXAMPLES
+            judged, examples = in_binary(judged), examples or GRPC_EXAMPLES
         else:
             child = bridge.subject if bridge else Child(command or own, timeout)
         examples = examples or DEFAULT_EXAMPLES

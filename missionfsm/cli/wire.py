@@ -144,17 +144,13 @@ def proxy(  # noqa: PLR0913 - options of the command
     host: Annotated[str, typer.Option(help="The address to listen on.")] = "127.0.0.1",
     record: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history, as traffic goes.")] = None,
     world: Annotated[str | None, typer.Option(metavar="FILE", help="The robot's world, as JSON.")] = None,
-    begins: Annotated[
-        str, typer.Option(help="anywhere: the robot is in use; fresh: nothing was done yet.")
-    ] = "anywhere",
-    others: Annotated[bool, typer.Option("--others", help="Others may act on the robot besides this traffic.")] = False,
     reading: Readings = None,
     tls: Annotated[
         str, typer.Option(metavar="FILE", help="The robot has TLS: its authority in PEM, or system for the machine's.")
     ] = "",
     json: JsonFile = None,
 ) -> None:
-    """Stand between clients and a robot: pass everything on, record it, and say at once what breaks.
+    """Stand between clients and a robot that has done nothing yet: pass everything on, record it, say what breaks.
 
     Traffic is never held up by a verdict, a full disk or a slow terminal. Exit status when interrupted: 0 if what was
     seen conforms, 1 if not.
@@ -171,14 +167,8 @@ def proxy(  # noqa: PLR0913 - options of the command
 
     if system not in SERVICES:
         stop(f"{system}: there is a proxy for {' and '.join(SERVICES)}", BAD_INPUT)
-    if begins not in ("anywhere", "fresh"):
-        stop(f"--begins {begins}: anywhere or fresh", BAD_INPUT)
     refuse_outputs({"--record": record, "--json": json}, (world,))
     head: dict[str, JSON] = {"missionfsm": 1, "system": system, "world": read_world(world), "drives": []}
-    if begins == "anywhere":
-        head["begins"] = "anywhere"
-    if others:
-        head["others"] = True
     with _bad_input():
         recorder = Recorder(head, file=record or "", readings=choice(reading), tell=complain)
         relay = Proxy(system, Target(grpc, certificate=tls), recorder.record)

@@ -49,6 +49,9 @@ Refs = tuple[int | None, ...]
 STATUSES, NAMES = "statuses", "names"
 """The two topics of the one connection: statuses and names come in any order among one another."""
 
+MAX_WAITING = 2
+"""How many statuses wait before the codelet is taken to have ticked when another one is due."""
+
 NEW = -1
 """The reference to the identifier that a line brings along."""
 
@@ -123,7 +126,7 @@ def _concluded(
             assumes = (*assumes, later[0].when["b"])
         if len({one.of for one in assumes}) < len(assumes):
             continue
-        flushed = bool(now) or not (here.waiting or later)
+        flushed = bool(now) or not (here.waiting or later) or len(here.waiting) >= MAX_WAITING
         kept = () if flushed else here.waiting
         emits: list[Emission] = list(told(here)) if flushed else []
         for one in now:

@@ -330,6 +330,10 @@ POSSIBILITIES = tuple(
 )
 
 
+_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,))
+"""What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
+
+
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
     """The mission server with the rules of these operations."""
     return Spec(
@@ -342,15 +346,16 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
             one.name: one
             for one in (
                 Drive("connect", _connect),
-                Drive("line", _line),
-                Drive("disconnect", _disconnect, ends=True),
+                Drive("line", _line, impossible=(rules.NAMED.id,)),
+                Drive("disconnect", _disconnect, ends=True, impossible=(rules.DROPPED.id,)),
                 Drive("advance", _advance),
             )
         },
         urgent=_urgent,
         spontaneous=_spontaneous,
         matches=_matches,
-        delivery=lambda _: Delivery(),
+        delivery=lambda _: _DELIVERY,
+        unopened=(rules.UNNAMED.id,),
         sequence=lambda _: (),
         names=lambda server: 2 * len(server.missions) + len(server.links),
         request_operation=lambda request: str(request.operation),

@@ -85,7 +85,7 @@ def test_readings_may_be_demanded() -> None:
     """What one reading explains conforms where that one is demanded, and violates where another is."""
     empty = {"call": 1, "method": "UpdateMission", "params": {}}
     lines = [HEAD, empty, {"return": 1, "error": {"status": "FAILED_PRECONDITION"}}]
-    assert check(lines).readings == {"AM-04": ("c",)}
+    assert check(lines).readings == {"AM-04.no-id": ("c",)}
     assert check(lines, readings={"AM-04": "c"}).conforms
     assert not check(lines, readings={"AM-04": "a"}).conforms
     with pytest.raises(ValueError, match="there is no ambiguity AM-99"):

@@ -53,14 +53,15 @@ def test_readings_are_named_in_titles_and_files(command_line: CommandLine, tmp_p
     assert "halted" in halted.out
     versus = ("--reading", "AM-11=b", "--versus", "AM-09=c")
     command_line("diagram", "bear.mission", *versus, "--format", "table", "-o", tmp_path)
-    assert files(tmp_path) == ["bear.mission/queue-AM-11-b-AM-09-a-c.md"]
+    assert files(tmp_path) == ["bear.mission/queue-AM-11-b-AM-09-AM-09.skip-aa-cc.md"]
 
 
 def test_an_entry_speaks_for_all_of_its_parts(command_line: CommandLine) -> None:
-    """``AM-17`` stands for ``AM-17.last`` and ``AM-17.patrol``, as it does elsewhere."""
+    """``AM-17`` stands for all of ``AM-17.last`` and ``AM-17.patrol``, as it does elsewhere."""
     ended = command_line("diagram", "bear.mission", "--versus", "AM-17=d", "--format", "mermaid")
     assert (ended.status, ended.err) == (0, "")
-    assert "AM-17.last=a, AM-17.patrol=" in ended.out
+    assert "AM-17.last.base-navigate=a, AM-17.last.base-navigate-auto=a, " in ended.out
+    assert "AM-17.patrol.carti-traverse-patrol=d" in ended.out
 
 
 def test_refusals_are_told_if_asked_for(command_line: CommandLine) -> None:
@@ -115,7 +116,10 @@ def test_mission_files_are_drawn(command_line: CommandLine, tmp_path: Path) -> N
             ("bear.mission", "--reading", "AM-09"),
             "--reading AM-09: expected an ambiguity and a letter, such as AM-09=a",
         ),
-        (("bear.mission", "--versus", "AM-09=z"), "AM-09 has no reading z: AM-09 has a, b, c, d"),
+        (
+            ("bear.mission", "--versus", "AM-09=z"),
+            "AM-09 has no reading z: AM-09 has a, b, c, d; AM-09.skip has a, b, c, d",
+        ),
         (
             ("bear.mission", "--versus", "AM-09=a"),
             "--versus AM-09=a: that is how it is read anyway, so there is nothing to tell apart",

@@ -238,15 +238,18 @@ class World:
                 yield bound
 
     def may_skip(self, stream: Stream, messages: Iterable[Message]) -> bool:
-        """Whether messages can be left out because later ones follow."""
+        """Whether messages can be left out: they show nothing new, or later ones follow."""
         skips = self.spec.delivery(stream.topic).skips
-        return all(one.optional for one in messages) or (skips is not None and self.agrees([skips]))
+        return all(one.optional or unchanged(stream, one) for one in messages) or (
+            skips is not None and self.agrees([skips])
+        )
 
     def told(self, stream: Stream) -> bool:
         """Whether the subscriber knows where things stand."""
         due = [one for one in stream.owed if not one.optional]
-        back = due and stream.last and (due[-1].view, due[-1].things) == (stream.last.view, stream.last.things)
-        return not due or bool(back and self.may_skip(stream, due))
+        if all(unchanged(stream, one) for one in due):
+            return True
+        return unchanged(stream, due[-1]) and self.may_skip(stream, due)
 
     def received(self, here: Configuration, event: Received, relations: tuple[str, ...]) -> Iterator[Configuration]:
         """The configurations in which a message shows what its stream owes, or what it showed last."""
@@ -278,6 +281,11 @@ class World:
                         streams = (*here.streams[:at], after, *here.streams[at + 1 :])
                         pairs = [(message.things[ref], event.names[to]) for ref, to in match.names]
                         yield from self._bound(evolve(here, streams=streams), [[(stream.thing, event.channel), *pairs]])
+
+
+def unchanged(stream: Stream, message: Message) -> bool:
+    """Whether a message shows what the stream showed last, so that its subscriber could not tell it."""
+    return stream.last is not None and (message.view, message.things) == (stream.last.view, stream.last.things)
 
 
 class BruteForce:

@@ -16,12 +16,15 @@ from attrs import define, field
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.lookahead import Lookahead, Message, Symbol
 from missionfsm.oracle.subsumption import sift
-from missionfsm.oracle.successors import Moves, Seen, Sighting
+from missionfsm.oracle.successors import ExhaustedError, Moves, Seen, Sighting
 from missionfsm.oracle.transition import Oracle
 
 T = TypeVar("T")
-WIDTH = 16
+WIDTH = 1
 """How many explanations are followed at once."""
+
+EFFORT = 300
+"""How much of the budget goes into finding more than one explanation of an event at once, the first time."""
 
 
 @define(eq=False)
@@ -31,12 +34,20 @@ class Layer:
     Attributes:
         rules: what was exercised by the event before.
         more: what else explains the event as well; None where that is all.
+        begun: whether the event was looked at; once it was too dear to look at all of it, it is looked at anew.
+        effort: how much of the budget goes into finding more than one explanation at once.
     """
 
     explanations: tuple[Explanation, ...]
     rules: tuple[str, ...] = ()
     more: Iterator[Sighting] | None = field(default=None, repr=False)
     begun: bool = False
+    effort: int = EFFORT
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether there may be other explanations of the event after these that were not looked at."""
+        return self.more is not None
 
 
 class Search:
@@ -121,10 +132,11 @@ class Search:
         """Do some work on the budget of the search."""
         moves = self.moves
         budget, moves.budget, moves.ahead = moves.budget, self._budget, self._ahead
+        moves.most = self._budget
         try:
             return work()
         finally:
-            moves.ahead, moves.budget = None, budget
+            moves.ahead, moves.budget, moves.most = None, budget, budget
 
     def _enter(self, found: tuple[Sighting, ...]) -> None:
         rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
@@ -147,24 +159,34 @@ class Search:
 
     def _next(self, here: Layer, position: int) -> tuple[Sighting, ...]:
         """Some more explanations of the next event; none where there are no others."""
-        ahead, tried = self._ahead, self._tried[position + 1]
+        ahead, tried, moves = self._ahead, self._tried[position + 1], self.moves
         if not here.begun:
             here.begun = True
             kind, *what = self._symbols[position]
             here.more = self.oracle.explained(here.explanations, kind, *what)
         found: list[Sighting] = []
-        while here.more is not None and not found:
-            for one in here.more:
-                ahead.at = position + 1
-                narrow = ahead.narrowed(one.explanation)
-                ahead.at = position
-                if narrow and not self.moves.outdone(tried, narrow):
-                    found.append(one if narrow is one.explanation else Sighting(narrow, one.rules))
-                if len(found) >= self.width:
-                    break
-            else:
-                here.more = None
-        return sift(self.moves, found)
+        begun = moves.spent
+        try:
+            while here.more is not None and not found:
+                for one in here.more:
+                    ahead.at = position + 1
+                    narrow = ahead.narrowed(one.explanation)
+                    ahead.at = position
+                    if narrow and not moves.outdone(tried, narrow):
+                        found.append(one if narrow is one.explanation else Sighting(narrow, one.rules))
+                        moves.most = min(moves.budget, begun + here.effort)
+                    if len(found) >= self.width:
+                        break
+                else:
+                    here.more = None
+        except ExhaustedError:
+            if not found or moves.spent > moves.budget:
+                raise
+            # It begins anew where these lead nowhere; what was tried is passed over then.
+            here.begun, here.effort = False, here.effort * 4
+        finally:
+            moves.most = moves.budget
+        return sift(moves, found)
 
     def first_unexplained(self) -> int | None:
         """The position of the first event that nothing explains, given those before it; None where all are explained.
@@ -186,4 +208,4 @@ class Search:
     @property
     def exact(self) -> bool:
         """Whether the last layer has every explanation there is."""
-        return all(layer.more is None for layer in self.layers[:-1])
+        return not any(layer.unfinished for layer in self.layers[:-1])

@@ -81,11 +81,12 @@ class Moves:
         self._unseen: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
         self.ahead: Lookahead | None = None
-        self._spent = 0
+        self.spent = 0
+        self.most = budget
 
     def reset(self) -> None:
         """Start counting against the budget anew."""
-        self._spent = 0
+        self.spent = 0
 
     # What the spec says, remembered.
 
@@ -352,8 +353,8 @@ class Moves:
 
     def spend(self, cost: int = 1) -> None:
         """Count something more that was looked at. Raises ExhaustedError when it is too much for one event."""
-        self._spent += cost
-        if self._spent > self.budget:
+        self.spent += cost
+        if self.spent > self.most:
             raise ExhaustedError
 
 

@@ -15,7 +15,7 @@ from missionfsm.oracle.lookahead import Symbol
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Sighting
 
-BUDGET = 400_000
+BUDGET = 100_000
 """How many explanations a window may cost before it is given up."""
 
 
@@ -94,7 +94,7 @@ class Window:
         for before, after in itertools.pairwise(layers):
             belief.touched |= automaton.touched(before.explanations, after.explanations)
         for layer in layers[:-1]:
-            if layer.more is not None:
+            if layer.unfinished:
                 for one in layer.explanations:
                     belief.unfollowed |= one.assumed
         found = tuple(Sighting(one) for one in layers[-1].explanations)

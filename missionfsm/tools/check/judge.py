@@ -17,7 +17,7 @@ from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
-from missionfsm.tools.check.explain import violation
+from missionfsm.tools.check.explain import event_words, violation
 from missionfsm.tools.check.held import Held, HeldEvent
 from missionfsm.tools.check.nearest import Call, Circumstances
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
@@ -26,7 +26,7 @@ from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 KEPT = 200
 """How many lines before a violation a verdict shows of a long history."""
 
-PATIENCE = 1_000
+PATIENCE = 300
 """How many explanations an event of a recorded history may cost before it waits for those that follow."""
 
 
@@ -101,6 +101,7 @@ class Judge:
         self._about: dict[Name, tuple[Name, ...]] = {}
         self._waits = self._unanswered = False
         self._unexplained: Event | None = None
+        self._undecided: Event | None = None
         self._violation: Violation | None = None
         self._asked: Any = None
         self._patient = waits
@@ -142,6 +143,7 @@ class Judge:
                     self.events -= 1
                     self._held = Held(belief)
                     return self._hold(events[position:], place)
+                self._undecided = event
                 self.exhausted, self.right = True, False
                 return False
             if not explained:
@@ -183,6 +185,7 @@ class Judge:
             explained, exact = held.explain(whole=whole)
         except ExhaustedError:
             self.events += held.reached + 1
+            self._undecided = held.lines[held.reached].event
             self.exhausted, self.right = True, False
             return False
         if explained and not (exact or whole):
@@ -228,8 +231,10 @@ class Judge:
         outcome, because, exercised = Outcome.CONFORMS, "", self.exercised
         if self._unexplained is not None:
             outcome = Outcome.VIOLATES
-        elif self.exhausted:
-            outcome, because = Outcome.INCONCLUSIVE, f"event {self.events} has too many explanations to decide"
+        elif self._undecided is not None:
+            said = event_words(self.system.spec, self._undecided)
+            because = f"event {self.events} ({said}) has too many explanations to decide; what follows was not judged"
+            outcome = Outcome.INCONCLUSIVE
         elif not exercised:
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
         spec, readings = self.system.spec, self.belief.readings

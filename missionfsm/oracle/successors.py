@@ -176,7 +176,6 @@ class Moves:
 
         The call `besides` does not need to: whoever looks for its answer looks at every explanation on the way.
         """
-        self.spend(weight(explanation) - 1)
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
         passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
@@ -271,6 +270,7 @@ class Moves:
                 yield from self._take_effect(explanation, position, besides)
 
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
+        self.spend(weight(explanation) - 1)
         taken = self.advance(explanation, step, besides=besides)
         if taken:
             after = self.narrowed(taken[0])
@@ -286,6 +286,7 @@ class Moves:
             for step in self.effects(where.state, where.calls[position].request, refs):
                 if step.answer is None:
                     continue
+                self.spend(weight(where) - 1)
                 taken = self.advance(where, step, besides=besides)
                 if taken:
                     after, names = taken

@@ -17,6 +17,7 @@ from missionfsm.adapters.grpc.answers import Answered, Listener, Spoilt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
+from missionfsm.tools.reference.model import Twist, straight
 from missionfsm.tools.reference.subject import Reference
 
 MAX_HISTORY_LINES = 100_000
@@ -34,13 +35,14 @@ class Live:
         readings: ambiguity id to letter; the others follow their defaults.
         clock: seconds since the epoch, for timestamps.
         record: takes every line of the history as it happens.
+        twist, bend: what is broken, if anything; see `missionfsm.tools.reference.subject.Reference`.
 
     Raises:
         ValueError: a reading that does not exist.
         UnreadableError: the world is none.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all but the first and the clock have a default
         self,
         system: System,
         world: JSON = None,
@@ -48,6 +50,8 @@ class Live:
         *,
         clock: Callable[[], float],
         record: Callable[[JSON], None] = lambda _: None,
+        twist: Twist = straight,
+        bend: Callable[[JSON], JSON] = lambda message: message,
     ) -> None:
         self.system = system
         self._lock = threading.RLock()
@@ -57,7 +61,7 @@ class Live:
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
         self._history: deque[JSON] = deque(maxlen=MAX_HISTORY_LINES)
-        self._subject = Reference(system, readings, seconds=self._stamp)
+        self._subject = Reference(system, readings, twist, bend, self._stamp)
         self.reset({} if world is None else world)
 
     def _stamp(self, number: int) -> float:

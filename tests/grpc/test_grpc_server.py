@@ -13,9 +13,9 @@ import pytest
 from google.protobuf import descriptor_pool, message_factory
 from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
 
+from missionfsm.adapters.grpc.control import Control
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
 from missionfsm.adapters.grpc.faults import Dice, Faults
-from missionfsm.adapters.grpc.server import Control
 from missionfsm.app.serve import Cue, Served, read_script, serve
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.transcript import head

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
-from collections import deque
+import uuid
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -44,8 +44,10 @@ class Target:
         certificate: a file in PEM with the authority that the server's certificate is checked against; "" for no TLS,
             ``system`` for the authorities of the machine.
         timeout: seconds that a call may take.
-        settle: seconds of silence after which everything that was caused has been seen.
+        settle: seconds of silence after which everything that was caused has been seen; where the control service has
+            ``Settle``, that says so instead.
         settle_most: seconds after which that is so even without silence.
+        begin: seconds after which a stream that was not refused has begun, where the server does not say so.
     """
 
     address: str
@@ -55,6 +57,7 @@ class Target:
     timeout: float = 10.0
     settle: float = 0.2
     settle_most: float = 5.0
+    begin: float = 1.0
 
     @property
     def sent(self) -> tuple[tuple[str, str], ...]:
@@ -103,10 +106,13 @@ class GrpcSubject:
             self._channel = target.channel()
         except OSError as error:
             raise SubjectError(f"{target.certificate}: {error.strerror}") from None
-        self._lock = threading.Lock()
-        self._arrived: deque[Notification] = deque()
+        self._session = uuid.uuid4().hex
+        self._change = threading.Condition()
+        self._arrived: list[Notification] = []
+        self._came: dict[int, int] = {}
         self._last = clock()
         self._streams: dict[int, Any] = {}
+        self._counts = True
         self._serial = 0
         self._created: set[str] = set()
         self._control = self._described()
@@ -136,22 +142,25 @@ class GrpcSubject:
             self._reset(params.get("world", {}))
             return Exchange({})
         if method == "settle":
-            self._settle()
+            if not self._all_came():
+                self._settle()
             return Exchange({}, before=self._taken(), earlier=earlier)
-        if method == "drive":
-            return Exchange(self._asked_of_control("Drive", params), after=self._taken(), earlier=earlier)
         if method == "cancel":
             self._cancel(params.get("stream"))
             return Exchange({}, earlier=earlier)
-        if method not in self._methods:
+        if method == "drive":
+            answer = Exchange(self._asked_of_control("Drive", params))
+        elif method in self._methods:
+            called = self._methods[method]
+            answer = self._subscribe(called, params) if called.streams else self._call(called, params)
+        else:
             raise SubjectError(f"{brief(method)} is no method of {self.system}")
-        called = self._methods[method]
-        answer = self._subscribe(called, params) if called.streams else self._call(called, params)
-        return Exchange(answer.result, answer.error, answer.before, self._taken(), earlier)
+        self._all_came()
+        return evolve(answer, after=self._taken(), earlier=earlier)
 
     def _introduction(self) -> JSON:
         said: dict[str, JSON] = {
-            "implementation": {"name": f"grpc://{self.target.address}", "version": ""},
+            "implementation": {"name": f"grpc://{self.target.address}"},
             "drives": list(self._control.get("drives", ())) if self._control else [],
             "concurrent": False,
             "requests": "binary",
@@ -193,57 +202,90 @@ class GrpcSubject:
         return found
 
     def _subscribe(self, method: Method, params: JSON) -> Exchange:
-        call = self._channel.unary_stream(path(method))(self._encoded(method, params), metadata=self.target.sent)
-        first = _First(call)
-        thread = threading.Thread(target=first.wait, name="missionfsm-first", daemon=True)
-        thread.start()
-        thread.join(self.target.timeout)
-        if first.error is not None:
-            return Exchange(error=_error(first.error))
-        if thread.is_alive():
-            call.cancel()
-            return Exchange(error={"status": "DEADLINE_EXCEEDED", "message": "the stream did not begin in time"})
-        self._serial += 1
-        stream = self._serial
-        self._streams[stream] = call
+        """Open a stream; it has begun once its initial metadata came, or a message, or no refusal for some time."""
+        request = self._encoded(method, params)
+        with self._change:
+            self._serial += 1
+            stream = self._serial
+        named = ((control.SESSION_KEY, self._session), (control.STREAM_KEY, str(stream)))
+        metadata = (*self.target.sent, *(named if self._control else ()))
+        call = self._channel.unary_stream(path(method))(request, metadata=metadata)
+        begun = _Begun(call)
+        begun.wait(max(self.target.begin, self.target.settle))
+        if begun.refusal is not None:
+            return Exchange(error=_error(begun.refusal))
+        with self._change:
+            self._streams[stream] = call
+            self._came[stream] = 0
+            self._last = self._clock()
         threading.Thread(
             target=self._listen, args=(method, stream, call), name=f"missionfsm-stream-{stream}", daemon=True
         ).start()
+        if not (self._control and self._counts):
+            self._wait(lambda: self._came.get(stream, 1) > 0, self.target.settle)
         return Exchange({"stream": stream})
 
     def _listen(self, method: Method, stream: int, call: Any) -> None:  # noqa: ANN401 - a call of grpc
         try:
             for data in call:
-                self._arrive(Notification("message", {"stream": stream, "message": self._decoded(method, data)}))
+                self._arrive(stream, "message", {"message": self._decoded(method, data)})
         except grpc.RpcError as error:
-            if stream in self._streams:
-                self._arrive(Notification("closed", {"stream": stream, "error": _error(error)}))
+            self._arrive(stream, "closed", {"error": _error(error)})
         else:
-            if stream in self._streams:
-                self._arrive(Notification("closed", {"stream": stream}))
+            self._arrive(stream, "closed", {})
 
-    def _arrive(self, notification: Notification) -> None:
-        with self._lock:
-            if notification.params["stream"] in self._streams:
-                self._arrived.append(notification)
+    def _arrive(self, stream: int, kind: str, said: dict[str, JSON]) -> None:
+        with self._change:
+            if stream in self._came:
+                self._arrived.append(Notification(kind, {"stream": stream, **said}))
                 self._last = self._clock()
+                if kind == "message":
+                    self._came[stream] += 1
+                else:  # nothing more comes, so that nothing more is waited for
+                    del self._came[stream]
+                self._change.notify_all()
 
     def _taken(self) -> tuple[Notification, ...]:
-        with self._lock:
-            taken = tuple(self._arrived)
+        """What has arrived. Between streams there is no order, so that one is made that is always the same."""
+        with self._change:
+            taken = sorted(self._arrived, key=lambda one: int(one.params["stream"]))
             self._arrived.clear()
-            return taken
+            return tuple(taken)
 
     def _cancel(self, stream: JSON) -> None:
-        with self._lock:
+        with self._change:
             call = self._streams.pop(stream, None) if isinstance(stream, int) else None
-            self._arrived = deque(one for one in self._arrived if one.params["stream"] != stream)
+            self._came.pop(stream, None)
+            self._arrived = [one for one in self._arrived if one.params["stream"] != stream]
         if call is not None:
             call.cancel()
 
     def _cancel_all(self) -> None:
         for stream in tuple(self._streams):
             self._cancel(stream)
+
+    def _wait(self, holds: Callable[[], bool], seconds: float) -> None:
+        """Wait until something holds that depends on what arrives."""
+        with self._change:
+            self._change.wait_for(holds, seconds)
+
+    def _all_came(self) -> bool:
+        """Wait until all has come that was sent, as the control service counts it; False where it does not."""
+        if not (self._control and self._counts):
+            return False
+        if not self._came:
+            return True
+        try:
+            said = self._asked_of_control("Settle", {"session": self._session})
+            sent = {int(stream): int(count) for stream, count in said["streams"].items()}
+        except (SubjectError, AttributeError, KeyError, TypeError, ValueError):
+            self._counts = False  # a control service of somebody else's, that has only the rest
+            return False
+        self._wait(
+            lambda: all(self._came.get(stream, count) >= count for stream, count in sent.items()),
+            self.target.settle_most,
+        )
+        return True
 
     def _settle(self) -> None:
         """Wait for a silence."""
@@ -334,19 +376,24 @@ class GrpcSubject:
             raise SubjectError(f"the robot cannot be reset: {name} was answered {brief(said)}")
 
 
-class _First:
+class _Begun:
     """Waits until a stream begins or is refused."""
 
     def __init__(self, call: Any) -> None:  # noqa: ANN401 - a call of grpc
         self._call = call
-        self.error: grpc.RpcError | None = None
+        self.refusal: grpc.RpcError | None = None
 
-    def wait(self) -> None:
-        """Take the initial metadata, which a refusal does not have."""
+    def wait(self, seconds: float) -> None:
+        """Wait so long at most; a server may say that a stream has begun only with its first message."""
+        thread = threading.Thread(target=self._look, name="missionfsm-begun", daemon=True)
+        thread.start()
+        thread.join(seconds)
+
+    def _look(self) -> None:
         with contextlib.suppress(grpc.RpcError):
-            self._call.initial_metadata()
+            self._call.initial_metadata()  # which a refusal does not have
         if self._call.done() and self._call.code() is not grpc.StatusCode.OK:
-            self.error = self._call
+            self.refusal = self._call
 
 
 def _error(error: Any) -> JSON:  # noqa: ANN401 - grpc's errors are calls as well

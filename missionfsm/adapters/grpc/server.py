@@ -10,7 +10,7 @@ import asyncio
 import concurrent.futures
 import contextlib
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from pathlib import Path
 from typing import Any, Self
 
@@ -41,6 +41,9 @@ MAX_MESSAGE_BYTES = 4 * 1024 * 1024
 """What gRPC takes of one message unless told otherwise."""
 STOP_SECONDS = 1.0
 """How long calls that are under way may take when the server stops."""
+
+SETTLE_SECONDS = 5.0
+"""How long ``Settle`` waits for messages on their way to a subscriber who does not read."""
 
 RULE_KEY, CITE_KEY = "missionfsm-rule", "missionfsm-cite"
 """Trailing metadata of a refusal: the ids of the rules, and their places on the page."""
@@ -98,6 +101,7 @@ class _Handlers(grpc.GenericRpcHandler):
         self._live = live
         self._dice = dice
         self._by_path = {path(one): self._handler(one) for one in methods(live.system.name).values()}
+        self._open: set[_Outgoing] = set()
         if with_control:
             for name in control.UNARY:
                 self._by_path[f"/{control.SERVICE}/{name}"] = grpc.unary_unary_rpc_method_handler(
@@ -150,27 +154,30 @@ class _Handlers(grpc.GenericRpcHandler):
     async def _stream(self, method: Method, request: bytes, context: Context) -> AsyncIterator[bytes]:
         params = await self._read(method, request, context)
         loop = asyncio.get_running_loop()
-        unsent: asyncio.Queue[JSON] = asyncio.Queue()
-        answered = self._live.subscribe(
-            method.name, params, lambda message: _hand_over(loop, unsent.put_nowait, message)
-        )
+        outgoing = _Outgoing(loop, dict(context.invocation_metadata() or ()))
+        answered = self._live.subscribe(method.name, params, outgoing.come)
         if answered.error is not None:
             await _refuse(context, answered)
+        self._open.add(outgoing)
         await context.send_initial_metadata(())  # a subscriber is not kept waiting for a first change
         ends = None if self._dice.faults.ends is None else loop.time() + self._dice.faults.ends
         first = True
         try:
             while True:
-                message = await _next(unsent, None if ends is None else ends - loop.time())
+                message = await outgoing.next(None if ends is None else ends - loop.time())
                 if message is None:
                     return
-                if unsent.qsize() > MAX_UNSENT_MESSAGES:
+                if outgoing.unsent > MAX_UNSENT_MESSAGES:
                     await context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, "the subscriber does not read")
                 data = encode(method.response, message)
-                for _ in range(self._dice.copies(first=first)):
+                copies = self._dice.copies(first=first)
+                for _ in range(copies):
                     yield data
+                outgoing.sent += copies
                 first = False
         finally:
+            self._open.discard(outgoing)
+            outgoing.close()
             self._live.cancel(answered.result)
 
     # The control service.
@@ -193,30 +200,77 @@ class _Handlers(grpc.GenericRpcHandler):
             await context.abort(grpc.StatusCode.INVALID_ARGUMENT, str(error))
             raise
 
+    async def _settle(self, request: bytes, _: Context) -> bytes:
+        session = str(control.unpack(request).get("session", ""))
+        mine = [one for one in self._open if one.session == session]
+        if mine:
+            await asyncio.wait([one.flushed() for one in mine], timeout=SETTLE_SECONDS)
+        return control.pack({"streams": {one.stream: one.sent for one in mine if one in self._open}})
+
     async def _history(self, _: bytes, __: Context) -> AsyncIterator[bytes]:
         for line in self._live.history():
             yield control.pack(line)
 
 
-def _hand_over(loop: asyncio.AbstractEventLoop, put: Callable[[JSON], None], message: JSON) -> None:
-    """Give a message to a queue of the loop, from whichever thread it comes."""
-    try:
-        here: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-    except RuntimeError:
-        here = None
-    if here is loop:
-        put(message)
-    else:
-        with contextlib.suppress(RuntimeError):  # the server stops; nobody reads any more
-            loop.call_soon_threadsafe(put, message)
+class _Outgoing:
+    """The messages of one stream, from the robot to its subscriber.
 
+    Args:
+        loop: the loop of the server.
+        metadata: what the subscriber sent along; it may name a session, and the stream within it.
 
-async def _next(unsent: asyncio.Queue[JSON], seconds: float | None) -> JSON:
-    """The next message; None once so many seconds have passed."""
-    try:
-        return await asyncio.wait_for(unsent.get(), seconds)
-    except TimeoutError:
+    Attributes:
+        session, stream: those names; "" for none.
+        sent: how many messages went out.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, metadata: Mapping[str, str]) -> None:
+        self.session = metadata.get(control.SESSION_KEY, "")
+        self.stream = metadata.get(control.STREAM_KEY, "")
+        self.sent = 0
+        self._loop = loop
+        self._waiting: asyncio.Queue[JSON | asyncio.Future[None]] = asyncio.Queue()
+
+    @property
+    def unsent(self) -> int:
+        """How many messages wait."""
+        return self._waiting.qsize()
+
+    def come(self, message: JSON) -> None:
+        """Take a message, from whichever thread it comes."""
+        try:
+            here: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
+        except RuntimeError:
+            here = None
+        if here is self._loop:
+            self._waiting.put_nowait(message)
+        else:
+            with contextlib.suppress(RuntimeError):  # the server stops; nobody reads any more
+                self._loop.call_soon_threadsafe(self._waiting.put_nowait, message)
+
+    async def next(self, seconds: float | None) -> JSON:
+        """The next message, once all before it went out; None once so many seconds have passed."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(seconds):
+                while True:
+                    found = await self._waiting.get()
+                    if not isinstance(found, asyncio.Future):
+                        return found
+                    found.set_result(None)
         return None
+
+    def flushed(self) -> asyncio.Future[None]:
+        """Done once all that waits now went out, or the stream ended."""
+        found = self._loop.create_future()
+        self._waiting.put_nowait(found)
+        return found
+
+    def close(self) -> None:
+        """Nothing goes out any more."""
+        while not self._waiting.empty():
+            found = self._waiting.get_nowait()
+            if isinstance(found, asyncio.Future):
+                found.set_result(None)
 
 
 async def _refuse(context: Context, answered: Answered) -> None:
@@ -328,42 +382,3 @@ class Server:
 
     def __exit__(self, *_: object) -> None:
         self.stop()
-
-
-class Control:
-    """The control service from Python: of a server in this process or, by its address, of any.
-
-    Args:
-        target: ``host:port``.
-        token: see `Security`.
-    """
-
-    def __init__(self, target: str, token: str = "") -> None:
-        self._channel = grpc.insecure_channel(target)
-        self._metadata = (("authorization", f"Bearer {token}"),) if token else ()
-
-    def _ask(self, name: str, value: JSON) -> JSON:
-        call = self._channel.unary_unary(f"/{control.SERVICE}/{name}")
-        return control.unpack(call(control.pack(value), metadata=self._metadata, wait_for_ready=True))
-
-    def describe(self) -> Mapping[str, JSON]:
-        """The system, and the drives that it has."""
-        found: Mapping[str, JSON] = self._ask("Describe", {})
-        return found
-
-    def reset(self, world: JSON = None) -> None:
-        """Begin anew in a world; every stream is forgotten."""
-        self._ask("Reset", {"world": world or {}})
-
-    def drive(self, event: str, **fields: JSON) -> bool:
-        """Make something happen; False where it does not apply."""
-        return bool(self._ask("Drive", {"event": event, **fields})["happened"])
-
-    def history(self) -> Iterable[JSON]:
-        """All that was seen since the last reset, as lines of the history format."""
-        call = self._channel.unary_stream(f"/{control.SERVICE}/History")
-        return [control.unpack(one) for one in call(control.pack({}), metadata=self._metadata)]
-
-    def close(self) -> None:
-        """Let go of the connection."""
-        self._channel.close()

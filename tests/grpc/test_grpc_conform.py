@@ -1,0 +1,135 @@
+"""A gRPC server judged with no adapter: that the verdict is right, and the same again."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+import grpc
+import pytest
+
+from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.descriptors import encode, methods, path
+from missionfsm.app.serve import serve
+from missionfsm.cli.overgrpc import in_binary
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.subject import SubjectError
+from missionfsm.systems import system
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import conform
+
+NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+
+
+@contextmanager
+def subject(name: str, address: str, **options: Any) -> Iterator[GrpcSubject]:
+    """A server as a subject."""
+    settle = options.pop("settle", 0.02)
+    found = GrpcSubject(name, Target(address, settle=settle, timeout=5.0, begin=0.2), **options)
+    try:
+        yield found
+    finally:
+        found.close()
+
+
+def judged(name: str, address: str, seed: int, **options: Any) -> Verdict:
+    """The verdict of a short run."""
+    with subject(name, address, **options) as server:
+        return conform(in_binary(system(name)), server, examples=2, tours=2, steps=20, seed=seed, advice=False)
+
+
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
+def test_the_reference_over_grpc_conforms_and_does_so_again(name: str) -> None:
+    """Two runs with one seed see the same, event by event, although messages and answers race on the network."""
+    found = []
+    for _ in range(2):
+        with serve(name) as robot:
+            verdict = judged(name, robot.target, 7)
+        assert verdict.conforms, str(verdict)
+        found.append({**verdict.to_json(), "implementation": ""})
+    assert found[0] == found[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_the_reference_over_grpc_conforms_for_any_seed(seed: int) -> None:
+    """Whatever is drawn, the reference is judged right."""
+    for name in ("bear.mission", "bear.status"):
+        with serve(name) as robot:
+            verdict = judged(name, robot.target, seed)
+        assert verdict.conforms, str(verdict)
+
+
+def test_a_server_without_the_control_service_is_reset_softly() -> None:
+    """Without the control service what the tester began is ended and cleared between conversations."""
+    with serve("bear.mission", control=False) as robot:
+        verdict = judged("bear.mission", robot.target, 1, world={})
+        assert verdict.violation is None, str(verdict)
+        called = [line.get("method") for line in robot.history()]
+    assert "ClearMissionStatus" in called
+    assert len(called) > 50
+
+
+def test_missions_of_others_are_not_touched() -> None:
+    """A robot that has missions already is refused; with ``force`` they are ended and cleared."""
+    with serve("bear.mission", control=False) as robot:
+        with subject("bear.mission", robot.target) as other:
+            other.exchange("CreateMission", NAVIGATE)
+        with subject("bear.mission", robot.target) as careful, pytest.raises(SubjectError, match="--force"):
+            careful.exchange("reset", {})
+        with subject("bear.mission", robot.target, force=True) as bold:
+            bold.exchange("reset", {})
+            opened = bold.exchange("SubscribeMissionStatus", {})
+            assert [one.params["message"]["missionStates"] for one in opened.after] == [{"currentMissionIndex": -1}]
+
+
+class Lazy:
+    """A server whose streams say that they have begun with their first message only, as many libraries do it.
+
+    Args:
+        first: whether a message comes by itself.
+    """
+
+    def __init__(self, *, first: bool) -> None:
+        self._first = first
+        self._more: queue.SimpleQueue[JSON] = queue.SimpleQueue()
+        self._server = grpc.server(ThreadPoolExecutor(4))
+        self._server.add_generic_rpc_handlers((self._handlers(),))
+        self.port = self._server.add_insecure_port("127.0.0.1:0")
+        self._server.start()
+
+    def _handlers(self) -> Any:
+        found = methods("bear.mission")
+        subscribe: Callable[[bytes, Any], Iterator[bytes]] = self._subscribe
+        return grpc.method_handlers_generic_handler(
+            path(found["SubscribeMissionStatus"]).split("/")[1],
+            {"SubscribeMissionStatus": grpc.unary_stream_rpc_method_handler(subscribe)},
+        )
+
+    def _subscribe(self, _: bytes, context: Any) -> Iterator[bytes]:
+        ended = threading.Event()
+        context.add_callback(ended.set)
+        if self._first:
+            response = methods("bear.mission")["SubscribeMissionStatus"].response
+            yield encode(response, {"missionStates": {"currentMissionIndex": -1}})
+        ended.wait(10)
+
+    def stop(self) -> None:
+        self._server.stop(0).wait()
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_stream_that_says_late_that_it_has_begun_has_begun(first: bool) -> None:  # noqa: FBT001 - a parameter
+    """A subscription is answered OK once nothing refused it for a while, with its first message if there is one."""
+    lazy = Lazy(first=first)
+    try:
+        with subject("bear.mission", f"127.0.0.1:{lazy.port}") as server:
+            opened = server.exchange("SubscribeMissionStatus", {})
+            assert opened.error is None
+            assert len(opened.after) == first
+    finally:
+        lazy.stop()

@@ -183,6 +183,13 @@ class NotOnTheWireError(ValueError):
     """A JSON value that no binary message says, or bytes that are no message; the text says why."""
 
 
+_REFUSALS = (
+    *(json_format.ParseError, ValueError, TypeError, AttributeError, RecursionError),
+    *(ArithmeticError, SystemError),  # of infinity as an enum; of a text that is no Unicode as an enum
+)
+"""What json_format raises for JSON that is no message."""
+
+
 def encode(name: str, value: JSON) -> Wire:
     """The bytes of a message, given its protobuf JSON.
 
@@ -194,7 +201,7 @@ def encode(name: str, value: JSON) -> Wire:
     try:
         message = json_format.ParseDict(value, message_class(name)(), descriptor_pool=pool())
         return Wire(message.SerializeToString())
-    except (json_format.ParseError, ValueError, TypeError, AttributeError, RecursionError) as error:
+    except _REFUSALS as error:
         raise NotOnTheWireError(str(error).splitlines()[0] if str(error) else type(error).__name__) from None
 
 

@@ -3,7 +3,8 @@
 What every kind of input means is decided here, once:
 
 - a name may come in lowerCamelCase or in snake_case; null is the same as absent; absent means the field's default;
-- an enum may come by name or by number; a name that does not exist is malformed, a number that does not is kept;
+- an enum may come by name or by number, also one as text; a name that does not exist is malformed, as is a number of
+  more than 32 bits; any other number is kept;
 - a 64-bit integer may come as a number or as text; a float also as "NaN", "Infinity" or "-Infinity";
 - a timestamp is an RFC 3339 text of a day and a time that exist, or ``{"seconds", "nanos"}``, as recorders write it;
 - a value of another type, a number out of the range of its field, two members of one oneof are malformed;
@@ -72,9 +73,15 @@ def key_of(message: dict[str, Any], name: str) -> str:
     return name if message.get(usual) is None and message.get(name) is not None else usual
 
 
+_DIGITS = re.compile(r"-?[0-9]{1,20}", re.ASCII)
+_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?|NaN|-?Infinity", re.ASCII)
+
+
 def _integer(bits: int, value: object) -> int:
-    if isinstance(value, str) and re.fullmatch(r"-?[0-9]{1,20}", value):
+    if isinstance(value, str) and _DIGITS.fullmatch(value):
         value = int(value)
+    elif isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if isinstance(value, bool) or not isinstance(value, int):
@@ -84,16 +91,17 @@ def _integer(bits: int, value: object) -> int:
     return value
 
 
-_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?|NaN|-?Infinity", re.ASCII)
 LARGEST = 3.4028235677973366e38
 """Where what rounds to a 32-bit float ends."""
 
 
 def _float(value: object, _: object = None) -> float:
     if isinstance(value, str) and _NUMBER.fullmatch(value):
-        value = float(value)
+        if value.endswith("Infinity"):
+            return float(value)
+        text, value = value, float(value)
         if math.isinf(value):
-            return value
+            raise MalformedError(f"{brief(text)} does not fit into 32 bits")
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise MalformedError(f"{brief(value)} is not a number")
     if LARGEST < abs(value) != math.inf:
@@ -136,14 +144,16 @@ def _counted(value: dict[str, Any]) -> str:
 
 
 def _enum(value: object, kind: type[enum.IntEnum]) -> int:
-    if isinstance(value, str):
+    if isinstance(value, str) and not _DIGITS.fullmatch(value):
         try:
             return kind[value]
         except KeyError:
             raise MalformedError(f"{kind.__name__} has no {brief(value)}") from None
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise MalformedError(f"{brief(value)} is not a {kind.__name__}")
-    return kind(value) if value in kind._value2member_map_ else value
+    try:
+        number = _integer(32, value)
+    except MalformedError:
+        raise MalformedError(f"{brief(value)} is not a {kind.__name__}") from None
+    return kind(number) if number in kind._value2member_map_ else number
 
 
 @functools.cache

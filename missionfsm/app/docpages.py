@@ -6,7 +6,8 @@ A computed part stands between ``<!-- generated: KIND WHAT -->`` and ``<!-- end 
 - ``history SYSTEM``: the same session as a history;
 - ``calls SYSTEM``: every call with a request and the answer of the reference;
 - ``world SYSTEM``: the default world;
-- ``statuses``: the status names with their numbers.
+- ``statuses``: the status names with their numbers;
+- ``transport``: what may happen on the way from an implementation to a log of it.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.system import System
+from missionfsm.kernel.transport import TRANSPORT
 from missionfsm.systems import system as the_system
 from missionfsm.tools.reference.subject import Reference
 
@@ -49,7 +51,14 @@ _EXAMPLE_ID = "mission-1"
 
 def regenerate(text: str) -> str:
     """A page with its computed parts as they should be. Raises KeyError for a kind or a system that does not exist."""
-    kinds = {"session": _session, "history": _history, "calls": _calls, "world": _world, "statuses": _statuses}
+    kinds = {
+        "session": _session,
+        "history": _history,
+        "calls": _calls,
+        "world": _world,
+        "statuses": _statuses,
+        "transport": _transport,
+    }
     return _PART.sub(lambda part: f"{part[1]}\n{kinds[part[2]](part[3] or '')}\n\n{part[4]}", text)
 
 
@@ -151,3 +160,8 @@ def _world(name: str) -> str:
 def _statuses(_: str) -> str:
     names = ", ".join(f"{number} {name}" for name, number in STATUS_NUMBERS.items())
     return f"The statuses are {names}."
+
+
+def _transport(_: str) -> str:
+    rows = [f"| `{one.id}` | {one.question} | {one.readings['b']} |" for one in TRANSPORT]
+    return "\n".join(("| reading | question | what the log is explained by |", "| --- | --- | --- |", *rows))

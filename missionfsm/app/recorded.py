@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
-from attrs import evolve, frozen
+from attrs import evolve
 
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.historyfile import (
@@ -21,12 +22,13 @@ from missionfsm.adapters.historyfile import (
     placed,
     wrong_line,
 )
+from missionfsm.app.asked import Asked, judged_system
 from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
+from missionfsm.oracle.successors import BUDGET
 from missionfsm.oracle.transcript import head
-from missionfsm.systems import system
 from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Verdict
@@ -39,8 +41,7 @@ def check_file(
     path: str,
     readings: Mapping[str, str] | None = None,
     tell: Callable[[str], None] = lambda _: None,
-    *,
-    no_flagged: bool = False,
+    **how: Any,  # noqa: ANN401 - see `Asked`
 ) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot that a history speaks of, in the order of their first lines.
 
@@ -49,27 +50,43 @@ def check_file(
     subscription has a verdict.
 
     Args:
-        no_flagged: whether nothing may depart from the letter of the text.
+        how: what else the reader of the log says of it; see `missionfsm.app.asked.Asked`.
 
     Raises:
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
         ValueError: `readings` names something that does not exist.
     """
-    asked = _Asked(readings or {}, no_flagged)
+    asked = Asked(readings or {}, **how)
     if not is_plain_file(path):  # it can be read only once
         return _judged(path, asked, tell, {}, KEPT)
+    found = _read_twice(path, asked, tell)
+    # What nothing explains may have its cause long before, in a message that was lost unnoticed: it is judged once
+    # more with all that a transport does in mind at every event.
+    doubtful = {robot for robot, verdict in found if verdict.violation and verdict.violation.at <= LONGEST_SECOND_LOOK}
+    if not doubtful or asked.strict:
+        return found
+    again = dict(_read_twice(path, evolve(asked, eager=True, only=frozenset(doubtful)), lambda _: None))
+    return [(robot, _better(verdict, again.get(robot))) for robot, verdict in found]
+
+
+LONGEST_SECOND_LOOK = 20_000
+"""The line up to which a violation is looked at for a second time."""
+
+
+def _better(first: Verdict, second: Verdict | None) -> Verdict:
+    """The verdict that explains more."""
+    if first.violation is None or second is None:
+        return first
+    later = second.violation is not None and second.violation.at > first.violation.at
+    return second if second.conforms or later else first
+
+
+def _read_twice(path: str, asked: Asked, tell: Callable[[str], None]) -> list[tuple[str | None, Verdict]]:
+    """The verdicts on a file, which is read again where calls seem to be lost."""
     try:
         return _judged(path, asked, tell, None)
     except _UndecidedError as undecided:
         return _judged(path, asked, tell, lost_calls(path, by_params=undecided.by_params))
-
-
-@frozen
-class _Asked:
-    """What a history has to keep to: readings, and perhaps the letter of the text."""
-
-    readings: Mapping[str, str]
-    no_flagged: bool
 
 
 class _UndecidedError(Exception):
@@ -85,7 +102,7 @@ LOOK = 16
 
 
 def _judged(
-    path: str, asked: _Asked, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
+    path: str, asked: Asked, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
 ) -> list[tuple[str | None, Verdict]]:
     """See `check_file`.
 
@@ -106,7 +123,7 @@ def _judged(
         if subscription(line):
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
             try:
-                return [(None, verdict) for verdict in watch_messages(messages, tell)]
+                return [(None, verdict) for verdict in watch_messages(messages, tell, strict=asked.strict)]
             except UnplacedError as error:
                 raise wrong_line(path, error.number, error) from None
         with placed(path, number):
@@ -117,10 +134,10 @@ def _judged(
             source.close()
     found = judges.verdicts()
     # What was not kept while it was read is read again.
-    if keep:
-        return found
     by_params = judges.addresses.by_call
-    return [(robot, _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found]
+    return [
+        (robot, verdict if keep else _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found
+    ]
 
 
 class _Judges:
@@ -134,13 +151,16 @@ class _Judges:
         UnreadableError: that is no first line.
     """
 
-    def __init__(self, line: JSON, asked: _Asked, lost: Lost | None, keep: int) -> None:
+    def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int) -> None:
         self._head = head(line)
-        self._system = system(self._head.system)
+        self._system = judged_system(self._head.system, strict=asked.strict or self._head.strict)
         self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
         self.addresses.whose(line)
         decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
-        self._automaton = Automaton(self._system.spec, self._head.drives, decided, PATIENCE)
+        self._only = asked.only
+        self._waits = not asked.eager
+        patience = PATIENCE if self._waits else BUDGET
+        self._automaton = Automaton(self._system.spec, self._head.drives, decided, patience, eager=asked.eager)
         self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
@@ -162,12 +182,13 @@ class _Judges:
             lost=calls,
             keep=keep,
             apart=True,
+            waits=self._waits,
         )
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""
         again, take = self._texts.again, self._nobody.take
-        read_again, looks, nobody = not self._keep, self._lost is None, self._nobody
+        read_again, looks, nobody = not (self._keep or self._only), self._lost is None, self._nobody
         for number, text in numbered:
             try:
                 if looks and not number % LOOK:
@@ -183,6 +204,8 @@ class _Judges:
     def _take(self, number: int, text: bytes, line: JSON) -> None:
         plain = type(line) is dict and "at" not in line and "robot" not in line
         robot, line = self.addresses.whose(line)
+        if self._only and robot not in self._only:
+            return
         judge = self._judges.get(robot)
         if judge is None:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)

@@ -161,13 +161,14 @@ def _judge(head: dict[str, JSON], readings: dict[str, str], lines: Connection, s
     """The judge's process: reads lines until their end; says what breaks at once, and the verdict at the end."""
     import signal  # noqa: PLC0415 - only this process needs it
 
+    from missionfsm.app.asked import judged_system  # noqa: PLC0415
     from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
     from missionfsm.oracle.transcript import head as read_head  # noqa: PLC0415
-    from missionfsm.systems import system  # noqa: PLC0415
     from missionfsm.tools.check.judge import Judge  # noqa: PLC0415
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's Ctrl-C is for the proxy, which ends this by its pipe
-    judge = Judge(system(head["system"]), read_head(head), readings=readings)
+    first = read_head(head)
+    judge = Judge(judged_system(first.system, strict=first.strict), first, readings=readings)
     wrong = False
     with contextlib.suppress(EOFError):
         while True:

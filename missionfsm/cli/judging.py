@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 import math
 import re
 import secrets
@@ -244,27 +245,36 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
         stop(f"{path}:{error}", BAD_INPUT)
 
 
+class Transport(enum.Enum):
+    """What lies between an implementation and its log."""
+
+    IMPERFECT = "imperfect"
+    STRICT = "strict"
+
+
 def check(  # noqa: PLR0913 - options of the command
     files: Annotated[list[str], typer.Argument(metavar="FILE…", help="Recorded histories; - is stdin.")],
     reading: Readings = None,
     no_flagged: NoFlagged = False,
+    transport: Annotated[
+        Transport, typer.Option(help="Whether messages may be lost, doubled or made up on the way.")
+    ] = Transport.IMPERFECT,
     expect_violations: KnownFile = None,
     json: JsonFile = None,
     html: HtmlFile = None,
 ) -> None:
-    """Judge recorded histories, or the bare messages of a status subscription."""
+    """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
     from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415 - commands load what they need
 
     readings = choice(reading)
+    how = {"no_flagged": no_flagged, "strict": transport is Transport.STRICT}
     known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
     refuse_outputs({"--json": json, "--html": html}, (*files, expect_violations))
     reached: list[tuple[str, str | None, Verdict]] = []
     troubles = Troubles()
     for path in files:  # one that cannot be read keeps none of the others from being judged
         with troubles.kept():
-            for robot, judged in _recorded(
-                path, readings, lambda problem: say_shown(problem, json=json), no_flagged=no_flagged
-            ):
+            for robot, judged in _recorded(path, readings, lambda problem: say_shown(problem, json=json), **how):
                 reached.append((readable(path), robot, excused(judged, known)))
                 say_shown(_headed(*reached[-1]), json=json)
     stale = () if troubles else known.stale  # they may be met in what cannot be read
@@ -282,13 +292,13 @@ def check(  # noqa: PLR0913 - options of the command
 
 
 def _recorded(
-    path: str, readings: Mapping[str, str], tell: Callable[[str], None], *, no_flagged: bool
+    path: str, readings: Mapping[str, str], tell: Callable[[str], None], **how: object
 ) -> list[tuple[str | None, Verdict]]:
     """The verdicts on a file. Raises UnreadableError, also for readings that there are not."""
     from missionfsm.app.recorded import check_file  # noqa: PLC0415 - commands load what they need
 
     try:
-        return check_file(path, readings, tell, no_flagged=no_flagged)
+        return check_file(path, readings, tell, **how)
     except ValueError as error:
         raise UnreadableError(str(error)) from None
 

@@ -8,22 +8,23 @@ import typer
 
 from missionfsm.cli.common import say, the_system, write_json
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.system import System
+from missionfsm.kernel.transport import TRANSPORT
 
 Which = Annotated[str | None, typer.Argument(help="Which system; all if left out.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Write JSON.")]
 
 
-def _specs(name: str | None) -> list[Spec]:
+def _systems(name: str | None) -> list[System]:
     from missionfsm.systems import names  # noqa: PLC0415 - commands load what they need
 
-    return [the_system(one).spec for one in ([name] if name else names())]
+    return [the_system(one) for one in ([name] if name else names())]
 
 
 def rules(system: Which = None, json: AsJson = False) -> None:
     """List every rule: its id, what it says, and its place in the document."""
     found: list[JSON] = []
-    for spec in _specs(system):
+    for spec in (one.spec for one in _systems(system)):
         for rule in spec.all_rules:
             under = str(rule.under) if rule.under else None
             found.append({"id": rule.id, "says": rule.says, "cite": str(rule.cite), "code": rule.code, "under": under})
@@ -36,11 +37,11 @@ def rules(system: Which = None, json: AsJson = False) -> None:
 def readings(system: Which = None, json: AsJson = False) -> None:
     """List every ambiguity with its readings; a star marks the reference's, a dagger a departure from the text."""
     found: list[JSON] = []
-    for spec in _specs(system):
-        for ambiguity in spec.ambiguities:
+    for one in _systems(system):
+        for ambiguity in (*one.spec.ambiguities, *(TRANSPORT if one.codec.streams else ())):
             found.append(
                 {
-                    "system": spec.system,
+                    "system": one.name,
                     "id": ambiguity.id,
                     "question": ambiguity.question,
                     "readings": dict(ambiguity.readings),

@@ -54,12 +54,13 @@ class Returned:
 
 @value
 class Received:
-    """A message arrives on a stream, or a line on a connection."""
+    """A message arrives on a stream, or a line on a connection; `again` is one that says all that the last one said."""
 
     channel: Name
     content: Hashable
     names: tuple[Name, ...] = ()
     marks: tuple[Mark, ...] = ()
+    again: bool = False
 
 
 @value

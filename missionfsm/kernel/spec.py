@@ -317,6 +317,7 @@ class Spec:
         waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
+        restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
     """
 
     system: str
@@ -352,6 +353,7 @@ class Spec:
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
     transport: bool = False
+    restarted: Callable[[State], Step] | None = None
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

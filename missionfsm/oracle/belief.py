@@ -30,6 +30,7 @@ from missionfsm.kernel.readings import ANYTHING
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.explanation import GONE, Explanation, rename
+from missionfsm.oracle.lenient import REDELIVERED
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import BUDGET, Moves, Sighting
 from missionfsm.oracle.transition import Oracle
@@ -84,16 +85,25 @@ class Automaton:
         driven: names of the drives that a tester commands.
         assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
         budget: how many explanations a single event may cost.
+        eager: see `missionfsm.oracle.transition.Oracle`.
 
     Attributes:
         tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
     """
 
-    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
+    def __init__(
+        self,
+        spec: Spec,
+        driven: Iterable[str] = (),
+        assumed: int = ANYTHING,
+        budget: int = BUDGET,
+        *,
+        eager: bool = False,
+    ) -> None:
         self.spec = spec
         self.assumed = assumed
         self.moves = Moves(spec, driven, assumed, budget)
-        self.oracle = Oracle(self.moves)
+        self.oracle = Oracle(self.moves, eager=eager)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
         self._rules: dict[tuple[str, ...], int] = {}
@@ -328,7 +338,7 @@ class Belief:
             self._tally[self.automaton.numbered(rules)] += 1
         self._names, self._numbers = lookout._names, lookout._numbers
         self._retired, self._given_up = lookout._retired, lookout._given_up
-        self._latest = lookout._latest
+        self._latest, self._lasting = lookout._latest, lookout._lasting
         self._marks, self._renumbered = lookout._marks, lookout._renumbered
         self.node = edge.node
         if edge.keep is not None:
@@ -355,6 +365,8 @@ class Belief:
             relations = self._relations(event.channel, event.marks) if event.marks else ()
             if event.names and self.automaton.spec.lasting is not None:
                 relations += self._changes(event)
+            if event.again and self.automaton.spec.transport:
+                relations = (*relations, REDELIVERED)
             return (Received, event.content, args, relations, channel), new
         if type(event) is Settled:
             return (Settled,), new

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any
 
+from attrs import evolve
+
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
 from missionfsm.oracle.transcript import REMEMBERED, Transcript
@@ -46,6 +48,7 @@ class Texts:
         self._others: dict[bytes, tuple[Event, ...]] = {}
         self._contents: dict[bytes, Hashable] = {}
         self._names: dict[bytes, Name] = {}
+        self._latest: dict[int, bytes] = {}
         self._called = _Named()
         self._answered = _Named()
 
@@ -99,7 +102,9 @@ class Texts:
             names = tuple(map(self._name, found))
             if None in names:
                 return None
-        return (Received(("stream", number), content, names, marks),)
+        again = self._latest.get(number) == text
+        self._latest[number] = text
+        return (Received(("stream", number), content, names, marks, again),)
 
     def _name(self, written: bytes) -> Name | None:
         """The name that is written so; None unless it is written just as it is."""
@@ -116,6 +121,12 @@ class Texts:
         number = line.get("return") if isinstance(line, dict) else None
         waiting = self._pending.get(number) if type(number) is int else None
         events = self._transcript.read(line)
+        if "stream" in line:
+            if self._latest.get(line["stream"]) == text:
+                events = tuple(
+                    evolve(one, again=True) if type(one) is Received and one.marks else one for one in events
+                )
+            self._latest[line["stream"]] = text
         if len(text) <= LONG and len(events) == 1:
             self._remember(text, line, events[0], waiting and waiting[0])
         return events

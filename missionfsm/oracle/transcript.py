@@ -11,7 +11,7 @@ from typing import Any
 
 from attrs import frozen
 
-from missionfsm.kernel.codec import JSON, Codec, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
 from missionfsm.kernel.history import (
     Answer,
     Called,
@@ -31,7 +31,8 @@ from missionfsm.kernel.text import brief
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
 _ANY_KEYS = ("at", "robot")
-_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", *_ANY_KEYS))
+_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", "begins", "transport", *_ANY_KEYS))
+STRICT, ANYWHERE = "strict", "anywhere"
 STREAM_KEYS = ("stream", "message", "closed", "error")
 _KEYS: Mapping[str, frozenset[str]] = {
     keys[0]: frozenset((*keys, *_ANY_KEYS))
@@ -56,13 +57,29 @@ _Reader = Callable[[dict[str, Any]], tuple[Event, ...]]
 class Head:
     """The first line of a history.
 
-    `drives` is an addition to the format: the drives that the tester commanded. Without it the environment may have
-    done everything by itself.
+    Attributes:
+        drives: the drives that the tester commanded. Without them the environment may have done everything by itself.
+        strict: whether nothing was lost, doubled or made up on the way.
+        anywhere: whether it begins while the system is in use; nothing is known of what was before.
     """
 
     system: str
     world: JSON
     drives: tuple[str, ...] = ()
+    strict: bool = False
+    anywhere: bool = False
+
+    @property
+    def line(self) -> dict[str, JSON]:
+        """The first line that says so."""
+        line: dict[str, JSON] = {"missionfsm": VERSION, "system": self.system, "world": self.world}
+        if self.drives:
+            line["drives"] = list(self.drives)
+        if self.anywhere:
+            line["begins"] = ANYWHERE
+        if self.strict:
+            line["transport"] = STRICT
+        return line
 
 
 def _wrong(says: str) -> UnreadableError:
@@ -87,7 +104,10 @@ def head(line: JSON) -> Head:
         raise _wrong(f"system: {brief(name)} is not the name of a system")
     if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
         raise _wrong(f"drives: {brief(drives)} is not a list of names")
-    return Head(name, line.get("world", {}), tuple(drives))
+    for key, value in (("begins", ANYWHERE), ("transport", STRICT)):
+        if key in line and line[key] != value:
+            raise _wrong(f"{key}: {brief(line[key])} is not known; it is {value!r} or left out")
+    return Head(name, line.get("world", {}), tuple(drives), "transport" in line, "begins" in line)
 
 
 class Transcript:
@@ -119,6 +139,7 @@ class Transcript:
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
         self._forms: dict[tuple[str, ...], _Reader] = {}
+        self._latest: dict[Name, dict[tuple[Hashable, ...], JSON]] = {}
         self._kinds: Mapping[str, _Reader] = {
             "call": self._call,
             "return": self._return,
@@ -243,17 +264,28 @@ class Transcript:
         if line.get("closed") is not True:
             raise _wrong(f"closed: {brief(line.get('closed'))} is not true")
         error = line.get("error")
+        self._latest.pop(stream, None)
         return (Ended(stream, OK if error is None else self._status(error)),)
 
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
         found = []
-        for names, marks, rest in self.codec.strip(message):
+        parts = self.codec.strip(message)
+        again = bool(self.codec.streams) and self._comes_again(channel, message, parts)
+        for names, marks, rest in parts:
             key = self._fingerprint(rest)
             content = self._contents.get(key)
             if content is None:
                 content = self._content(key, rest)
-            found.append(Received(channel, content, names, marks))
+            found.append(Received(channel, content, names, marks, again))
         return tuple(found)
+
+    def _comes_again(self, channel: Name, message: JSON, parts: tuple[Part, ...]) -> bool:
+        """Whether a message is the last one of its channel about the same, with the same number and all."""
+        tracks = tuple(track for _, marks, _ in parts for track, _ in marks)
+        latest = self._latest.setdefault(channel, {})
+        again = bool(tracks) and latest.get(tracks) == message
+        latest[tracks] = message
+        return again
 
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
         if len(self._contents) >= REMEMBERED:

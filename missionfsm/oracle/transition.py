@@ -13,6 +13,7 @@ from typing import Any
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Match, Mismatch, Step
+from missionfsm.oracle import lenient
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,
@@ -35,11 +36,14 @@ class Oracle:
 
     Args:
         moves: what one explanation can become.
+        eager: whether what only a transport does is thought of at every event, not only where nothing else is left.
     """
 
-    def __init__(self, moves: Moves) -> None:
+    def __init__(self, moves: Moves, *, eager: bool = False) -> None:
         self.moves = moves
         self.spec = moves.spec
+        self.eager = eager and moves.spec.transport
+        self._lenient = 0
 
     def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Sighting, ...]:  # noqa: ANN401
         """Every explanation of what was observed before and of this event.
@@ -53,10 +57,26 @@ class Oracle:
             ExhaustedError: the event costs more than the budget.
         """
         self.moves.reset()
-        return sift(self.moves, self.explained(explanations, kind, *what))
+        explanations = tuple(explanations)
+        if self.eager:
+            some = itertools.chain(*(self._leniently(level, explanations, kind, *what) for level in (0, 1)))
+            return sift(self.moves, some) or sift(self.moves, self._leniently(2, explanations, kind, *what))
+        found = sift(self.moves, self.explained(explanations, kind, *what))
+        # Where nothing explains it: what may become of things on their way, or else a robot that has restarted.
+        for level in (1, 2) if self.spec.transport else ():
+            found = found or sift(self.moves, self._leniently(level, explanations, kind, *what))
+        return found
+
+    def _leniently(self, level: int, explanations: tuple[Explanation, ...], kind: type, *what: Any) -> list[Sighting]:  # noqa: ANN401
+        """What explains an event with as much of the transport as the level says; at 0 with nothing of it."""
+        self._lenient = level
+        try:
+            return list(self.explained(explanations, kind, *what))
+        finally:
+            self._lenient = 0
 
     def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Sighting]:  # noqa: ANN401
-        """The same, one by one: the nearest first, some of them in several ways."""
+        """The same, one by one: the nearest first, some of them in several ways; without what only a transport does."""
         observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
         return observe(self, explanations, *what)
 
@@ -78,16 +98,17 @@ class Oracle:
         self, explanations: Iterable[Explanation], answer: Answer, names: Names, call: int
     ) -> Iterator[Sighting]:
         undone = []
+        if self._lenient > 1:
+            explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations))
         for explanation in explanations:
             position = _position(explanation, call)
             if position is None:
                 continue
-            failed = self._failed(explanation, position, answer, names)
-            if failed:
-                yield Sighting(tidy(failed))
+            failed = tuple(self._failed(explanation, position, answer, names))
+            yield from (Sighting(tidy(one)) for one in failed)
             if explanation.calls[position].done is None:
                 # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
-                if not (failed and failed.lost != explanation.lost and failed.assumed == explanation.assumed):
+                if not any(one.lost != explanation.lost and one.assumed == explanation.assumed for one in failed):
                     undone.append(explanation)
                 continue
             # What is silent may as well come after the answer.
@@ -99,24 +120,26 @@ class Oracle:
                 for after, rules in self._answered(sighting.explanation, position, answer, names):
                     yield Sighting(tidy(after), sighting.rules + rules)
 
-    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Explanation | None:
-        """The explanation in which the call has failed without anybody's doing, which any state allows.
+    def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
+        """The explanations in which the call has failed without anybody's doing, which any state allows.
 
-        What is silent may as well come after it, so that this explanation is enough. None where it cannot have.
+        What is silent may as well come after it, so that these explanations are enough.
         """
         if names or answer.shape is not None:
-            return None
+            return
         one = explanation.calls[position]
-        failure = self.moves.may_fail(one, answer.code)
-        if failure is None or (one.done and not failure.open_ended):
-            return None
-        assumed = meet(explanation.assumed, failure.assumes)
-        if not assumed:
-            return None
-        calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
-        late = failure.open_ended and not one.done
-        lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
-        return explanation.but(assumed=assumed, calls=calls, lost=lost)
+        failures = [self.moves.may_fail(one, answer.code)]
+        if self._lenient or (self.spec.transport and failures[0] and not failures[0].open_ended):
+            failures.append(lenient.failure(answer.code))
+        for failure in failures:
+            if failure is None or (one.done and not failure.open_ended):
+                continue
+            assumed = meet(explanation.assumed, failure.assumes)
+            if assumed:
+                calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
+                late = failure.open_ended and not one.done
+                lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
+                yield explanation.but(assumed=assumed, calls=calls, lost=lost)
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names
@@ -176,6 +199,12 @@ class Oracle:
         relations: tuple[str, ...],
         channel: int,
     ) -> Iterator[Sighting]:
+        again = lenient.REDELIVERED in relations
+        relations = tuple(relation for relation in relations if relation != lenient.REDELIVERED)
+        if self._lenient and again:
+            yield from lenient.redelivered(explanations, channel)
+        if self._lenient > 1:
+            explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations, relations))
         todo: list[tuple[Sighting, Hashable]] = []
         for explanation in explanations:
             echoes = self._echoed(explanation, channel)
@@ -258,9 +287,14 @@ class Oracle:
         if owed.passing:
             return (assumed,)
         same = self._unchanged(channel, owed, assumed)
-        skips = self.spec.delivery(channel.topic).skips
+        skips = self._skips(channel)
         skipped = meet(assumed, (skips,)) if skips else 0
         return same if assumed in same or not skipped else (*same, skipped)
+
+    def _skips(self, channel: Channel) -> Assumption | None:
+        """Under what a channel may pass over what it owes; None if never."""
+        skips = self.spec.delivery(channel.topic).skips
+        return lenient.skips(channel, skips) if self._lenient else skips
 
     def _unchanged(self, channel: Channel, owed: Owed, assumed: int) -> tuple[int, ...]:
         """What is assumed where an owed message shows what the channel showed last, so that nobody could tell it."""
@@ -340,7 +374,7 @@ class Oracle:
             for own in (name,) if name in names else [one for one in names if one < GONE]:
                 assumed = here.assumed
                 for topic in (channel.topic for channel in here.channels if channel.name == own):
-                    assumes = self.spec.delivery(topic).ends.get(code)
+                    assumes = lenient.ends(code) if self._lenient else self.spec.delivery(topic).ends.get(code)
                     assumed = meet(assumed, assumes) if assumes is not None else 0
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:
@@ -366,6 +400,7 @@ class Oracle:
                     yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
 
     def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Sighting]:
+        loses = self._lenient > 0
         # What is urgent need not be what happened: a call or the surroundings may have come before it.
         seen: Seen = {}
         todo = [Sighting(explanation) for explanation in explanations]
@@ -375,22 +410,30 @@ class Oracle:
                 here = sighting.explanation
                 if self.moves.outdone(seen, here):
                     continue
-                rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here))
+                rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
                 for rest in rests:
                     yield Sighting(rest, sighting.rules)
                 if here.assumed not in (rest.assumed for rest in rests):
                     later += (Sighting(one.explanation, sighting.rules + one.rules) for one in self.moves.silent(here))
             todo = later
 
-    def _nothing_owed(self, explanation: Explanation) -> Iterator[Explanation]:
+    def _nothing_owed(self, explanation: Explanation, *, loses: bool) -> Iterator[Explanation]:
         """The explanations in which every channel has shown where things stand; none if one has not."""
         ways: tuple[int, ...] = (explanation.assumed,)
-        for channel in explanation.channels:
+        lost: set[int] = set()
+        for position, channel in enumerate(explanation.channels):
             due = [owed for owed in channel.owed if not owed.passing]
             if due:
-                ways = tuple(dict.fromkeys(after for before in ways for after in self._told(channel, due, before)))
+                told = tuple(dict.fromkeys(after for before in ways for after in self._told(channel, due, before)))
+                if loses and not told and channel.last:
+                    told = tuple(after for before in ways if (after := meet(before, (lenient.LOSES,))))
+                    lost.add(position)
+                ways = told
         if ways:
-            channels = tuple(_offering(channel) if channel.owed else channel for channel in explanation.channels)
+            channels = tuple(
+                lenient.given_up(channel) if position in lost else _offering(channel) if channel.owed else channel
+                for position, channel in enumerate(explanation.channels)
+            )
             for assumed in ways:
                 yield tidy(explanation.but(assumed=assumed, channels=channels))
 

@@ -225,6 +225,12 @@ def _spontaneous(robot: Robot) -> tuple[Step, ...]:
     return tuple(_step(robot, edit, assumes, (_MOVES["fail"].id,)) for edit, assumes in ways)
 
 
+def _restarted(robot: Robot) -> Step:
+    """The robot with nothing in its list."""
+    after = Robot(robot.world, fault=robot.fault)
+    return Step(after, names=(), emits=(Emission(TOPIC, listing(after), ()),))
+
+
 _JUSTIFIED = {
     "goalReached": (_NEXT_GOAL.id,),
     "missionSucceeded": (_MOVES["succeed"].id,),
@@ -389,6 +395,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         ),
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
+        restarted=_restarted,
         unopened=(OWED.id,),
     )
 

@@ -220,10 +220,7 @@ class Judge:
     @property
     def history(self) -> tuple[JSON, ...]:
         """The lines that were read, the first line before them; of a long history only the last ones."""
-        first = {"missionfsm": 1, "system": self.head.system, "world": self.head.world}
-        if self.head.drives:
-            first["drives"] = list(self.head.drives)
-        return (first, *self.lines)
+        return (self.head.line, *self.lines)
 
     def verdict(self) -> Verdict:
         """The judgement of what was fed so far."""

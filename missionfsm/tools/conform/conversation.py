@@ -104,7 +104,8 @@ class Conversation:
         self.system = system
         self.subject = subject
         self.world = world
-        self.judge = Judge(system, Head(system.name, world, about.drives), automaton, keep=1_000_000, waits=False)
+        first = Head(system.name, world, about.drives, strict=True)
+        self.judge = Judge(system, first, automaton, keep=1_000_000, waits=False)
         self.actions: list[Action] = []
         self.given: dict[Given, object] = {}
         self._acting = self._learnt = 0

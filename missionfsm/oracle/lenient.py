@@ -1,0 +1,82 @@
+"""What only a transport explains: streams that end, messages that are lost or come twice, robots that restart.
+
+`missionfsm.oracle.transition` asks for it only where nothing else is left, so that it costs nothing where it is not
+needed and explains nothing that something else explains. Each way assumes a reading of `missionfsm.kernel.transport`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Failure, Spec
+from missionfsm.kernel.transport import ENDS, MADE_BY_CLIENTS, TR_01, TR_02, TR_03, TR_04, TR_05
+from missionfsm.oracle.explanation import Channel, Explanation, Owed, tidy
+from missionfsm.oracle.successors import Moves, Sighting
+
+REDELIVERED = "redelivered"
+"""The relation of a message to the one before that it is, number, timestamp and content."""
+LOSES = TR_03["b"]
+"""That messages are lost."""
+_RENEWED = frozenset({"zero", "first"})
+"""How the number of the first message after a restart may compare with those before."""
+
+
+def ends(code: str) -> tuple[Assumption, ...] | None:
+    """What is assumed where a stream ends with a status that its page does not list; None for one that is not made up.
+
+    A status that clients make by themselves may end a stream as it may be the answer to a call.
+    """
+    if code in ENDS:
+        return (TR_01["b"],)
+    return (TR_04["b"],) if code in MADE_BY_CLIENTS else None
+
+
+def failure(code: str) -> Failure | None:
+    """The failure that a client or a gateway makes up, which leaves open what becomes of the call; None if neither."""
+    if code == OK or code not in MADE_BY_CLIENTS:
+        return None
+    return Failure((TR_04["b"],), open_ended=True)
+
+
+def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Sighting]:
+    """The explanations in which a message came twice, after which everything is as before."""
+    for explanation in explanations:
+        assumed = meet(explanation.assumed, (TR_02["b"],))
+        if assumed and any(one.name == channel and one.last for one in explanation.channels):
+            yield Sighting(explanation.but(assumed=assumed))
+
+
+def given_up(channel: Channel) -> Channel:
+    """The channel whose messages were lost: what was to be seen last counts as seen, so that nothing older can come."""
+    last = channel.owed[-1]
+    return Channel(channel.name, channel.topic, Owed(last.view, last.names))
+
+
+def restarted(
+    moves: Moves, spec: Spec, explanations: Iterable[Explanation], relations: tuple[str, ...] = ("first",)
+) -> Iterator[Explanation]:
+    """The explanations in which the robot has restarted; a channel that goes on shows that first.
+
+    Args:
+        relations: how the numbers of the message that is to be explained compare with those before.
+    """
+    if spec.restarted is None or _RENEWED.isdisjoint(relations):
+        return
+    for explanation in explanations:
+        assumed = meet(explanation.assumed, (TR_05["b"],))
+        step = spec.restarted(explanation.state) if assumed else None
+        taken = step and moves.advance(explanation.but(assumed=assumed), step)
+        if taken:
+            after = taken[0]
+            channels = tuple(Channel(one.name, one.topic, None, one.owed[-1:]) for one in after.channels)
+            yield tidy(after.but(channels=channels))
+
+
+def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:
+    """Under what a channel passes over what it owes: it was lost, but for the first message, which shows the state."""
+    return LOSES if channel.last else otherwise
+
+
+__all__ = ["LOSES", "REDELIVERED", "ends", "failure", "given_up", "redelivered", "restarted", "skips"]

@@ -1,0 +1,211 @@
+"""A transport that is not perfect: what it does to a right history is explained and flagged, and excuses no more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import orjson
+import pytest
+from commandline import CommandLine
+from traffic import SUBSCRIBE, Recorder, delivery, navigate, readings_at_random, walk
+
+from missionfsm.app.recorded import check_file
+from missionfsm.kernel.transport import MADE_BY_CLIENTS, TRANSPORT
+from missionfsm.tools.check.verdict import Verdict
+
+
+def judged(path: Path, lines: list[Any], **how: Any) -> Verdict:
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path), **how)
+    return verdict
+
+
+def flags(verdict: Verdict) -> set[str]:
+    """The readings of the transport that it says are followed."""
+    return {one.partition("=")[0] for one in verdict.flagged} & {one.id for one in TRANSPORT}
+
+
+def day() -> Recorder:
+    """A mission runs, another waits; the robot is driven."""
+    log = Recorder()
+    log.call(SUBSCRIBE)
+    log.call("CreateMission", delivery("table-1", "table-2"))
+    log.call("AppendMission", navigate("table-3"))
+    log.drive(event="goalReached")
+    return log
+
+
+def shown(lines: list[Any]) -> list[int]:
+    """Where messages are."""
+    return [place for place, line in enumerate(lines) if "message" in line]
+
+
+def closed(lines: list[Any], **more: Any) -> list[Any]:
+    return [*lines, {"stream": 1, "closed": True, **more}, {"settled": True}]
+
+
+def lost(lines: list[Any], place: int) -> list[Any]:
+    gone = shown(lines)[place]
+    return [*lines[:gone], *lines[gone + 1 :]]
+
+
+def doubled(lines: list[Any], place: int) -> list[Any]:
+    again = shown(lines)[place] + 1
+    return [*lines[:again], lines[again - 1], *lines[again:]]
+
+
+def restarted(lines: list[Any]) -> list[Any]:
+    metadata = {"timestamp": "2025-04-01T17:05:00.001Z", "sequenceNumber": 0}
+    message = {"metadata": metadata, "missionStates": {"missions": [], "currentMissionIndex": -1}}
+    return [*lines, {"stream": 1, "message": message}]
+
+
+def failed(status: str, *, applied: bool) -> list[Any]:
+    """The history in which the answer to the second call is a status that a client made."""
+    log = day()
+    lines = [line for line in log.history if line.get("return") != 3]
+    place = next(place for place, line in enumerate(lines) if line.get("call") == 3)
+    if not applied:
+        other = Recorder()
+        other.call(SUBSCRIBE)
+        other.call("CreateMission", delivery("table-1", "table-2"))
+        place = len(other.history)
+        lines = [*other.history, lines[next(at for at, line in enumerate(lines) if line.get("call") == 3)]]
+        other.drive(event="goalReached")
+        lines += other.history[place:]
+    answer = {"return": 3, "error": {"status": status, "message": ""}}
+    return [*lines[: place + 1], answer, *lines[place + 1 :], {"settled": True}]
+
+
+def without_first() -> list[Any]:
+    """The history of a second stream that begins with its second message."""
+    log = day()
+    log.call(SUBSCRIBE)
+    lines = lost(log.history, -1)
+    log.drive(event="goalReached")
+    return [*lines, *log.history[len(lines) + 1 :]]
+
+
+LINES = day().history
+SETTLED = [*LINES, {"settled": True}]
+CASES = {
+    "a clean end": (closed(LINES), {"TR-01"}),
+    "the client's deadline": (closed(LINES, error={"status": "DEADLINE_EXCEEDED"}), {"TR-01"}),
+    "a client that is gone": (closed(LINES, error={"status": "UNKNOWN"}), {"TR-04"}),
+    "a redelivery": (doubled(SETTLED, 1), {"TR-02"}),
+    "the first message twice": (doubled(SETTLED, 0), {"TR-02"}),
+    "the last message lost": (lost(SETTLED, -1), {"TR-03"}),
+    "a restart": (restarted(LINES), {"TR-05"}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_a_transport_does_is_explained_and_flagged(tmp_path: Path, case: str) -> None:
+    """What a transport does to a right history is explained by the reading for it and no other; strictly it is not."""
+    lines, wanted = CASES[case]
+    verdict = judged(tmp_path / "log", lines)
+    assert (verdict.conforms, flags(verdict)) == (True, wanted)
+    assert not judged(tmp_path / "log", lines, strict=True).conforms
+    assert not judged(tmp_path / "log", [{**lines[0], "transport": "strict"}, *lines[1:]]).conforms
+    (ambiguity,) = wanted
+    assert not judged(tmp_path / "log", lines, readings={ambiguity: "a"}).conforms
+    assert " (seen where " in next(one for one in verdict.flagged if one.startswith(ambiguity))
+
+
+@pytest.mark.parametrize("applied", [False, True])
+@pytest.mark.parametrize("status", sorted(MADE_BY_CLIENTS))
+def test_a_status_that_a_client_made_leaves_the_call_open(tmp_path: Path, status: str, *, applied: bool) -> None:
+    """A call that came back with a status that any client makes may have taken effect or not."""
+    assert judged(tmp_path / "log", failed(status, applied=applied)).conforms
+
+
+WRONG = {
+    "another message with the same number": [
+        *LINES,
+        {"stream": 1, "message": {**LINES[shown(LINES)[1]]["message"], "metadata": LINES[-1]["message"]["metadata"]}},
+    ],
+    "what was shown before comes after what was lost": [
+        *lost(SETTLED, -1),
+        {
+            "stream": 1,
+            "message": {
+                **LINES[shown(LINES)[-2]]["message"],
+                "metadata": {"timestamp": "2025-04-01T17:05:00Z", "sequenceNumber": 99},
+            },
+        },
+    ],
+    "an empty list though the numbers go on": [
+        *LINES,
+        {
+            "stream": 1,
+            "message": {
+                "metadata": {"timestamp": "2025-04-01T17:05:00Z", "sequenceNumber": 99},
+                "missionStates": {"missions": [], "currentMissionIndex": -1},
+            },
+        },
+    ],
+    "a status that no client makes": failed("NOT_FOUND", applied=False),
+    "a stream that ends with a status that no client makes": closed(LINES, error={"status": "NOT_FOUND"}),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_no_transport_excuses_it(tmp_path: Path, case: str) -> None:
+    """What no transport does is a violation as before."""
+    assert judged(tmp_path / "log", WRONG[case]).violation is not None
+
+
+def test_the_first_message_of_a_stream_is_not_lost(tmp_path: Path) -> None:
+    """A stream whose first message is one that was owed later is a violation where every change is a message."""
+    lines = without_first()
+    assert judged(tmp_path / "log", lines, readings={"AM-47.skip": "a"}).violation is not None
+    assert judged(tmp_path / "log", lines).conforms
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_right_history_needs_no_transport(tmp_path: Path, seed: int) -> None:
+    """Nothing of the transport is used where nothing happened to a history, whatever the readings."""
+    log = walk(seed, 20, readings_at_random(seed))
+    verdict = judged(tmp_path / "log", log.history)
+    assert (verdict.conforms, flags(verdict)) == (True, set())
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_what_is_lost_and_doubled_at_random_is_explained(tmp_path: Path, seed: int) -> None:
+    """Messages but the first of a stream may be lost and doubled anywhere, and streams may end: all of it conforms."""
+    random = Random(seed)
+    log = walk(seed, 20)
+    lines: list[Any] = [log.history[0]]
+    seen: set[int] = set()
+    for line in log.lines:
+        stream = line["stream"] if "message" in line else 0
+        if stream and stream in seen and random.random() < 0.2:
+            continue
+        seen.add(stream)
+        lines += [line] * (1 + (bool(stream) and random.random() < 0.2))
+    for stream in log.streams[: random.randrange(2)]:
+        lines.append({"stream": stream, "closed": True})
+    verdict = judged(tmp_path / "log", lines)
+    assert verdict.conforms, str(verdict)
+
+
+def test_the_option_makes_the_transport_strict(command_line: CommandLine, tmp_path: Path) -> None:
+    """``--transport strict`` leaves the readings of the transport out; the first line may say the same."""
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in CASES["a clean end"][0]))
+    assert command_line("check", path).status == 0
+    strict = command_line("check", path, "--transport", "strict")
+    assert (strict.status, "stream 1 ended cleanly" in strict.out) == (1, True)
+
+
+@pytest.mark.parametrize(("key", "value"), [("transport", "lossy"), ("transport", True), ("begins", "here")])
+def test_a_first_line_that_says_something_unknown_is_refused(
+    command_line: CommandLine, tmp_path: Path, key: str, value: Any
+) -> None:
+    """What the first line says of the transport and of the beginning is one word each, or left out."""
+    path = tmp_path / "log"
+    path.write_bytes(orjson.dumps({**LINES[0], key: value}))
+    ended = command_line("check", path)
+    assert (ended.status, ended.err.startswith(f"missionfsm: {path}:1: {key}: ")) == (2, True)

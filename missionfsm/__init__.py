@@ -1,8 +1,9 @@
 """missionfsm: executable formal models of robot mission interfaces, and an oracle that judges implementations.
 
 Judging: `check` (a recorded history), `conform` (an implementation), `explore` (a system); each returns its verdict.
-Fakes for tests of clients: `Robot` and `Fleet` (Bear), with the messages that they take and the errors that they raise;
-`MissionServer` and `Mission` (Isaac), on real sockets. `systems` has what is modelled.
+Fakes for tests of clients: `Robot` and `Fleet` (Bear), with the messages that they take and the errors that they raise,
+`Shared` for several threads, `serve` for clients that speak gRPC; `MissionServer` and `Mission` (Isaac), on real
+sockets. `systems` has what is modelled.
 
 Each name is loaded when it is asked for, so that ``import missionfsm`` costs nothing.
 """
@@ -17,8 +18,11 @@ if TYPE_CHECKING:
     from missionfsm import systems
     from missionfsm.adapters.isaac.missionserver import Mission, MissionServer
     from missionfsm.api import check, check_robots, conform, explore
+    from missionfsm.app.serve import serve
+    from missionfsm.app.shared import Shared
     from missionfsm.bear.wire.messages import Command, Goal, Pose, State
     from missionfsm.fakes import missions, workflows
+    from missionfsm.fakes.conversion import from_json, to_json
     from missionfsm.fakes.errors import (
         ApiError,
         DeadlineExceeded,
@@ -50,6 +54,7 @@ __all__ = [
     "Outcome",
     "Pose",
     "Robot",
+    "Shared",
     "State",
     "SubjectError",
     "UnreadableError",
@@ -59,8 +64,11 @@ __all__ = [
     "check_robots",
     "conform",
     "explore",
+    "from_json",
     "missions",
+    "serve",
     "systems",
+    "to_json",
     "workflows",
 ]
 
@@ -68,8 +76,11 @@ _PLACES: Mapping[str, tuple[str, ...]] = {
     "missionfsm": ("systems",),
     "missionfsm.adapters.isaac.missionserver": ("Mission", "MissionServer"),
     "missionfsm.api": ("check", "check_robots", "conform", "explore"),
+    "missionfsm.app.serve": ("serve",),
+    "missionfsm.app.shared": ("Shared",),
     "missionfsm.bear.wire.messages": ("Command", "Goal", "Pose", "State"),
     "missionfsm.fakes": ("missions", "workflows"),
+    "missionfsm.fakes.conversion": ("from_json", "to_json"),
     "missionfsm.fakes.errors": (
         "ApiError",
         "DeadlineExceeded",

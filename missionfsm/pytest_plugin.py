@@ -1,17 +1,22 @@
-"""The pytest plugin: files named ``*.history.jsonl`` are tests, and ``--missionfsm-examples`` says how much is tried.
+"""The pytest plugin: recorded histories are tests, and robots are served for tests.
+
+Files named ``*.history.jsonl`` are tests, ``--missionfsm-examples`` says how much suites try, and the fixture
+``missionfsm_serve`` serves the reference over gRPC.
 
 pytest loads it wherever missionfsm is installed, so it loads nothing itself until there is something to judge.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import contextlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
+    from missionfsm.app.serve import Served
     from missionfsm.tools.check.verdict import Verdict
 
 SUFFIX = ".history.jsonl"
@@ -26,6 +31,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         metavar="N",
         help="conversations that each suite of missionfsm.testing has; the suites say how many otherwise",
     )
+
+
+@pytest.fixture
+def missionfsm_serve() -> Iterator[Callable[..., Served]]:
+    """Serves the reference over gRPC until the test ends: ``missionfsm_serve("bear.mission", auto=0.1)``.
+
+    Takes what `missionfsm.serve` takes and returns what its ``with`` block is given; needs the extra ``grpc``.
+    """
+    from missionfsm.app.serve import serve  # noqa: PLC0415 - see above
+
+    with contextlib.ExitStack() as stack:
+        yield lambda *arguments, **options: stack.enter_context(serve(*arguments, **options))
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:

@@ -18,12 +18,11 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
 from missionfsm.tools.reference.model import Twist, straight
+from missionfsm.tools.reference.stamps import Stamps
 from missionfsm.tools.reference.subject import Reference
 
 MAX_HISTORY_LINES = 100_000
 """Lines of the history that are kept; of a longer one the beginning is forgotten."""
-MAX_STAMPS = 10_000
-"""Events whose timestamps are remembered."""
 
 
 class Live:
@@ -33,7 +32,7 @@ class Live:
         system: the system.
         world: the parameters of its world, as JSON; what is left out has its default.
         readings: ambiguity id to letter; the others follow their defaults.
-        clock: seconds since the epoch, for timestamps.
+        clock: seconds since the epoch of the reference, for timestamps.
         record: takes every line of the history as it happens.
         twist, bend: what is broken, if anything; see `missionfsm.tools.reference.subject.Reference`.
 
@@ -55,22 +54,12 @@ class Live:
     ) -> None:
         self.system = system
         self._lock = threading.RLock()
-        self._clock = clock
         self._record = record
-        self._stamps: dict[int, float] = {}
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
         self._history: deque[JSON] = deque(maxlen=MAX_HISTORY_LINES)
-        self._subject = Reference(system, readings, twist, bend, self._stamp)
+        self._subject = Reference(system, readings, twist, bend, Stamps(clock))
         self.reset({} if world is None else world)
-
-    def _stamp(self, number: int) -> float:
-        """When the event with this number happened."""
-        if number not in self._stamps:
-            self._stamps[number] = self._clock()
-            if len(self._stamps) > MAX_STAMPS:
-                del self._stamps[next(iter(self._stamps))]
-        return self._stamps[number]
 
     def _note(self, line: JSON) -> None:
         self._history.append(line)

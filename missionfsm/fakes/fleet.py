@@ -8,13 +8,13 @@
 A call returns what the page promises or raises the documented error (`missionfsm.fakes.errors`), which names the
 rule and its place on the page. What robots do is the test's to decide: they report values, they restart, they move.
 Where the page can be read in several ways, `readings` says which the fleet follows (``missionfsm readings bear.status``
-lists them). There is no clock and no chance. A fleet is for one thread at a time.
+lists them). There is no clock and no chance. A fleet is for one thread at a time; `missionfsm.Shared` makes it one for
+several.
 """
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from datetime import timedelta
 from typing import Any, Generic, TypeVar
 
@@ -37,6 +37,7 @@ from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.wire.messages import EventMetadata
 from missionfsm.bear.wire.protojson import Int64, Timestamp, camel, write
 from missionfsm.fakes.errors import error
+from missionfsm.fakes.updates import Updates as AnyUpdates
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import OK
@@ -77,38 +78,20 @@ class Update(Generic[T]):
     value: T
 
 
-class Updates(Generic[T]):
+class Updates(AnyUpdates[Update[T]]):
     """A subscription: a ``for`` over it takes what has come since the last one.
 
     The first updates are the latest known states when the subscription was made; every change adds one.
     """
 
     def __init__(self) -> None:
-        self._unread: deque[Update[T]] = deque()
+        super().__init__()
         self._numbers: dict[str, int] = {}
-        self.open = True
-        """Whether more may come."""
 
-    def __iter__(self) -> Iterator[Update[T]]:
-        while self._unread:
-            yield self._unread.popleft()
-
-    def __len__(self) -> int:
-        """How many have come that were not taken yet."""
-        return len(self._unread)
-
-    def __bool__(self) -> bool:
-        """A subscription is there even while nothing has come."""
-        return True
-
-    def cancel(self) -> None:
-        """Give it up: nothing comes any more; what has come stays to be taken."""
-        self.open = False
-
-    def _come(self, robot: str, timestamp: str, value: T) -> None:
+    def _show(self, robot: str, timestamp: str, value: T) -> None:
         if self.open:
             number = self._numbers[robot] = self._numbers.get(robot, -1) + 1
-            self._unread.append(Update(robot, EventMetadata(Timestamp(timestamp), Int64(number)), value))
+            self._come(Update(robot, EventMetadata(Timestamp(timestamp), Int64(number)), value))
 
     def _restart(self, robot: str) -> None:
         self._numbers.pop(robot, None)
@@ -122,6 +105,8 @@ class Fleet:
         locations: ids of the account's locations, or pairs of an id and whether it is the account's. A location of a
             robot that is not among them is the account's.
         readings: ambiguity id to letter, such as ``{"AS-03.empty": "d"}``; the others follow their defaults.
+        clock: seconds since the epoch of 1970, for the timestamps of updates; without one there is a second for every
+            update.
 
     Raises:
         ValueError: an ambiguity or a letter that does not exist, or an id that comes twice.
@@ -133,6 +118,7 @@ class Fleet:
         locations: Iterable[str | tuple[str, bool]] = (),
         *,
         readings: Mapping[str, str] | None = None,
+        clock: Callable[[], float] | None = None,
     ) -> None:
         members = [Member(one) if isinstance(one, str) else one for one in robots]
         places = dict((one, True) if isinstance(one, str) else one for one in locations)
@@ -155,6 +141,7 @@ class Fleet:
         self._model = Model(SYSTEM, readings)
         self._here = self._model.start(SYSTEM.codec.world(world))
         self._subscriptions: dict[Name, Updates[Any]] = {}
+        self._clock = clock
         self._told = 0
 
     def __repr__(self) -> str:
@@ -266,6 +253,16 @@ class Fleet:
         """Let the next `get_status` fail that would succeed."""
         self._drive({"event": "fault", "status": "INTERNAL"})
 
+    def drive(self, event: str, **fields: JSON) -> bool:
+        """Make something happen by its name in the adapter protocol, such as ``drive("restart", robotId="r1")``.
+
+        False, and nothing happens, where it does not apply.
+
+        Raises:
+            ValueError: there is no such drive, or its fields are wrong.
+        """
+        return self._drive({"event": event, **fields})
+
     def _drive(self, given: JSON) -> bool:
         event, _ = SYSTEM.codec.drive(given)
         self._give_up()
@@ -275,13 +272,15 @@ class Fleet:
 
     def _deliver(self, reply: Reply, opened: Updates[Any] | None = None) -> None:
         """Hand out what was sent."""
+        now = None if self._clock is None else self._clock() - EPOCH.timestamp()
         for sent in reply.sent:
             updates = self._subscriptions.get(sent.channel, opened)
             if updates is not None:
                 self._told += 1
-                timestamp = (EPOCH + timedelta(seconds=self._told)).isoformat().replace("+00:00", "Z")
+                seconds = self._told if now is None else now
+                timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
                 shown = show(sent.view, self._model.choice)
-                updates._come(shown.robot, timestamp, shown.value)  # noqa: SLF001 - as above
+                updates._show(shown.robot, timestamp, shown.value)  # noqa: SLF001 - as above
 
     def _give_up(self) -> None:
         """Close the subscriptions that were cancelled."""

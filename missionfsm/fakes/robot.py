@@ -9,16 +9,17 @@ A call returns what the page promises or raises the documented error (`missionfs
 rule and its place on the page. What is not a call is the robot's own doing, and the test's to decide: a goal is
 reached, a mission fails, the next call fails. Where the page can be read in several ways, `readings` says which the
 robot follows (``missionfsm readings bear.mission`` lists them). There is no clock and no chance: the same calls give
-the same answers and the same ids. A robot is for one thread at a time.
+the same answers and the same ids. A robot is for one thread at a time; `missionfsm.Shared` makes it one for several.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from attrs import frozen
 
+from missionfsm.bear.mission.codec import EPOCH
 from missionfsm.bear.mission.describe import describe
 from missionfsm.bear.mission.render import show
 from missionfsm.bear.mission.state import Family, World
@@ -35,11 +36,13 @@ from missionfsm.bear.wire.messages import (
 )
 from missionfsm.bear.wire.protojson import camel, read, write
 from missionfsm.fakes.errors import error
+from missionfsm.fakes.updates import Updates as AnyUpdates
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.text import brief
 from missionfsm.tools.reference.model import Model, Reply, Sent, Snapshot
+from missionfsm.tools.reference.stamps import Stamps
 
 _USUAL = World()
 
@@ -54,47 +57,8 @@ class Moment:
     unread: tuple[tuple[Name, tuple[MissionStatus, ...]], ...] = ()
 
 
-class Updates:
-    """A subscription to a robot's mission status: a ``for`` over it takes what has come since the last one.
-
-    The first update is the latest state when the subscription was made; every change adds one. Updates are values.
-    """
-
-    def __init__(self, callback: Callback | None = None) -> None:
-        self._callback = callback
-        self._unread: deque[MissionStatus] = deque()
-        self.latest: MissionStatus | None = None
-        """The update that came last, read or not."""
-        self.open = True
-        """Whether more may come."""
-
-    def __iter__(self) -> Iterator[MissionStatus]:
-        while self._unread:
-            yield self._unread.popleft()
-
-    def __len__(self) -> int:
-        """How many have come that were not taken yet."""
-        return len(self._unread)
-
-    def __bool__(self) -> bool:
-        """A subscription is there even while nothing has come."""
-        return True
-
-    def cancel(self) -> None:
-        """Give it up: nothing comes any more; what has come stays to be taken."""
-        self.open = False
-
-    def _come(self, update: MissionStatus) -> None:
-        if not self.open:
-            return
-        self.latest = update
-        if self._callback is None:
-            self._unread.append(update)
-        else:
-            self._callback(update)
-
-    def _put_back(self, unread: Iterable[MissionStatus]) -> None:
-        self._unread = deque(unread)
+Updates = AnyUpdates[MissionStatus]
+"""A subscription to a robot's mission status: a ``for`` over it takes what has come since the last one."""
 
 
 class Robot:
@@ -108,6 +72,8 @@ class Robot:
         charging_location: whether its map has a contact charger.
         blocked: whether it is unable to start a mission.
         readings: ambiguity id to letter, such as ``{"AM-09": "b"}``; the others follow their defaults.
+        clock: seconds since the epoch of 1970, for the timestamps of updates; without one there is a second for every
+            event.
 
     Raises:
         ValueError: a family, an ambiguity or a letter that does not exist.
@@ -123,8 +89,10 @@ class Robot:
         charging_location: bool = _USUAL.charging_location,
         blocked: bool = _USUAL.blocked,
         readings: Mapping[str, str] | None = None,
+        clock: Callable[[], float] | None = None,
     ) -> None:
         self._model = Model(SYSTEM, readings)
+        self._seconds = float if clock is None else Stamps(lambda: clock() - EPOCH.timestamp())
         self._subscriptions: dict[Name, Updates] = {}
         self._on_the_way: deque[tuple[Updates, MissionStatus]] = deque()
         self._delivering = False
@@ -247,7 +215,7 @@ class Robot:
         Args:
             callback: called with every update as it comes, in the place of keeping it to be taken.
         """
-        found = Updates(callback)
+        found: Updates = AnyUpdates(callback)
         names = self._ask("SubscribeMissionStatus", {}, found)
         self._subscriptions[names[0]] = found
         return found
@@ -329,6 +297,16 @@ class Robot:
         """
         self._drive({"event": "fault", "status": code, "applied": applied})
 
+    def drive(self, event: str, **fields: JSON) -> bool:
+        """Make something happen by its name in the adapter protocol, such as ``drive("world", blocked=True)``.
+
+        False, and nothing happens, where it does not apply.
+
+        Raises:
+            ValueError: there is no such drive, or its fields are wrong.
+        """
+        return self._drive({"event": event, **fields})
+
     def _drive(self, given: JSON) -> bool:
         event, names = SYSTEM.codec.drive(given)
         self._give_up()
@@ -372,7 +350,9 @@ class Robot:
             self._delivering = False
 
     def _update(self, sent: Sent) -> MissionStatus:
-        message = SYSTEM.codec.write_message(sent.view, sent.names, self._model.choice, sent.number, float(sent.number))
+        message = SYSTEM.codec.write_message(
+            sent.view, sent.names, self._model.choice, sent.number, self._seconds(sent.number)
+        )
         return MissionStatus(read(EventMetadata, message["metadata"]), self._shown(sent.view, sent.names))
 
     def _give_up(self) -> None:

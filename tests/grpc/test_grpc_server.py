@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import concurrent.futures
 import queue
+import shutil
+import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import grpc
@@ -13,6 +16,8 @@ import pytest
 from google.protobuf import descriptor_pool, message_factory
 from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
 
+import missionfsm
+from missionfsm.adapters.grpc.client import GrpcSubject, Target
 from missionfsm.adapters.grpc.control import Control
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
 from missionfsm.adapters.grpc.faults import Dice, Faults
@@ -313,3 +318,26 @@ def test_only_bear_systems_are_served() -> None:
     """Isaac's systems do not speak gRPC."""
     with pytest.raises(ValueError, match=r"^'isaac.server' is not served over gRPC; bear.mission and bear.status are$"):
         serve("isaac.server").__enter__()
+
+
+def test_the_fixture_of_the_plugin_serves_until_the_test_ends(missionfsm_serve: Callable[..., Served]) -> None:
+    """Several robots at once, each in its own world, for a test that asks for the fixture."""
+    one, other = missionfsm_serve(), missionfsm_serve("bear.mission", world={"destinations": ["bar"]})
+    assert Client(one.target).call("CreateMission", NAVIGATE)["missionId"]
+    assert refusal(Client(other.target), "CreateMission", NAVIGATE).code() is grpc.StatusCode.INVALID_ARGUMENT
+    assert missionfsm.serve is serve
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="a certificate is made with openssl")
+def test_tls_is_spoken_with_a_certificate(tmp_path: Path) -> None:
+    """With a certificate a client that trusts it is served, the subject of conform as well; one without TLS is not."""
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    made = "req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=localhost -addext subjectAltName=DNS:localhost"
+    command = ["openssl", *made.split(), "-keyout", str(key), "-out", str(certificate)]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
+    with serve("bear.mission", certificate=str(certificate), key=str(key), token="sesame") as robot:  # noqa: S106 - nobody's
+        target = Target(f"localhost:{robot.port}", "sesame", certificate=str(certificate), timeout=WAIT)
+        subject = GrpcSubject("bear.mission", target)
+        assert subject.exchange("CreateMission", NAVIGATE).error is None
+        subject.close()
+        assert refusal(Client(robot.target), "ChargeRobot").code() is grpc.StatusCode.UNAVAILABLE

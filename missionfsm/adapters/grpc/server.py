@@ -39,7 +39,7 @@ MAX_UNSENT_MESSAGES = 10_000
 """Messages that wait for a subscriber who does not read; then its stream ends with RESOURCE_EXHAUSTED."""
 MAX_MESSAGE_BYTES = 4 * 1024 * 1024
 """What gRPC takes of one message unless told otherwise."""
-STOP_SECONDS = 1.0
+STOP_SECONDS = 0.1
 """How long calls that are under way may take when the server stops."""
 
 SETTLE_SECONDS = 5.0

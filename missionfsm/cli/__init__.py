@@ -11,7 +11,7 @@ import sys
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
-from missionfsm.cli import diagram, isaac, judging, listing, wire
+from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, wire
 from missionfsm.cli.common import BAD_INPUT, complain
 from missionfsm.cli.signals import ended_like_ctrl_c
 from missionfsm.kernel.codec import UnreadableError
@@ -29,7 +29,7 @@ for _command in (
     diagram.diagram,
     judging.adapter,
     isaac.dispatch,
-    isaac.robot,
+    isaac_robot.robot,
     wire.serve,
     wire.proxy,
 ):

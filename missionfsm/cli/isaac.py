@@ -1,4 +1,4 @@
-"""`missionfsm dispatch` and `missionfsm robot`: a mission server and a simulated robot on real sockets.
+"""`missionfsm dispatch`: a mission server on a real socket, for the missions of a file.
 
 Plain functions for typer; what takes long to import is imported inside them.
 """
@@ -6,20 +6,12 @@ Plain functions for typer; what takes long to import is imported inside them.
 import enum
 import signal
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from missionfsm.cli.common import BAD_INPUT, complain, stop
 from missionfsm.kernel.codec import UnreadableError
-
-if TYPE_CHECKING:
-    from missionfsm.cli.isaac_view import View
-    from missionfsm.isaac.runtime.missionfile import MissionFile
-    from missionfsm.isaac.runtime.profile import Profile
-    from missionfsm.isaac.runtime.robot import Behavior
-
-_INTERRUPTED = 128 + signal.SIGINT
 
 
 class ProfileName(enum.StrEnum):
@@ -29,29 +21,50 @@ class ProfileName(enum.StrEnum):
     AS_SHIPPED = "as-shipped"
 
 
-class Outcome(enum.StrEnum):
-    """How a simulated mission goes."""
+class LogName(enum.StrEnum):
+    """How lines are written."""
 
-    SUCCEED = "succeed"
-    FAIL = "fail"
-    HANG = "hang"
+    TEXT = "text"
+    JSON = "json"
 
 
-def dispatch(
+class LevelName(enum.StrEnum):
+    """How much a line has to matter."""
+
+    DEBUG = "debug"
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+def dispatch(  # noqa: PLR0913 - the options
     file: Annotated[Path, typer.Argument(help="The missions, as a JSON file; - is stdin.")],
-    host: Annotated[str, typer.Option(help="The address to listen on.")] = "0.0.0.0",  # noqa: S104 - robots are elsewhere
+    host: Annotated[
+        str, typer.Option(help="The address to listen on; :: is every one of this machine, IPv4 and IPv6.")
+    ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="The port to listen on; 0 is any free one.")] = 9998,
     name_channel: Annotated[str, typer.Option(help="The channel on which robots say their names.")] = "name",
     profile: Annotated[ProfileName, typer.Option(help="The readings to follow.")] = ProfileName.DOCUMENTED,
+    line_limit: Annotated[int, typer.Option(min=1024, help="Bytes of the longest line that is read or sent.")] = 1
+    << 20,
+    log: Annotated[
+        LogName | None, typer.Option(help="Lines with time and level, instead of the table or of plain lines.")
+    ] = None,
+    log_level: Annotated[LevelName, typer.Option(help="What is told: this and what matters more.")] = LevelName.INFO,
 ) -> None:
     """Send the missions of a file to the robots that connect, until all have ended.
 
-    Exit status: 0 if all succeeded, 1 if not, 2 if the file or the address cannot be used.
+    Exit status: 0 if all succeeded, 1 if not, 2 if the file or the address cannot be used, 130 and 143 if a signal
+    ended it.
     """
     import asyncio  # noqa: PLC0415
 
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
-    from missionfsm.cli.isaac_view import view_for  # noqa: PLC0415
+    from missionfsm.adapters.isaac.lines import address  # noqa: PLC0415
+    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
+    from missionfsm.app.ending import said  # noqa: PLC0415
+    from missionfsm.cli.isaac_view import LogFormat, view_for  # noqa: PLC0415
+    from missionfsm.isaac.runtime.log import Level  # noqa: PLC0415
     from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.runtime.profile import PROFILES  # noqa: PLC0415
 
@@ -60,100 +73,22 @@ def dispatch(
         text = read_whole(str(file))
     except UnreadableError as error:
         stop(str(error), BAD_INPUT)
-    missions = parse(text, readings)
+    missions = parse(text, readings, line_limit=line_limit)
+    for odd in missions.warnings if isinstance(missions, MissionFile) else missions:
+        complain(f"{file}: {odd}")
     if not isinstance(missions, MissionFile):
-        for problem in missions:
-            complain(f"{file}: {problem}")
-        raise typer.Exit(2)
-    view = view_for(missions)
+        raise typer.Exit(BAD_INPUT)
+    settings = Settings(host, port, name_channel, readings, line_limit)
+    work = Dispatch(missions, settings)
+    style = None if log is None else LogFormat(log.value)
     try:
-        asyncio.run(_serve(missions, host, port, name_channel, readings, view))
-    except KeyboardInterrupt:
-        complain(f"interrupted: {view.unfinished} of {len(missions.missions)} missions had not ended")
-        raise typer.Exit(_INTERRUPTED) from None
+        with view_for(work, style, Level[log_level.name]) as view:
+            asyncio.run(work.run(view.tell))
+    except KeyboardInterrupt:  # before or after the event loop
+        work.ended_by = signal.SIGINT
     except OSError as error:
-        complain(f"cannot listen on {host}:{port}: {error.strerror or error}")
-        raise typer.Exit(2) from None
-    raise typer.Exit(0 if view.succeeded == len(missions.missions) else 1)
-
-
-async def _serve(  # noqa: PLR0913 - the options
-    missions: "MissionFile", host: str, port: int, name_channel: str, profile: "Profile", view: "View"
-) -> None:
-    import asyncio  # noqa: PLC0415
-
-    from missionfsm.adapters.isaac.tcp import TcpMissionServer, fresh_uuid  # noqa: PLC0415
-
-    done = asyncio.Event()
-
-    def observe(effect: object) -> None:
-        view.see(effect)
-        if not view.unfinished:
-            done.set()
-
-    uuids = tuple(fresh_uuid() for _ in missions.missions)
-    view.name(uuids)
-    server = TcpMissionServer(host=host, port=port, name_channel=name_channel, profile=profile, observer=observe)
-    await server.start()
-    try:
-        with view:
-            view.say(f"listening on {host}:{server.port}")
-            refused = server.submit_file(missions, uuids)
-            if refused is not None:  # the file was read with this profile, so this does not happen
-                raise RuntimeError(str(refused))
-            if view.unfinished:
-                await done.wait()
-    finally:
-        await server.close()
-    view.summarize()
-
-
-def robot(  # noqa: PLR0913 - the options
-    name: Annotated[str, typer.Option(help="The robot's name, as missions call it.")],
-    host: Annotated[str, typer.Option(help="Where the mission server is.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="The mission server's port.")] = 9998,
-    behavior: Annotated[Outcome, typer.Option(help="How every mission goes.")] = Outcome.SUCCEED,
-    duration: Annotated[float, typer.Option(min=0.0, help="How long a mission takes, in seconds.")] = 1.0,
-    script: Annotated[
-        str | None, typer.Option(help="How each mission goes, the last for all that follow: succeed:0.5,fail,hang")
-    ] = None,
-) -> None:
-    """Simulate a robot that connects to a mission server, again and again, until interrupted."""
-    import asyncio  # noqa: PLC0415
-
-    from missionfsm.isaac.runtime.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
-
-    if not name:
-        complain("--name: an empty name is no name")
-        raise typer.Exit(2)
-    try:
-        steps = (Behavior(behavior.value, duration),) if script is None else parse_script(script, duration)
-    except ValueError:
-        complain(f"--duration: wanted a finite number of seconds, found {duration}")
-        raise typer.Exit(2) from None
-    if isinstance(steps, ScriptProblem):
-        complain(f"--script: {steps}")
-        raise typer.Exit(2)
-    try:
-        asyncio.run(_be_a_robot(name, host, port, steps))
-    except KeyboardInterrupt:
-        complain("interrupted")
-        raise typer.Exit(_INTERRUPTED) from None
-
-
-async def _be_a_robot(name: str, host: str, port: int, script: "tuple[Behavior, ...]") -> None:
-    from missionfsm.adapters.isaac.tcp import TcpRobot  # noqa: PLC0415
-    from missionfsm.cli.isaac_view import Printer, robot_line  # noqa: PLC0415
-    from missionfsm.isaac.runtime.robot import RobotCore  # noqa: PLC0415
-
-    printer = Printer()
-    last: list[str] = []
-
-    def observe(effect: object) -> None:
-        line = robot_line(effect)
-        if line is not None and [line] != last:  # RUNNING is said ten times a second, and shown once
-            last[:] = [line]
-            printer.say(line)
-
-    core = RobotCore(name, script=script)
-    await TcpRobot(core, host=host, port=port, observer=observe, notes=printer.say).run()
+        stop(f"cannot listen on {address((host, port))}: {error.strerror or error}", BAD_INPUT)
+    if work.ended_by is None:
+        raise typer.Exit(0 if work.succeeded == len(missions.missions) else 1)
+    left = f"{work.unfinished} of {len(missions.missions)} missions had not ended"
+    stop(f"{said(work.ended_by)}: {left}", 128 + work.ended_by)

@@ -1,27 +1,52 @@
-"""What `missionfsm dispatch` shows: a live table on a terminal, a line a change on a pipe."""
+"""What `missionfsm dispatch` and `robot` show: a live table on a terminal, else lines, written in the background."""
 
+import collections
+import datetime as dt
+import enum
 import heapq
 import sys
 from types import TracebackType
-from typing import Final, Self
+from typing import Final, Protocol, Self
 
+import orjson
 from rich.console import Console, Group
 from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from missionfsm.cli.common import complain, say
+from missionfsm.adapters.background import BackgroundLines, stdout_lines
+from missionfsm.cli.common import complain
 from missionfsm.isaac.runtime.codelet import Report
+from missionfsm.isaac.runtime.log import Entry, Level
 from missionfsm.isaac.runtime.missionfile import MissionFile
-from missionfsm.isaac.runtime.missions import INCOMPLETE, RobotOffline, RobotOnline, Status, StatusChanged
+from missionfsm.isaac.runtime.missions import Status
 from missionfsm.isaac.runtime.robot import Did
-from missionfsm.isaac.wire.messages import Uuid
-from missionfsm.kernel.codec import UnreadableError
-from missionfsm.kernel.text import printable
+from missionfsm.kernel.text import printable, shown
 
 _STYLES: Final = {Status.SUCCESS: "green", Status.RUNNING: "cyan", Status.STARTED: "cyan"}
 _ACTIVE: Final = (Status.STARTED, Status.RUNNING)
 _FRAME: Final = 12  # lines of a table that are no rows, twice over
+
+
+class LogFormat(enum.StrEnum):
+    """How a line is written."""
+
+    PLAIN = "plain"
+    TEXT = "text"
+    JSON = "json"
+
+
+def written(entry: Entry, style: LogFormat, time: dt.datetime) -> str:
+    """An entry as one line: its text alone, its text after time and level, or all of it as JSON."""
+    if style is LogFormat.PLAIN:
+        return shown(entry.text)
+    stamp = time.astimezone(dt.UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    level = entry.level.name.lower()
+    if style is LogFormat.TEXT:
+        mission = f" ({entry.fields['uuid']})" if "uuid" in entry.fields else ""
+        return f"{stamp} {level:<7} {shown(entry.text)}{mission}"
+    line = {"time": stamp, "level": level, "event": entry.event, **entry.fields, "text": entry.text}
+    return orjson.dumps(line).decode()
 
 
 def robot_line(effect: object) -> str | None:
@@ -32,71 +57,50 @@ def robot_line(effect: object) -> str | None:
     return None
 
 
-class Printer:
-    """Prints lines at once, and falls silent when nobody can read them any more: robots go on all the same."""
+class Log:
+    """Entries as lines on stdout. Nobody waits for those who read them; who stops reading stops nothing."""
+
+    def __init__(self, style: LogFormat = LogFormat.PLAIN, level: Level = Level.INFO) -> None:
+        self._style = style
+        self._level = level
+        self._lines: BackgroundLines = stdout_lines(self._missing)
+
+    def tell(self, entry: Entry) -> None:
+        """Have an entry written, if it matters enough."""
+        if entry.level >= self._level:
+            self._lines.say(written(entry, self._style, dt.datetime.now(dt.UTC)))
 
     def say(self, line: str) -> None:
-        """Print one line."""
-        try:
-            say(printable(line))
-        except UnreadableError as error:
-            complain(str(error))
+        """Have one line told."""
+        self.tell(Entry("note", line))
+
+    def close(self) -> None:
+        """Wait for those who read, as long as they do; complain of what they did not."""
+        unread = self._lines.close()
+        if unread:
+            complain(f"{unread} lines were not written: nobody reads stdout")
+
+    def _missing(self, count: int) -> str:
+        entry = Entry("missing", f"{count} lines are missing here: nobody read them in time", Level.WARNING)
+        return written(entry, self._style, dt.datetime.now(dt.UTC))
+
+
+class Progress(Protocol):
+    """What a table shows: the missions of a file, and where each stands."""
+
+    file: MissionFile
+    statuses: list[Status]
 
 
 class View:
-    """Follows the missions of one file. Plain: a line for every change."""
+    """A line for all that happens."""
 
-    def __init__(self, file: MissionFile) -> None:
-        self.file = file
-        self.statuses = [Status.CREATED] * len(file.missions)
-        self.robots: dict[str, bool] = {}
-        self._numbers: dict[Uuid, int] = {}
-        self._counts = dict.fromkeys(Status, 0)
-        self._counts[Status.CREATED] = len(self.statuses)
-        self._expected = {entry.robot for entry in file.missions}
-        self._printer = Printer()
+    def __init__(self, log: Log) -> None:
+        self._log = log
 
-    @property
-    def unfinished(self) -> int:
-        """How many missions have not ended."""
-        return sum(self._counts[status] for status in INCOMPLETE)
-
-    @property
-    def succeeded(self) -> int:
-        """How many missions have succeeded."""
-        return self._counts[Status.SUCCESS]
-
-    def name(self, uuids: tuple[Uuid, ...]) -> None:
-        """Say under which identifiers the missions run."""
-        self._numbers = {uuid: number for number, uuid in enumerate(uuids)}
-
-    def see(self, effect: object) -> None:
-        """Take note of what the server does."""
-        if isinstance(effect, StatusChanged):
-            number = self._numbers[effect.mission]
-            self._counts[self.statuses[number]] -= 1
-            self._counts[effect.status] += 1
-            self.statuses[number] = effect.status
-            robot = self.file.missions[number].robot
-            self.say(f"missions[{number}] {robot}: {effect.status.value}")
-        elif isinstance(effect, RobotOnline):
-            self.robots[effect.robot] = True
-            self.say(f"robot {effect.robot}: connected")
-        elif isinstance(effect, RobotOffline):
-            if effect.robot in self._expected:
-                self.robots[effect.robot] = False
-            else:  # anybody may connect; only those whom the file names are remembered
-                self.robots.pop(effect.robot, None)
-            self.say(f"robot {effect.robot}: disconnected")
-
-    def say(self, line: str) -> None:
-        """Tell one line."""
-        self._printer.say(line)
-
-    def summarize(self) -> None:
-        """Tell how it ended."""
-        failed = len(self.statuses) - self.succeeded
-        self._printer.say(f"{self.succeeded} succeeded, {failed} did not")
+    def tell(self, entry: Entry) -> None:
+        """Tell what happened."""
+        self._log.tell(entry)
 
     def __enter__(self) -> Self:
         return self
@@ -104,21 +108,35 @@ class View:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        return None
+        self._log.close()
 
 
-class TableView(View):
-    """On a terminal: tables that change in place, as tall as the terminal allows, and no lines."""
+class TableView:
+    """On a terminal: tables that change in place, as tall as the terminal allows, and no lines but the last."""
 
-    def __init__(self, file: MissionFile, console: Console | None = None) -> None:
-        super().__init__(file)
+    def __init__(self, progress: Progress, console: Console | None = None) -> None:
+        self.robots: dict[str, bool] = {}
+        self._progress = progress
+        self._expected = {entry.robot for entry in progress.file.missions}
         self._console = console or Console()
         self._title = ""
+        self._last = ""
         self._live = Live(get_renderable=self.render, console=self._console, refresh_per_second=4)
 
-    def say(self, line: str) -> None:
-        """Keep only what the title says."""
-        self._title = line if line.startswith("listening") else self._title
+    def tell(self, entry: Entry) -> None:
+        """Take note of what happened."""
+        robot = str(entry.fields.get("robot"))
+        if entry.event == "listening":
+            self._title = ", ".join(filter(None, (self._title, entry.text)))
+        elif entry.event in ("robot-connected", "robot-taken-over"):
+            self.robots[robot] = True
+        elif entry.event == "robot-disconnected":
+            if robot in self._expected:
+                self.robots[robot] = False
+            else:  # anybody may connect; only those whom the file names are remembered
+                self.robots.pop(robot, None)
+        elif entry.event == "summary":
+            self._last = entry.text
 
     def render(self) -> Group:
         """The tables as they are now."""
@@ -132,30 +150,32 @@ class TableView(View):
         missions = Table("mission", "robot", "status", "waits for")
         rows = self._most_telling(max(room - robots.row_count, 2))
         for number in rows:
-            entry, status = self.file.missions[number], self.statuses[number]
+            entry, status = self._progress.file.missions[number], self._progress.statuses[number]
             style = _STYLES.get(status, "red" if status.terminal else "dim")
-            upstream = [str(one) for one in entry.upstream if not self.statuses[one].terminal]
+            upstream = [str(one) for one in entry.upstream if not self._progress.statuses[one].terminal]
             missions.add_row(
                 str(number),
                 Text(printable(str(entry.robot))),
                 Text(status.value, style=style),
                 Text(", ".join(upstream[:9])),
             )
-        total = ", ".join(f"{count} {status.value}" for status, count in self._counts.items() if count)
-        hidden = len(self.statuses) - len(rows)
+        counts = collections.Counter(self._progress.statuses)
+        total = ", ".join(f"{counts[status]} {status.value}" for status in Status if counts[status])
+        hidden = len(self._progress.statuses) - len(rows)
         total += f" ({hidden} not shown)" if hidden else ""
         return Group(Text(self._title), robots, missions, Text(total))
 
     def _most_telling(self, room: int) -> list[int]:
         """The missions to show where not all have room: what runs, then what waits, then what has ended."""
-        if len(self.statuses) <= room:
-            return list(range(len(self.statuses)))
+        statuses = self._progress.statuses
+        if len(statuses) <= room:
+            return list(range(len(statuses)))
 
         def rank(number: int) -> int:
-            status = self.statuses[number]
+            status = statuses[number]
             return 0 if status in _ACTIVE else 2 if status.terminal else 1
 
-        return sorted(heapq.nsmallest(room, range(len(self.statuses)), key=lambda number: (rank(number), number)))
+        return sorted(heapq.nsmallest(room, range(len(statuses)), key=lambda number: (rank(number), number)))
 
     def __enter__(self) -> Self:
         self._live.__enter__()
@@ -165,8 +185,12 @@ class TableView(View):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._live.__exit__(kind, error, trace)
+        if self._last:
+            self._console.print(Text(self._last))
 
 
-def view_for(file: MissionFile) -> View:
-    """A live table where stdout is a terminal, else plain lines."""
-    return TableView(file) if sys.stdout is not None and sys.stdout.isatty() else View(file)
+def view_for(progress: Progress, style: LogFormat | None, level: Level) -> View | TableView:
+    """A live table where stdout is a terminal and no format was asked for, else lines."""
+    if style is None and sys.stdout is not None and sys.stdout.isatty():
+        return TableView(progress)
+    return View(Log(style or LogFormat.PLAIN, level))

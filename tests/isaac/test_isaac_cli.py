@@ -1,5 +1,6 @@
 """`dispatch` and `robot` as processes: the page's walk-through over three terminals, and what goes wrong."""
 
+import fcntl
 import json
 import os
 import re
@@ -13,14 +14,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from isaac_helpers import uuid
 
+from missionfsm.isaac.runtime.log import Entry
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
-from missionfsm.isaac.runtime.missions import RobotOffline, RobotOnline, Status, StatusChanged
+from missionfsm.isaac.runtime.missions import RobotOffline, RobotOnline, Status
 
 APP = (
-    "import typer; from missionfsm.cli.isaac import dispatch, robot; app = typer.Typer(); "
-    "app.command()(dispatch); app.command()(robot); app()"
+    "import typer; from missionfsm.cli.isaac import dispatch; from missionfsm.cli.isaac_robot import robot; "
+    "app = typer.Typer(); app.command()(dispatch); app.command()(robot); app()"
 )
 
 Start = Callable[..., "Process"]
@@ -177,8 +178,7 @@ def test_isaac_cli_bad_files_and_addresses_are_one_line(tmp_path: Path, start: S
         "missing": f"{tmp_path / 'missing'}: No such file or directory",
         "folder": f"{tmp_path}: Is a directory",
         "no JSON": f"{bad}: line 2, column 2: not JSON: expecting property name enclosed in double quotes",
-        "port": f"cannot listen on 127.0.0.1:{port}: error while attempting to bind on address ('127.0.0.1', {port}): "
-        "address already in use",
+        "port": f"cannot listen on 127.0.0.1:{port}: Address already in use",
         "script": "--script: step 1, 'fly': wanted succeed|fail|hang, or with seconds as in fail:0.5",
         "name": "--name: an empty name is no name",
     }
@@ -197,6 +197,24 @@ def test_isaac_cli_ctrl_c_is_clean(tmp_path: Path, start: Start) -> None:
     assert server.interrupt() == 130
     assert server.errors == ["missionfsm: interrupted: 2 of 2 missions had not ended"]
     robot.until(r"^disconnected$")
+
+
+def test_isaac_cli_a_signal_ends_it_and_is_said(tmp_path: Path, start: Start) -> None:
+    """SIGTERM is status 143 and one line for the dispatcher and the robot; what had not ended is counted."""
+    file = write(tmp_path, {"robot": "r"}, {"robot": "r", "start_timout": 3})
+    server = start("dispatch", file, "--port", "0")
+    port = server.until(r"^listening on 127\.0\.0\.1:(\d+)$")[1]
+    server.until(r"^only programs on this machine can connect; --host :: lets robots in from elsewhere$")
+    robot = start("robot", "--name", "r", "--port", port, "--behavior", "hang")
+    server.until(r"RUNNING")
+    for process in (server, robot):
+        process.child.send_signal(signal.SIGTERM)
+        assert process.end() == 143
+    assert server.errors == [
+        f"missionfsm: {file}: missions[1].start_timout: is unknown and ignored; did you mean start_timeout?",
+        "missionfsm: ended by SIGTERM: 2 of 2 missions had not ended",
+    ]
+    assert robot.errors == ["missionfsm: ended by SIGTERM"]
 
 
 def test_isaac_cli_killed_robots_do_not_hang_the_dispatcher(tmp_path: Path, start: Start) -> None:
@@ -229,25 +247,50 @@ def test_isaac_cli_a_reader_that_goes_away_does_not_stop_the_missions(tmp_path: 
     assert (server.returncode, errors) == (0, b"")
 
 
+def test_isaac_cli_a_reader_that_does_not_read_holds_up_nothing(tmp_path: Path, start: Start) -> None:
+    """Behind a full pipe that nobody reads all missions are done; what was not written is said."""
+    file = write(tmp_path, *({"robot": "r"} for _ in range(100)))
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = str(free.getsockname()[1])
+    reading, writing = os.pipe()
+    fcntl.fcntl(writing, fcntl.F_SETPIPE_SZ, 16384)
+    arguments = ["dispatch", file, "--port", port, "--log", "json"]
+    server = subprocess.Popen([sys.executable, "-c", APP, *arguments], stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    try:
+        start("robot", "--name", "r", "--port", port, "--duration", "0")
+        _, errors = server.communicate(timeout=20)
+        assert server.returncode == 0
+        assert re.fullmatch(rb"missionfsm: \d+ lines were not written: nobody reads stdout\n", errors)
+    finally:
+        with os.fdopen(reading, "rb") as left:
+            first = [json.loads(line) for line in left.read().splitlines()[:3]]
+    assert [(line["event"], line["level"]) for line in first] == [
+        ("listening", "info"), ("loopback", "info"), ("status", "info"),
+    ]  # fmt: skip
+    assert first[2].keys() == {"time", "level", "event", "mission", "uuid", "robot", "before", "status", "text"}
+    assert (first[2]["mission"], first[2]["robot"], first[2]["status"]) == (0, "r", "QUEUED")
+
+
 def test_isaac_cli_the_table_shows_what_matters() -> None:
     """On a terminal: robots, missions, statuses and counts, as many rows as fit; names cannot control the terminal."""
     from rich.console import Console  # noqa: PLC0415
 
+    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
     from missionfsm.cli.isaac_view import TableView  # noqa: PLC0415
 
     file = MissionFile(
         tuple(MissionEntry("[red]r\x1b[2J", upstream=(number - 1,) if number else ()) for number in range(50))
     )
     console = Console(force_terminal=True, width=100, height=24, no_color=True, record=True)
-    view = TableView(file, console)
-    view.name(tuple(uuid(number) for number in range(50)))
-    view.say("listening on here:1")
-    view.see(RobotOnline("[red]r\x1b[2J", 1))
-    view.see(RobotOffline("[red]r\x1b[2J", 1))
-    for number in range(50):
-        view.see(StatusChanged(uuid(number), Status.CREATED, Status.QUEUED))
-    view.see(StatusChanged(uuid(40), Status.QUEUED, Status.RUNNING))
-    view.see(StatusChanged(uuid(1), Status.QUEUED, Status.SUCCESS))
+    work = Dispatch(file, Settings())
+    view = TableView(work, console)
+    view.tell(Entry("listening", "listening on here:1"))
+    view.tell(work.narrator.tell(RobotOnline("[red]r\x1b[2J", 1)))
+    view.tell(work.narrator.tell(RobotOffline("[red]r\x1b[2J", 1)))
+    work.statuses[:] = [Status.QUEUED] * 50
+    work.statuses[40], work.statuses[1] = Status.RUNNING, Status.SUCCESS
     with console.capture() as capture:
         console.print(view.render())
     text = re.sub(r"\x1b\[[0-9;]*m", "", capture.get())
@@ -262,4 +305,4 @@ def test_isaac_cli_the_table_shows_what_matters() -> None:
     ):
         assert part in text
     assert "\x1b" not in text
-    assert (view.unfinished, view.succeeded) == (49, 1)
+    assert work.succeeded == 1

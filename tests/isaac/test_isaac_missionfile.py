@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from isaac_helpers import uuid
 
 from missionfsm.isaac.runtime.graph import cycles, topological_order
-from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile, parse, submit_all
+from missionfsm.isaac.runtime.missionfile import FileProblem, MissionEntry, MissionFile, parse, submit_all
 from missionfsm.isaac.runtime.missions import Refused
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
 from missionfsm.isaac.runtime.server import MissionServerCore
@@ -34,7 +34,7 @@ def test_isaac_file_defaults_are_the_documented_ones() -> None:
 
 
 def test_isaac_file_every_key_is_read() -> None:
-    """All documented keys are taken, unknown ones ignored at both levels, whatever they hold."""
+    """All documented keys are taken, unknown ones ignored with a warning at both levels, whatever they hold."""
     text = """{"more": [NaN], "missions": [{"robot": "a"}, {"robot": "b", "channel": "c", "status_channel": "s",
         "config": {"n": {"k": {"p": [1, 2.5, "ü"]}}}, "start_timeout": 3, "timeout": Infinity, "upstream": [0, 0],
         "colour": {"x": 1e999}}]}"""
@@ -42,8 +42,37 @@ def test_isaac_file_every_key_is_read() -> None:
         (
             MissionEntry("a"),
             MissionEntry("b", "c", "s", '{"n":{"k":{"p":[1,2.5,"\\u00fc"]}}}', 3.0, math.inf, (0,)),
-        )
+        ),
+        (
+            FileProblem("more", "is unknown and ignored; known are missions"),
+            FileProblem(
+                "missions[1].colour",
+                "is unknown and ignored; known are "
+                "robot, channel, status_channel, config, start_timeout, timeout, upstream",
+            ),
+        ),
     )
+
+
+def test_isaac_file_an_unknown_key_is_said_with_the_nearest_known_one() -> None:
+    """A slip of the pen is no silence: the warning has the place and what was probably meant."""
+    file = parse(of({"robot": "r", "start-timeout": 3, "upstreams": []}))
+    assert isinstance(file, MissionFile)
+    assert [str(warning) for warning in file.warnings] == [
+        'missions[0]["start-timeout"]: is unknown and ignored; did you mean start_timeout?',
+        "missions[0].upstreams: is unknown and ignored; did you mean upstream?",
+    ]
+
+
+def test_isaac_file_a_configuration_that_no_line_holds_is_said_with_its_size() -> None:
+    """What would be longer than a line may be is refused before anything is sent; one byte less is taken."""
+    text = of({"robot": "r", "config": {"n": {"c": {"p": "x" * 1000}}}})
+    found = parse(text, line_limit=1300)
+    assert [str(one) for one in found if isinstance(found, tuple)] == [
+        "missions[0].config: makes a line of 1,336 bytes; the limit is 1,300"
+    ]
+    assert isinstance(parse(text, line_limit=1336), MissionFile)
+    assert isinstance(parse(text, line_limit=1335), tuple)
 
 
 @pytest.mark.parametrize(

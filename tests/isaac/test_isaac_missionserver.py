@@ -151,7 +151,7 @@ def test_isaac_facade_a_port_in_use_is_an_oserror_and_leaves_nothing_behind() ->
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         before = threading.active_count()
-        with pytest.raises(OSError, match="address already in use"):
+        with pytest.raises(OSError, match="Address already in use"):
             MissionServer(taken.getsockname()[1], host="127.0.0.1")
         assert threading.active_count() == before
 

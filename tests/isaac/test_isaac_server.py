@@ -30,7 +30,7 @@ def test_isaac_server_a_mission_from_creation_to_success() -> None:
     assert core.connected(1, 0.0) == ()
     assert core.received(1, says_name("r"), 0.0) == (
         RobotOnline("r", 1),
-        Send(1, "mission", MissionProto(uuid(0), '{"a":1}')),
+        Send(1, "mission", MissionProto(uuid(0), '{"a":1}'), uuid(0)),
         StatusChanged(uuid(0), Status.QUEUED, Status.STARTED),
     )
     assert core.next_deadline() == 5.0

@@ -4,7 +4,7 @@ import asyncio
 import logging
 import socket
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 from missionfsm.isaac.wire.framing import Decoder, WireError
 from missionfsm.isaac.wire.messages import Message
@@ -19,10 +19,18 @@ _BACKLOG: Final = 1 << 24  # bytes that may wait for a peer that does not read
 _BAD_LINES: Final = 100  # in a row, before a peer is taken for something that speaks another protocol
 
 
+def address(name: tuple[Any, ...]) -> str:
+    """The address of a socket as people write it: host:port, with brackets where the host has colons itself."""
+    host = str(name[0]).removeprefix("::ffff:") if "." in str(name[0]) else str(name[0])
+    return f"[{host}]:{name[1]}" if ":" in host else f"{host}:{name[1]}"
+
+
 class LineConnection(asyncio.Protocol):
     """Feeds what arrives to a decoder, and gives up on a peer that does not read, or sends nothing but rubbish.
 
-    `opened`, `arrived` and `closed` are called in that order; `closed` exactly once if `opened` was.
+    `opened`, `arrived` and `closed` are called in that order; `closed` exactly once if `opened` was. Where `leaving` is
+    given, it is called before what came together with the end of the connection: bytes are held back until the event
+    loop has looked once more whether the connection still stands.
     """
 
     def __init__(  # noqa: PLR0913 - what it reports to, and two settings
@@ -32,6 +40,7 @@ class LineConnection(asyncio.Protocol):
         opened: Callable[["LineConnection"], None],
         arrived: Callable[["LineConnection", Message | WireError], None],
         closed: Callable[["LineConnection"], None],
+        leaving: Callable[["LineConnection"], None] | None = None,
         read_last_line: bool = True,
         write_timeout: float = WRITE_TIMEOUT,
     ) -> None:
@@ -39,6 +48,9 @@ class LineConnection(asyncio.Protocol):
         self._opened = opened
         self._arrived = arrived
         self._closed = closed
+        self._leaving = leaving
+        self._held: list[bytes] = []
+        self._dropped = False  # by us: what arrives is of no interest any more
         self._read_last_line = read_last_line
         self._write_timeout = write_timeout
         self._transport: asyncio.Transport | None = None
@@ -57,11 +69,17 @@ class LineConnection(asyncio.Protocol):
 
     def data_received(self, data: bytes) -> None:
         """Called by asyncio."""
-        for start in range(0, len(data), _SLICE):
-            for item in self._decoder.feed(data[start : start + _SLICE]):
-                if self._transport is None or self._transport.is_closing():
-                    return
-                self._take(item)
+        if self._leaving is None:
+            self._read(data)
+            return
+        self._held.append(data)
+        if len(self._held) == 1:  # the second pass from now is the first one after the loop has looked again
+            loop = asyncio.get_running_loop()
+            loop.call_soon(loop.call_soon, self._release)
+
+    def eof_received(self) -> None:
+        """Called by asyncio."""
+        self._leave()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Called by asyncio."""
@@ -70,6 +88,7 @@ class LineConnection(asyncio.Protocol):
         if self._watch is not None:
             self._watch.cancel()
             self._watch = None
+        self._leave()
         for item in self._decoder.close() if self._read_last_line else ():
             self._arrived(self, item)
         self._transport = None
@@ -94,11 +113,12 @@ class LineConnection(asyncio.Protocol):
             return
         transport.write(line)
         if transport.get_write_buffer_size() > _BACKLOG:
-            LOG.warning("connection dropped: %d bytes wait for a peer that does not read", _BACKLOG)
-            transport.abort()
+            LOG.warning("connection to %s dropped: %d bytes wait for a peer that does not read", self.peer, _BACKLOG)
+            self.abort()
 
     def close(self) -> None:
         """Close after what is written has gone, or after the write timeout."""
+        self._dropped = True
         if self._transport is not None and not self._transport.is_closing():
             self._transport.close()
             if self._transport.get_write_buffer_size() and self._watch is None:
@@ -106,6 +126,7 @@ class LineConnection(asyncio.Protocol):
 
     def abort(self) -> None:
         """Close now."""
+        self._dropped = True
         if self._transport is not None:
             self._transport.abort()
 
@@ -113,7 +134,7 @@ class LineConnection(asyncio.Protocol):
     def peer(self) -> str:
         """The other end as host:port, for people."""
         name = None if self._transport is None else self._transport.get_extra_info("peername")
-        return f"{name[0]}:{name[1]}" if isinstance(name, tuple) else "somebody"
+        return address(name) if isinstance(name, tuple) else "somebody"
 
     @property
     def is_itself(self) -> bool:
@@ -121,11 +142,28 @@ class LineConnection(asyncio.Protocol):
         transport = self._transport
         return transport is not None and transport.get_extra_info("peername") == transport.get_extra_info("sockname")
 
+    def _leave(self) -> None:
+        if self._leaving is not None:
+            self._leaving(self)
+            self._release()
+
+    def _release(self) -> None:
+        held, self._held = self._held, []
+        for data in held:
+            self._read(data)
+
+    def _read(self, data: bytes) -> None:
+        for start in range(0, len(data), _SLICE):
+            for item in self._decoder.feed(data[start : start + _SLICE]):
+                if self._dropped:
+                    return
+                self._take(item)
+
     def _take(self, item: Message | WireError) -> None:
         self._bad_lines = self._bad_lines + 1 if isinstance(item, WireError) else 0
         self._arrived(self, item)
         if self._bad_lines >= _BAD_LINES:
-            LOG.warning("connection dropped: %d lines in a row were no messages", _BAD_LINES)
+            LOG.warning("connection to %s dropped: %d lines in a row were no messages", self.peer, _BAD_LINES)
             self.abort()
 
     def _watch_writing(self) -> None:
@@ -139,8 +177,8 @@ class LineConnection(asyncio.Protocol):
         if transport is None:
             return
         if transport.get_write_buffer_size() >= before:
-            LOG.warning("connection dropped: the peer has read nothing for %g s", self._write_timeout)
-            transport.abort()
+            LOG.warning("connection to %s dropped: the peer has read nothing for %g s", self.peer, self._write_timeout)
+            self.abort()
         else:
             self._watch_writing()
 

@@ -19,7 +19,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 from weakref import WeakValueDictionary
 
-from missionfsm.adapters.isaac.tcp import ANY_HOST, DEFAULT_PORT, TcpMissionServer, fresh_uuid
+from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
 from missionfsm.isaac.runtime.missions import DEFAULT_START_TIMEOUT, Effect, MissionRequest, Refused, StatusChanged
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
@@ -90,7 +90,7 @@ class AsyncMissionServer:
         port: int = DEFAULT_PORT,
         name_channel: str = "name",
         *,
-        host: str = ANY_HOST,
+        host: str = LOOPBACK,
         profile: Profile = DOCUMENTED,
     ) -> None:
         self._settings = (host, port, name_channel, profile)
@@ -182,7 +182,7 @@ class MissionServer:
         port: int = DEFAULT_PORT,
         name_channel: str = "name",
         *,
-        host: str = ANY_HOST,
+        host: str = LOOPBACK,
         profile: Profile = DOCUMENTED,
     ) -> None:
         self._loop = asyncio.new_event_loop()

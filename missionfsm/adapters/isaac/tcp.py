@@ -7,13 +7,16 @@ reading is cut into slices, writing never waits, a peer that does not read is dr
 """
 
 import asyncio
+import errno
+import os
 import random
+import socket
 import time
 import uuid as uuids
 from collections.abc import Callable, Iterable
 from typing import Final
 
-from missionfsm.adapters.isaac.lines import LOG, WRITE_TIMEOUT, Alarm, LineConnection
+from missionfsm.adapters.isaac.lines import LOG, WRITE_TIMEOUT, Alarm, LineConnection, address
 from missionfsm.isaac.runtime.missionfile import MissionFile, submit_all
 from missionfsm.isaac.runtime.missions import Close, Effect, Ignored, MissionRequest, Refused, Send
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
@@ -23,8 +26,10 @@ from missionfsm.isaac.wire.framing import MAX_LINE, Decoder, WireError, encode
 from missionfsm.isaac.wire.messages import Message, Payload, Uuid, stamp
 
 DEFAULT_PORT: Final = 9998
-ANY_HOST: Final = "0.0.0.0"  # noqa: S104 - robots connect from other machines
+LOOPBACK: Final = "127.0.0.1"
+"""Where is listened unless somebody asks for more: whoever can connect can say any robot's name."""
 BACKLOG: Final = 1024
+_NOT_HERE: Final = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 _GRACE: Final = 0.5  # seconds for what is written to go out when the server closes
 
 
@@ -37,16 +42,40 @@ def _nothing(_: object) -> None:
     """Observe nothing."""
 
 
+async def listening(host: str, port: int) -> tuple[socket.socket, ...]:
+    """Sockets bound to every address of a host, all on one port; ``::`` takes IPv4 as well. OSError if there is none.
+
+    Port 0 is any free one. No host is every address of this machine.
+    """
+    host = host or ("::" if socket.has_dualstack_ipv6() else "0.0.0.0")  # noqa: S104 - what no host means
+    loop = asyncio.get_running_loop()
+    found = await loop.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+    sockets: list[socket.socket] = []
+    for family, _, _, _, name in dict.fromkeys(found):
+        place = (name[0], sockets[0].getsockname()[1] if sockets else port, *name[2:])
+        both = name[0] == "::" and socket.has_dualstack_ipv6()
+        try:
+            sockets.append(socket.create_server(place, family=family, backlog=BACKLOG, dualstack_ipv6=both))
+        except OSError as error:
+            if error.errno in _NOT_HERE and sockets:  # localhost is ::1 as well, also where there is no IPv6
+                continue
+            for one in sockets:
+                one.close()
+            raise OSError(error.errno, os.strerror(error.errno or 0)) from None
+    return tuple(sockets)
+
+
 class TcpMissionServer:
     """A mission server that listens. Made and used on one event loop; `observer` is told of every effect.
 
-    `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are not read.
+    `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are neither
+    read nor sent: a mission that needs more is refused.
     """
 
     def __init__(  # noqa: PLR0913 - all by keyword, each with a default
         self,
         *,
-        host: str = ANY_HOST,
+        host: str = LOOPBACK,
         port: int = DEFAULT_PORT,
         name_channel: str = "name",
         profile: Profile = DOCUMENTED,
@@ -54,7 +83,7 @@ class TcpMissionServer:
         write_timeout: float = WRITE_TIMEOUT,
         observer: Callable[[Effect], None] = _nothing,
     ) -> None:
-        self.core = MissionServerCore(profile, name_channel=name_channel)
+        self.core = MissionServerCore(profile, name_channel=name_channel, line_limit=line_limit)
         self.host = host
         self.port = port
         self._profile = profile
@@ -62,24 +91,28 @@ class TcpMissionServer:
         self._write_timeout = write_timeout
         self._observer = observer
         self._alarm = Alarm(self._ring)
-        self._server: asyncio.Server | None = None
+        self._servers: list[asyncio.Server] = []
+        self.addresses: tuple[str, ...] = ()
         self._numbers: dict[LineConnection, int] = {}
         self._connections: dict[int, LineConnection] = {}
+        self._peers: dict[int, str] = {}
         self._accepted = 0
         self._closing = False
 
     async def start(self) -> None:
         """Listen. OSError where the address cannot be had."""
+        sockets = await listening(self.host, self.port)
         loop = asyncio.get_running_loop()
-        self._server = await loop.create_server(self._accept, self.host, self.port, backlog=BACKLOG)
-        self.port = self._server.sockets[0].getsockname()[1]
+        self._servers = [await loop.create_server(self._accept, sock=one, backlog=BACKLOG) for one in sockets]
+        self.addresses = tuple(address(one.getsockname()) for one in sockets)
+        self.port = sockets[0].getsockname()[1]
 
     async def close(self) -> None:
         """Stop listening and drop everybody. Missions keep the status they have."""
         self._closing = True
         self._alarm.set(None)
-        if self._server is not None:
-            self._server.close()
+        for server in self._servers:
+            server.close()
         waiting = [connection.gone for connection in self._numbers]
         for connection in tuple(self._numbers):
             connection.close()
@@ -87,8 +120,12 @@ class TcpMissionServer:
             await asyncio.wait(waiting, timeout=_GRACE)
         for connection in tuple(self._numbers):
             connection.abort()
-        if self._server is not None:
-            await self._server.wait_closed()
+        for server in self._servers:
+            await server.wait_closed()
+
+    def peer(self, connection: int) -> str:
+        """The other end of a connection as host:port, as long as somebody may speak of it."""
+        return self._peers.get(connection, "somebody")
 
     def create(self, request: MissionRequest, uuid: Uuid) -> Refused | None:
         """Make a mission known; see `MissionServerCore.create`."""
@@ -114,6 +151,7 @@ class TcpMissionServer:
             opened=self._opened,
             arrived=self._arrived,
             closed=self._closed,
+            leaving=self._leaving,
             read_last_line=self._profile.ai_26_last == "c",
             write_timeout=self._write_timeout,
         )
@@ -122,6 +160,7 @@ class TcpMissionServer:
         self._accepted += 1
         self._numbers[connection] = self._accepted
         self._connections[self._accepted] = connection
+        self._peers[self._accepted] = connection.peer
         if self._closing:
             connection.abort()
             return
@@ -131,11 +170,14 @@ class TcpMissionServer:
         if not self._closing:
             self._perform(self.core.received(self._numbers[connection], item, self._alarm.now()))
 
+    def _leaving(self, connection: LineConnection) -> None:
+        self.core.leaving(self._numbers[connection])
+
     def _closed(self, connection: LineConnection) -> None:
         number = self._numbers.pop(connection)
-        del self._connections[number]
         if not self._closing:
             self._perform(self.core.disconnected(number, self._alarm.now()))
+        del self._connections[number], self._peers[number]
 
     def _ring(self) -> None:
         self._perform(self.core.advance(self._alarm.now()))
@@ -220,7 +262,7 @@ class TcpRobot:
             async with asyncio.timeout(self._connect_timeout):
                 _, connection = await loop.create_connection(self._make, self._host, self._port)
         except OSError as error:  # a TimeoutError is one too
-            self._notes(f"cannot connect to {self._host}:{self._port}: {error or type(error).__name__}")
+            self._notes(f"cannot connect to {address((self._host, self._port))}: {error or type(error).__name__}")
             return False
         await connection.gone
         return True

@@ -1,10 +1,12 @@
 """The mission file: a list of missions as JSON, checked whole before anything is sent.
 
 ``MissionSubmission › Sample Usage``. Every problem is reported with its place, not only the first. Unknown keys are
-ignored (AI-20). An upstream may stand further down in the file (AI-21 a) unless the caller takes the other reading.
+ignored (AI-20), with a warning. An upstream may stand further down in the file (AI-21 a) unless the caller takes the
+other reading.
 `Infinity` is taken for a timeout (AI-24 d), and nowhere else.
 """
 
+import difflib
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
@@ -12,13 +14,22 @@ from typing import Final
 import attrs
 
 from missionfsm.isaac.runtime.graph import cycles, topological_order
-from missionfsm.isaac.runtime.missions import DEFAULT_CHANNEL, DEFAULT_START_TIMEOUT, Effect, MissionRequest, Refused
+from missionfsm.isaac.runtime.missions import (
+    DEFAULT_CHANNEL,
+    DEFAULT_START_TIMEOUT,
+    Effect,
+    MissionRequest,
+    Refused,
+    too_long,
+)
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.runtime.server import MissionServerCore
 from missionfsm.isaac.wire import strictjson
+from missionfsm.isaac.wire.framing import MAX_LINE
 from missionfsm.isaac.wire.messages import Uuid
 from missionfsm.isaac.wire.strictjson import JsonFault, JsonObject, shown
 
+_LONG: Final = 40  # letters of an unknown key that are compared with the known ones
 _KEYS: Final = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
 
 
@@ -63,15 +74,19 @@ class MissionEntry:
 
 @attrs.frozen
 class MissionFile:
-    """A file without a problem: its missions, which form a DAG."""
+    """A file without a problem: its missions, which form a DAG, and what is odd about it all the same."""
 
     missions: tuple[MissionEntry, ...]
+    warnings: tuple[FileProblem, ...] = ()
 
 
-def parse(text: bytes | str, profile: Profile = DOCUMENTED) -> MissionFile | tuple[FileProblem, ...]:
+def parse(
+    text: bytes | str, profile: Profile = DOCUMENTED, *, line_limit: int = MAX_LINE
+) -> MissionFile | tuple[FileProblem, ...]:
     """The missions in a file, or all that is wrong with it.
 
     The profile says whether an upstream may stand further down (AI-21) and whether a robot is needed (AI-19).
+    `line_limit` is that of :class:`~missionfsm.isaac.runtime.server.MissionServerCore`.
     """
     if isinstance(text, bytes):
         try:
@@ -84,9 +99,9 @@ def parse(text: bytes | str, profile: Profile = DOCUMENTED) -> MissionFile | tup
         line = before.count("\n") + 1
         column = value.position - (before.rfind("\n") + 1) + 1
         return (FileProblem(f"line {line}, column {column}", value.problem),)
-    reader = _Reader(profile)
+    reader = _Reader(profile, line_limit)
     missions = reader.file(value)
-    return tuple(reader.problems) if reader.problems else MissionFile(missions)
+    return tuple(reader.problems) if reader.problems else MissionFile(missions, tuple(reader.warnings))
 
 
 def submit_all(
@@ -117,15 +132,18 @@ def submit_all(
 class _Reader:
     """Reads a parsed file, collecting all that is wrong."""
 
-    def __init__(self, profile: Profile) -> None:
+    def __init__(self, profile: Profile, line_limit: int) -> None:
         self._profile = profile
+        self._line_limit = line_limit
         self.problems: list[FileProblem] = []
+        self.warnings: list[FileProblem] = []
 
     def file(self, value: object) -> tuple[MissionEntry, ...]:
         if not isinstance(value, JsonObject):
             self._wrong("file", f'wanted an object with the key "missions", found {shown(value)}')
             return ()
         self._doubled(value, "", ("missions",))
+        self._unknown(value, "", ("missions",))
         missions = value.get("missions")
         if not isinstance(missions, list):
             found = "is missing" if "missions" not in value else f"wanted a list, found {shown(missions)}"
@@ -151,13 +169,21 @@ class _Reader:
             if key in keys:
                 self._wrong(strictjson.below(path, key), "is given more than once")
 
+    def _unknown(self, value: JsonObject, path: str, keys: Sequence[str]) -> None:
+        for key in value:
+            if key not in keys:
+                near = difflib.get_close_matches(key[:_LONG].lower().replace("-", "_"), keys, 1)
+                hint = f"; did you mean {near[0]}?" if near else f"; known are {', '.join(keys)}"
+                self.warnings.append(FileProblem(strictjson.below(path, key), f"is unknown and ignored{hint}"))
+
     def _entry(self, value: object, path: str, index: int, count: int) -> MissionEntry:
         if not isinstance(value, JsonObject):
             self._wrong(path, f"wanted an object, found {shown(value)}")
             return MissionEntry()
         self._doubled(value, path, _KEYS)
+        self._unknown(value, path, _KEYS)
         status_channel = value.get("status_channel")
-        return MissionEntry(
+        entry = MissionEntry(
             robot=self._robot(value.get("robot"), f"{path}.robot"),
             channel=self._text(value.get("channel", DEFAULT_CHANNEL), f"{path}.channel"),
             status_channel=(
@@ -168,6 +194,9 @@ class _Reader:
             timeout=self._seconds(value.get("timeout", math.inf), f"{path}.timeout"),
             upstream=tuple(self._upstream(value.get("upstream", []), f"{path}.upstream", index, count)),
         )
+        if (problem := too_long(entry.channel, entry.config, self._line_limit)) is not None:
+            self._wrong(f"{path}.config", problem)
+        return entry
 
     def _robot(self, value: object, path: str) -> str | None:
         if value is None:

@@ -7,7 +7,8 @@ from typing import Final
 import attrs
 from attrs import validators
 
-from missionfsm.isaac.wire.messages import MissionProto, Uuid
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import I64, U64, MissionProto, Uuid, stamp
 
 DEFAULT_CHANNEL: Final = "mission"
 DEFAULT_STATUS_CHANNEL: Final = "mission_status"
@@ -66,6 +67,17 @@ class MissionRequest:
     upstream: tuple[Uuid, ...] = ()
 
 
+def too_long(channel: str, config: str, limit: int) -> str | None:
+    """What is wrong with a mission whose line, without its end, is longer than `limit` bytes; None for any other.
+
+    The numbers in the line are taken to be as long as they can be.
+    """
+    longest = Uuid(U64 - 1, U64 - 1)
+    line = encode(stamp(MissionProto(longest, config), channel, pubtime=I64 - 1, uuid=longest))
+    size = len(line) - 1
+    return None if size <= limit else f"makes a line of {size:,} bytes; the limit is {limit:,}"
+
+
 @attrs.frozen
 class Refused:
     """A mission was not taken, and nothing has changed."""
@@ -83,6 +95,16 @@ class Send:
     connection: int
     channel: str
     payload: MissionProto
+    mission: Uuid
+
+
+@attrs.frozen
+class RobotTakenOver:
+    """Another connection says the name of a robot that has one, and is the robot from now on."""
+
+    robot: str
+    before: int
+    connection: int
 
 
 @attrs.frozen
@@ -126,7 +148,7 @@ class Ignored:
     reason: str
 
 
-Effect = Send | Close | StatusChanged | RobotOnline | RobotOffline | Ignored
+Effect = Send | Close | StatusChanged | RobotOnline | RobotOffline | RobotTakenOver | Ignored
 
 
 @attrs.frozen

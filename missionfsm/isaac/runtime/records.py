@@ -57,5 +57,6 @@ class ConnectionRecord:
     id: int
     number: int  # in the order of arrival
     open: bool = True
+    leaving: bool = False  # its peer sends nothing more, and is sent nothing
     robot: RobotRecord | None = None
     early: list[Message] = attrs.Factory(list)

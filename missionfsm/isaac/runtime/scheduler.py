@@ -217,11 +217,13 @@ class Scheduler:
         return lane
 
     def _dispatch(self, lane: LaneRecord) -> None:
-        while lane.robot.connection is not None and (not lane.sent or self.profile.ai_11 == "b"):
+        connection = lane.robot.connection
+        while connection is not None and not connection.leaving and (not lane.sent or self.profile.ai_11 == "b"):
             mission = self._take(lane)
             if mission is None:
                 return
-            self._send(lane, lane.robot.connection, mission)
+            self._send(lane, connection, mission)
+            connection = lane.robot.connection
 
     def _take(self, lane: LaneRecord) -> MissionRecord | None:
         if self.profile.ai_12 == "a":
@@ -243,7 +245,9 @@ class Scheduler:
             return
         mission.in_flight = mission.was_sent = True
         lane.sent[mission.uuid] = mission
-        self.effects.append(Send(connection.id, request.channel, MissionProto(mission.uuid, request.config)))
+        self.effects.append(
+            Send(connection.id, request.channel, MissionProto(mission.uuid, request.config), mission.uuid)
+        )
         self.change(mission, Status.STARTED)
         if profile.ai_05 == "a":
             self._arm_timeout(mission, "start", request.start_timeout)

@@ -24,13 +24,15 @@ from missionfsm.isaac.runtime.missions import (
     Refused,
     RobotOffline,
     RobotOnline,
+    RobotTakenOver,
     RobotView,
     Status,
+    too_long,
 )
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.runtime.records import ConnectionRecord, MissionRecord, RobotRecord
 from missionfsm.isaac.runtime.scheduler import Scheduler
-from missionfsm.isaac.wire.framing import WireError
+from missionfsm.isaac.wire.framing import MAX_LINE, WireError
 from missionfsm.isaac.wire.messages import (
     Header,
     Message,
@@ -46,11 +48,20 @@ _EARLY: Final = 64  # messages kept of a connection without a name, under AI-18 
 
 
 class MissionServerCore:
-    """See the module. Mutable but pure; not thread-safe."""
+    """See the module. Mutable but pure; not thread-safe.
 
-    def __init__(self, profile: Profile = DOCUMENTED, *, name_channel: str = "name") -> None:
+    Args:
+        profile: the readings that are followed.
+        name_channel: where robots say their names.
+        line_limit: bytes of the longest line that a robot reads, without its end; no mission that needs more is taken.
+    """
+
+    def __init__(
+        self, profile: Profile = DOCUMENTED, *, name_channel: str = "name", line_limit: int = MAX_LINE
+    ) -> None:
         self.profile = profile
         self.name_channel = name_channel
+        self._line_limit = line_limit
         self._scheduler = Scheduler(profile, self._close)
         self._connections: dict[int, ConnectionRecord] = {}
         self._arrived = 0
@@ -104,6 +115,8 @@ class MissionServerCore:
         key = self._scheduler.key(request.robot or "")
         if not key and self.profile.ai_19 == "c":
             return Refused("the mission has no robot")
+        if (problem := too_long(request.channel, request.config, self._line_limit)) is not None:
+            return Refused(f"the mission {problem}")
         for number, upstream in enumerate(request.upstream):
             if upstream not in self._scheduler.missions:
                 return Refused(f"upstream[{number}]: there is no mission {upstream} yet")
@@ -154,6 +167,15 @@ class MissionServerCore:
             self._unbind(gone)
         return self._scheduler.end()
 
+    def leaving(self, connection: int) -> None:
+        """The other end of a connection has ended it; what it sent before is still to be told, then `disconnected`.
+
+        No mission goes to a connection that ends.
+        """
+        found = self._connections.get(connection)
+        if found is not None:
+            found.leaving = True
+
     def received(self, connection: int, message: Message | WireError, now: float) -> tuple[Effect, ...]:
         """A message has arrived, or something that is none."""
         self._scheduler.begin(now)
@@ -202,14 +224,18 @@ class MissionServerCore:
         if other is not None and (self.profile.ai_16 == "b" or other.number > connection.number):
             self._ignore(connection, "another connection has that name")
             return
+        said: RobotOnline | RobotTakenOver = RobotOnline(text, connection.id)
         if other is not None:
-            self._unbind(other)
+            said = RobotTakenOver(text, other.id, connection.id)
+            other.robot = robot.connection = None
         self._unbind(connection)
+        self._scheduler.effects.append(said)
+        if other is not None:
+            self._scheduler.lost(robot)
         self._bind(connection, robot, text)
 
     def _bind(self, connection: ConnectionRecord, robot: RobotRecord, name: str) -> None:
         connection.robot, robot.connection, robot.name = robot, connection, name
-        self._scheduler.effects.append(RobotOnline(name, connection.id))
         early, connection.early = connection.early, []
         for message in early:
             self._receive(connection, message)

@@ -16,6 +16,7 @@ import attrs
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.messages import (
     DATA_BUFFER_TYPES,
+    I64,
     TYPE_IDS,
     U64,
     Header,
@@ -37,7 +38,6 @@ MAX_LINE: Final = 1 << 20
 ErrorKind = Literal["framing", "syntax", "shape", "type"]
 
 _DIGITS: Final = re.compile(r"-?[0-9]{1,20}", re.ASCII)
-_I64: Final = 1 << 63
 _BY_ID: Final = {type_id: kind for kind, type_id in TYPE_IDS.items()}
 _BY_FIELD: Final = {"text": TextProto, "missionStatus": MissionStatusProto, "config": MissionProto}
 _STATUSES: Final = tuple(WireStatus)
@@ -172,8 +172,8 @@ class _Reader:
     def _header(self, raw: dict[str, Any]) -> Header:
         return Header(
             channel=self._text(raw, "header", "channel"),
-            pubtime=self._integer(raw.get("pubtime"), "header.pubtime", -_I64, _I64),
-            acqtime=self._integer(raw.get("acqtime"), "header.acqtime", -_I64, _I64),
+            pubtime=self._integer(raw.get("pubtime"), "header.pubtime", -I64, I64),
+            acqtime=self._integer(raw.get("acqtime"), "header.acqtime", -I64, I64),
             uuid=self._uuid(raw.get("uuid"), "header.uuid"),
         )
 
@@ -187,7 +187,7 @@ class _Reader:
                 return kinds[0]
             self.wrong("header.proto", "is missing, and the payload's fields do not tell the type", "type")
             return None
-        type_id = self._integer(proto, "header.proto", -_I64, U64)
+        type_id = self._integer(proto, "header.proto", -I64, U64)
         if type_id is None:
             return None
         kind = _BY_ID.get(unsigned(type_id))

@@ -12,7 +12,7 @@ import attrs
 from attrs import validators
 
 U64: Final = 1 << 64
-_I64: Final = 1 << 63
+I64: Final = 1 << 63
 
 
 @attrs.frozen(cache_hash=True)
@@ -89,10 +89,10 @@ class Header:
 
     channel: str
     pubtime: int | None = attrs.field(
-        default=None, validator=validators.optional([validators.ge(-_I64), validators.lt(_I64)])
+        default=None, validator=validators.optional([validators.ge(-I64), validators.lt(I64)])
     )
     acqtime: int | None = attrs.field(
-        default=None, validator=validators.optional([validators.ge(-_I64), validators.lt(_I64)])
+        default=None, validator=validators.optional([validators.ge(-I64), validators.lt(I64)])
     )
     uuid: Uuid | None = None
 
@@ -118,7 +118,7 @@ DATA_BUFFER_TYPES: Final = ("TensorProto", "ImageProto")
 
 def signed(value: int) -> int:
     """An unsigned 64-bit value as the signed one with the same bits, which is how a type id travels."""
-    return value - U64 if value >= _I64 else value
+    return value - U64 if value >= I64 else value
 
 
 def unsigned(value: int) -> int:

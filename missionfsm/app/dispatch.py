@@ -1,0 +1,137 @@
+"""The missions of one file, on a mission server of their own, until all have ended or somebody ends it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import signal
+from collections.abc import Callable, Iterator
+
+import attrs
+
+from missionfsm.adapters.isaac.lines import LOG
+from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
+from missionfsm.app.ending import told_to_end
+from missionfsm.isaac.runtime.log import Entry, Level, Narrator
+from missionfsm.isaac.runtime.missionfile import MissionFile
+from missionfsm.isaac.runtime.missions import INCOMPLETE, Effect, Status, StatusChanged
+from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
+from missionfsm.isaac.wire.framing import MAX_LINE
+
+_LOOPBACK = ("127.", "localhost:", "[::1]:")
+
+
+@attrs.frozen
+class Settings:
+    """Where a server listens and what it follows; see `TcpMissionServer`."""
+
+    host: str = LOOPBACK
+    port: int = DEFAULT_PORT
+    name_channel: str = "name"
+    profile: Profile = DOCUMENTED
+    line_limit: int = MAX_LINE
+
+
+class Dispatch:
+    """See the module.
+
+    Attributes:
+        statuses: where each mission of the file stands.
+        ended_by: the signal that ended it, if one did.
+    """
+
+    def __init__(self, file: MissionFile, settings: Settings) -> None:
+        self.file = file
+        self.statuses = [Status.CREATED] * len(file.missions)
+        self.ended_by: signal.Signals | None = None
+        self.narrator = Narrator([entry.robot for entry in file.missions])
+        self._settings = settings
+        self._tell: Callable[[Entry], None] = lambda _: None
+        self._unfinished = len(self.statuses)
+        self._done = asyncio.Event()
+
+    @property
+    def unfinished(self) -> int:
+        """How many missions have not ended."""
+        return self._unfinished
+
+    @property
+    def succeeded(self) -> int:
+        """How many missions have succeeded."""
+        return self.statuses.count(Status.SUCCESS)
+
+    async def run(self, tell: Callable[[Entry], None]) -> None:
+        """Serve until all missions have ended. OSError where the address cannot be had.
+
+        `tell` gets an entry for all that happens, on the event loop; it must not wait.
+        """
+        self._tell = tell
+        settings = self._settings
+        server = TcpMissionServer(
+            host=settings.host,
+            port=settings.port,
+            name_channel=settings.name_channel,
+            profile=settings.profile,
+            line_limit=settings.line_limit,
+            observer=self._observe,
+        )
+        self.narrator.peer = server.peer
+        uuids = tuple(fresh_uuid() for _ in self.statuses)
+        self.narrator.name(uuids)
+        await server.start()
+        try:
+            with told_to_end(self._end), self._warnings():
+                self._say_where(server)
+                refused = server.submit_file(self.file, uuids)
+                if refused is not None:  # the file was read with this profile, so this does not happen
+                    raise RuntimeError(str(refused))
+                if self._unfinished:
+                    await self._done.wait()
+        finally:
+            await server.close()
+        failed = len(self.statuses) - self.succeeded
+        if self.ended_by is None:
+            fields = {"succeeded": self.succeeded, "failed": failed}
+            self._tell(Entry("summary", f"{self.succeeded} succeeded, {failed} did not", Level.INFO, fields))
+
+    def _say_where(self, server: TcpMissionServer) -> None:
+        for address in server.addresses:
+            self._tell(Entry("listening", f"listening on {address}", Level.INFO, {"address": address}))
+        if all(address.startswith(_LOOPBACK) for address in server.addresses):
+            says = "only programs on this machine can connect; --host :: lets robots in from elsewhere"
+            self._tell(Entry("loopback", says))
+
+    def _observe(self, effect: Effect) -> None:
+        if isinstance(effect, StatusChanged):
+            self.statuses[self.narrator.number(effect.mission)] = effect.status
+            self._unfinished += (effect.status in INCOMPLETE) - (effect.before in INCOMPLETE)
+        self._tell(self.narrator.tell(effect))
+        if not self._unfinished:
+            self._done.set()
+
+    def _end(self, by: signal.Signals) -> None:
+        self.ended_by = by
+        self._done.set()
+
+    @contextlib.contextmanager
+    def _warnings(self) -> Iterator[None]:
+        """What the connections warn of is told as well, and goes nowhere else."""
+        handler = _Handler(self._tell)
+        propagates, LOG.propagate = LOG.propagate, False
+        LOG.addHandler(handler)
+        try:
+            yield
+        finally:
+            LOG.removeHandler(handler)
+            LOG.propagate = propagates
+
+
+class _Handler(logging.Handler):
+    def __init__(self, tell: Callable[[Entry], None]) -> None:
+        super().__init__(logging.WARNING)
+        self._tell_entry = tell
+
+    def emit(self, record: logging.LogRecord) -> None:
+        level = Level.ERROR if record.levelno >= logging.ERROR else Level.WARNING
+        self._tell_entry(Entry("connection-dropped", record.getMessage(), level))

@@ -29,7 +29,7 @@ ALTERNATIVES = list(
 AUTOMATON = Automaton(MISSION.spec, MISSION.spec.drives)
 """What is observed does not depend on who is judged, so all of them walk in one automaton."""
 
-CONVERSATIONS, STEPS = 8, 25
+CONVERSATIONS, STEPS = 4, 25
 
 
 def talk(reference: Reference, world: object, chance: random.Random) -> Conversation:
@@ -51,31 +51,41 @@ def talk(reference: Reference, world: object, chance: random.Random) -> Conversa
     return conversation
 
 
-def explained(choice: dict[str, str], chance: random.Random, conversations: int = CONVERSATIONS) -> None:
-    """A reference that makes a choice is explained, and all that it follows is reported as possible."""
+def explained(choice: dict[str, str], chance: random.Random, conversations: int = CONVERSATIONS) -> int:
+    """A reference that makes a choice is explained, and all that it follows is reported as possible.
+
+    Returns how many conversations were too dear to decide.
+    """
     reference = Reference(MISSION, choice)
     followed = choose(MISSION.spec.ambiguities, choice)
     worlds = MISSION.alphabet({}, BOUNDS).worlds
+    undecided = 0
     for number in range(conversations):
         judge = talk(reference, worlds[number % len(worlds)], chance).judge
-        assert judge.right, str(judge.verdict())
+        undecided += judge.exhausted
+        assert judge.right or judge.exhausted, str(judge.verdict())
         possible = judge.belief.readings
         for one in MISSION.spec.ambiguities:
             (letter,) = one.possible(followed)
             assert letter in possible.get(one.id, (letter,))
+    return undecided
 
 
 @pytest.mark.parametrize(("question", "letter"), ALTERNATIVES, ids=[f"{one}={letter}" for one, letter in ALTERNATIVES])
 def test_the_reference_under_an_alternative_reading_conforms(question: str, letter: str) -> None:
     """A reference that reads one question in another way is explained, and so is what it follows."""
-    explained({question: letter}, random.Random(f"{question}={letter}"))
+    assert explained({question: letter}, random.Random(f"{question}={letter}")) == 0
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None:
-    """A reference that reads every question by chance, and apart in each call and situation, is explained."""
+    """A reference that reads every question by chance, and apart in each call and situation, is explained.
+
+    Such a robot leaves much open, so that one conversation in four may be too dear to decide; none is judged wrong.
+    """
     chance = random.Random(seed)
-    explained({one.id: chance.choice(list(one.readings)) for one in MISSION.spec.ambiguities}, chance)
+    choice = {one.id: chance.choice(list(one.readings)) for one in MISSION.spec.ambiguities}
+    assert explained(choice, chance) <= CONVERSATIONS // 4
 
 
 @pytest.mark.slow
@@ -92,7 +102,7 @@ def test_the_reference_conforms_under_its_own_readings() -> None:
 def test_the_same_seed_gives_the_same_verdict() -> None:
     """Whatever a verdict says, it says again for the same seed; another seed exercises other things."""
     verdicts = [
-        conform(MISSION, Reference(MISSION, {"AM-09": "b"}), examples=3, steps=20, seed=seed) for seed in (5, 5, 6)
+        conform(MISSION, Reference(MISSION, {"AM-09": "b"}), examples=2, steps=15, seed=seed) for seed in (5, 5, 6)
     ]
     assert verdicts[0].to_json() == verdicts[1].to_json()
     assert verdicts[0].exercised != verdicts[2].exercised

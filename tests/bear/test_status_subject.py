@@ -58,10 +58,24 @@ def test_the_subject_conforms(subject: Any) -> None:
     assert (found.verdict().outcome, found.verdict().flagged) == (Outcome.CONFORMS, ())
 
 
+TOLERATED = {"stream-closes-cleanly": "AS-26."}
+"""What is not held against anybody, and the reading that says so."""
+
+
 @needs_node
 @pytest.mark.slow
-@pytest.mark.parametrize("name", breaks())
+@pytest.mark.parametrize("name", [one for one in breaks() if one not in TOLERATED])
 def test_every_break_is_caught(subject: Any, name: str) -> None:
     """Whatever it is told to do wrong is found on random walks."""
     found = walk(subject("--break", name), walks=300, steps=30, drives=DRIVES)
     assert found.verdict().outcome is Outcome.VIOLATES
+
+
+@needs_node
+@pytest.mark.parametrize(("name", "reading"), TOLERATED.items())
+def test_what_is_tolerated_is_flagged(subject: Any, name: str, reading: str) -> None:
+    """A stream that ends by itself is explained on random walks, and the verdicts name what it departs from."""
+    broken = subject("--break", name)
+    found = [walk(broken, walks=1, steps=30, drives=DRIVES, seed=seed).verdict() for seed in range(12)]
+    assert {one.outcome for one in found} == {Outcome.CONFORMS}
+    assert any(line.startswith(reading) for one in found for line in one.flagged)

@@ -11,11 +11,11 @@ from attrs import evolve, frozen
 
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Alphabet, Prompt
-from missionfsm.kernel.history import Answer
+from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.picture import Refs, Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
-from missionfsm.kernel.spec import Delivery, Mismatch, Spec, Step
+from missionfsm.kernel.spec import ONCE_HAD, Delivery, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.draw import diagram as picture
 from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay
@@ -148,6 +148,12 @@ class Walker:
         labels = Labels.of(self.system, sketch.prompts, sketch.drives)
         self.tried = [(what, free, True) for what, free in labels.requests]
         self.tried += [(what, free, False) for what, free in labels.events]
+
+    def named(self, here: Snapshot, ref: int | None) -> Name | None:
+        """The name at a position of the state, or one that the robot had once."""
+        if ref is None:
+            return None
+        return self.random.choice(sorted(here.gone, key=str)) if ref == ONCE_HAD else here.names[ref]
 
     def step(self, here: Snapshot) -> tuple[Snapshot, tuple[str | None, str, str, str | None]]:
         """A step that leads somewhere within the bounds, and the move that it is: source, label, code, target."""

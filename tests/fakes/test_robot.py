@@ -175,7 +175,7 @@ DOCUMENTED: list[tuple[Callable[[], Any], type[ApiError], str, str]] = [
     (
         lambda: Robot().cancel("mission-1"),
         FailedPrecondition,
-        "UpdateMission/FAILED_PRECONDITION/the-robot-has-no-mission",
+        "UpdateMission/FAILED_PRECONDITION/the-robot-never-had-a-mission",
         "Mission › UpdateMission › Errors",
     ),
     (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import field, frozen
@@ -323,20 +323,30 @@ class _Tally:
 
 
 def firings(
-    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = ANYTHING
+    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = ANYTHING, settled: Collection[str] = ()
 ) -> dict[str, tuple[bool, bool]]:
-    """For every refusal: whether some call in some of the states meets it, and whether some call does not."""
-    found = {rule.id: [False, False] for operation in spec.operations.values() for rule in operation.refusals}
+    """For every refusal that is not settled: whether some call in some state meets it, and whether some call does not.
+
+    Args:
+        settled: the ids of refusals of which both are known.
+    """
+    found = {
+        rule.id: [False, False]
+        for operation in spec.operations.values()
+        for rule in operation.refusals
+        if rule.id not in settled
+    }
     for here in states:
-        if all(map(all, found.values())):
-            break  # no state can add anything
         for request, free in labels.requests:
             operation = spec.operations[spec.request_operation(request)]
+            if all(all(found.get(rule.id, ())) for rule in operation.refusals):
+                continue  # no call of it can add anything
             for refs in references(spec, here, free):
                 outcomes = spec.outcomes(here, request, refs)
                 met = {rule for step in outcomes if meet(assumed, step.assumes) for rule in step.rules}
                 for rule in operation.refusals:
-                    found[rule.id][rule.id not in met] = True
+                    if rule.id in found:
+                        found[rule.id][rule.id not in met] = True
     return {rule: (fires, rests) for rule, (fires, rests) in found.items()}
 
 

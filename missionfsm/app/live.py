@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from attrs import evolve
 
@@ -34,6 +34,7 @@ class Live:
         readings: ambiguity id to letter; the others follow their defaults.
         clock: seconds since the epoch of the reference, for timestamps.
         record: takes every line of the history as it happens.
+        undriven: drives that come about in other ways as well, so that the history does not claim them.
         twist, bend: what is broken, if anything; see `missionfsm.tools.reference.subject.Reference`.
 
     Raises:
@@ -49,12 +50,14 @@ class Live:
         *,
         clock: Callable[[], float],
         record: Callable[[JSON], None] = lambda _: None,
+        undriven: Collection[str] = (),
         twist: Twist = straight,
         bend: Callable[[JSON], JSON] = lambda message: message,
     ) -> None:
         self.system = system
         self._lock = threading.RLock()
         self._record = record
+        self._drives = [one for one in system.spec.drives if one not in undriven]
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
         self._history: deque[JSON] = deque(maxlen=MAX_HISTORY_LINES)
@@ -95,8 +98,7 @@ class Live:
             self._subject.exchange("reset", {"world": world})
             self._listeners.clear()
             self._history.clear()
-            drives = list(self.system.spec.drives)
-            self._note({"missionfsm": 1, "system": self.system.name, "world": world, "drives": drives})
+            self._note({"missionfsm": 1, "system": self.system.name, "world": world, "drives": self._drives})
 
     def call(self, method: str, params: JSON, spoilt: Spoilt | None = None) -> Answered:
         """Ask a documented call with one answer; what streams show of it is passed on before this returns.

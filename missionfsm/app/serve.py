@@ -204,9 +204,10 @@ def serve(  # noqa: PLR0913 - each with a default
     from missionfsm.adapters.grpc.faults import Faults  # noqa: PLC0415 - grpc is an extra
     from missionfsm.adapters.grpc.server import Security, Server  # noqa: PLC0415
 
-    live = Live(_served(system), world, readings, clock=_seconds, record=record)
-    security = Security(certificate, key, token)
     wrong = Faults.parse(faults)
+    undriven = ("fault",) if wrong.deadline or wrong.unavailable else ()
+    live = Live(_served(system), world, readings, clock=_seconds, record=record, undriven=undriven)
+    security = Security(certificate, key, token)
     with Server(live, host=host, port=port, faults=wrong, seed=seed, security=security, with_control=control) as server:
         driver = _Driver(live, script, auto, seed)
         driver.start()

@@ -49,6 +49,7 @@ from missionfsm.tools.check.verdict import Verdict
 if TYPE_CHECKING:
     from missionfsm.kernel.subject import Subject
     from missionfsm.tools.explore.explore import Exploration
+    from missionfsm.tools.explore.hazards import Hazards
     from missionfsm.tools.mutate.teeth import Teeth
 
 Readings = Annotated[
@@ -199,7 +200,7 @@ def conform(  # noqa: PLR0913 - options of the command
     troubles.end(DONE if verdict.conforms else FAILED)
 
 
-def _told(found: Verdict | Exploration | Teeth, json: str | None) -> Troubles:
+def _told(found: Verdict | Exploration | Teeth | Hazards, json: str | None) -> Troubles:
     """Tell what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():
@@ -317,6 +318,9 @@ def explore(  # noqa: PLR0913 - options of the command
     forget_ended: Annotated[
         bool, typer.Option("--forget-ended", help="Only count what has ended: far fewer states, the same steps.")
     ] = False,
+    hazards: Annotated[
+        bool, typer.Option("--hazards", help="What a retry can lead to, for every call and failure; nothing else.")
+    ] = False,
     json: JsonFile = None,
     html: HtmlFile = None,
 ) -> None:
@@ -332,6 +336,12 @@ def explore(  # noqa: PLR0913 - options of the command
         stop(str(error), BAD_INPUT)
     refuse_outputs({"--json": json, "--html": html})
     bounds = Bounds(missions, goals=goals, batch=batch)
+    if hazards:
+        from missionfsm.tools.explore.hazards import hazards as retries  # noqa: PLC0415
+
+        if html is not None or forget_ended:
+            stop("--hazards: it goes with no --html and no --forget-ended", BAD_INPUT)
+        _told(retries(explored, bounds, choice(reading)), json).end(DONE)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     troubles = _told(found, json)
     with troubles.kept():

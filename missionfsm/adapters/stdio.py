@@ -190,7 +190,8 @@ class Child:
 
     def _notification(self, message: dict[str, Any]) -> Notification:
         method, params = message.get("method"), message.get("params")
-        wanted = {"message": ("stream", "message"), "closed": ("stream",), "line": ("line",)}.get(str(method))
+        ending = "connection" if isinstance(params, dict) and "connection" in params else "stream"
+        wanted = {"message": ("stream", "message"), "closed": (ending,), "line": ("line",)}.get(str(method))
         if wanted is None or not isinstance(params, dict) or any(key not in params for key in wanted):
             raise self._failed(f"sent something that is no notification of the protocol: {brief(message)}")
         for key in ("stream", "connection"):

@@ -65,7 +65,7 @@ class Received:
 
 @value
 class Ended:
-    """A stream ends by itself, with a status name or, cleanly, with OK."""
+    """A stream ends by itself, with a status name or, cleanly, with OK; the other end closes a connection (OK)."""
 
     channel: Name
     code: str

@@ -141,10 +141,14 @@ class Match:
 
 @frozen
 class Mismatch:
-    """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong."""
+    """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong.
+
+    A `near` one is what is owed but for that, so that it is likelier meant than a message that nothing owes.
+    """
 
     rule: str
     says: str
+    near: bool = False
 
 
 @frozen
@@ -161,6 +165,7 @@ class Delivery:
         named: ids of the rules that are broken by a message that names other things than it is about.
         first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
         unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
+        again: whether a message has to come although the one before it says the same (a line that is sent each time).
     """
 
     skips: Assumption | None = None
@@ -171,6 +176,7 @@ class Delivery:
     named: tuple[str, ...] = ()
     first: tuple[str, ...] = ()
     unending: tuple[str, ...] = ()
+    again: bool = False
 
 
 @frozen
@@ -315,6 +321,8 @@ class Spec:
             seen yet and may be any. It has to be true wherever it is possible: it only saves a search the trouble.
         abstraction: how a search and an exploration look at its states.
         waived: what its documents say and no rule checks.
+        closing: (state, topic) to the ways in which the system may at any time close the channel of that topic,
+            and an end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
         restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
@@ -336,6 +344,7 @@ class Spec:
     failing: Callable[[Any, str], Failure | None] = lambda _, __: None
     looks: Callable[[View, Any], Hashable] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
+    closing: Callable[[State, Hashable], tuple[Step, ...]] | None = None
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr
     rules: tuple[Rule, ...] = ()

@@ -40,7 +40,7 @@ _KEYS: Mapping[str, frozenset[str]] = {
         ("call", "method", "params"),
         ("return", "result", "error"),
         STREAM_KEYS,
-        ("connection", "line"),
+        ("connection", "line", "closed"),
         ("drive",),
         ("settled",),
     )
@@ -295,8 +295,12 @@ class Transcript:
 
     def _connection(self, line: dict[str, Any]) -> tuple[Event, ...]:
         connection = ("connection", self._number(line, "connection"))
-        if "line" not in line:
-            raise _wrong(f"connection {connection[1]}: expected a line")
+        if ("line" in line) == ("closed" in line):
+            raise _wrong(f"connection {connection[1]}: expected either a line or closed")
+        if "closed" in line:
+            if line["closed"] is not True:
+                raise _wrong(f"closed: {brief(line['closed'])} is not true")
+            return (Ended(connection, OK),)
         return self._received(connection, line["line"])
 
     def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:

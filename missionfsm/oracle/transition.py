@@ -299,7 +299,7 @@ class Oracle:
     def _unchanged(self, channel: Channel, owed: Owed, assumed: int) -> tuple[int, ...]:
         """What is assumed where an owed message shows what the channel showed last, so that nobody could tell it."""
         last = channel.last
-        if last is None:
+        if last is None or self.spec.delivery(channel.topic).again:
             return ()
         if (owed.view, owed.names) == (last.view, last.names):
             return (assumed,)
@@ -368,6 +368,8 @@ class Oracle:
         unknown: list[Explanation] = []
         for explanation in explanations:
             (known if name in _channel_names(explanation) else unknown).append(explanation)
+        if self.spec.closing is not None:
+            yield from self._closed((*known, *unknown), name)
         for sighting in (*map(Sighting, known), *self.moves.closure(unknown)):
             here = sighting.explanation
             names = dict.fromkeys(channel.name for channel in here.channels)
@@ -381,6 +383,19 @@ class Oracle:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
                     ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
                     yield Sighting(tidy(ended), sighting.rules)
+
+    def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
+        """The explanations in which a step has closed the channel of that name, or closes it now."""
+        assert self.spec.closing is not None  # noqa: S101 - the caller has looked
+        for sighting in self.moves.closure(explanations):
+            here = sighting.explanation
+            if name in here.gone:
+                yield sighting
+            for channel in here.channels:
+                for step in self.spec.closing(here.state, channel.topic) if channel.name == name else ():
+                    taken = self.moves.advance(here, step)
+                    if taken:
+                        yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
 
     def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
         for explanation in explanations:

@@ -79,6 +79,10 @@ class History:
         line = encode(Message(Header("mission_status"), payload)).decode().strip()
         return self.drive("line", connection=connection, line=line)
 
+    def closes(self, connection: int) -> History:
+        self.lines.append({"connection": connection, "closed": True})
+        return self
+
     def waits(self, seconds: float) -> History:
         return self.drive("advance", seconds=seconds)
 
@@ -242,7 +246,7 @@ def test_profiles_are_told_apart(shipped: dict[str, Verdict]) -> None:
     told = {name: readings(verdict, *names) for name, verdict in shipped.items()}
     assert told == {"documented": ("a", "a", "a", "a", "s", "a"), "as-shipped": ("b", "b", "b", "i", "n", "b")}
     assert shipped["documented"].flagged == ()
-    assert [one.partition(":")[0] for one in shipped["as-shipped"].flagged] == [
+    assert [one.split()[0] for one in shipped["as-shipped"].flagged] == [
         "AI-14.status=b",
         "AI-22.started=i",
         "AI-25.header=n",
@@ -355,3 +359,15 @@ def test_every_broken_promise_is_noticed(topic: str) -> None:
     found = teeth(SERVER, only=f"isaac.server/{topic}/")
     assert len(found.bites) > 1
     assert (found.missed, found.allowed, found.untested) == ((), (), ())
+
+
+def test_a_connection_that_the_server_ends() -> None:
+    """It may end one that says no name, or sends rubbish, under readings that say so, and no other."""
+    nameless = History().drive("connect", connection=1).waits(30).closes(1).settles.judged()
+    assert (nameless.conforms, nameless.readings["AI-18.unnamed"]) == (True, ("d",))
+    rubbish = History().robot(1).drive("line", connection=1, line="rubbish").closes(1).settles.judged()
+    assert (rubbish.conforms, rubbish.readings["AI-26"]) == (True, ("f",))
+    served = History().robot(1).waits(30).closes(1).judged()
+    assert served.violation is not None
+    assert [one.id for one in served.violation.rules] == ["isaac.server/connection/what-means-nothing-has-no-effect"]
+    assert not History().drive("connect", connection=1).closes(2).judged().conforms

@@ -147,7 +147,10 @@ def strip(line: JSON) -> tuple[Part, ...]:
 def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
     """The line that shows a report, or the name."""
     time = round(at * 1e9)
-    own = Uuid.of(new_uuid(number)[1])  # type: ignore[index]
+    # An event may cause several messages, each with an identifier of its own: those differ in what they say or of what.
+    says = 0 if isinstance(view, Introduction) else 1 + [one.value for one in WireStatus].index(view.status)
+    about = names[0][1] << 40 if names else 0  # type: ignore[index]
+    own = Uuid.of(new_uuid(4 * number + says + about)[1])  # type: ignore[index]
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     if isinstance(view, Introduction):
         named = Message(Header(view.channel, time, time, own), TextProto(view.name or ANY_NAME))

@@ -54,7 +54,9 @@ def _reports(
     if content.kind != "status":
         return Mismatch(rule.id, f"{view.status} is due, not a {content.kind} message")
     if content.channel != view.channel:
-        return Mismatch(rules.CHANNEL.id, f"the status came on channel {content.channel!r}, not {view.channel!r}")
+        near = content.what == view.status
+        says = f"the status came on channel {content.channel!r}, not {view.channel!r}"
+        return Mismatch(rules.CHANNEL.id, says, near=near)
     if content.what != view.status:
         return Mismatch(rule.id, f"{view.status.upper()} is due, not {content.what.upper()}")
     assumes = (AI_28_STATUS[_FORMS[content.form]], *assumes)
@@ -70,8 +72,10 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
     return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
+_NAMES = Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,), again=True)
+_STATUSES = Delivery(unowed=(rules.RUNNING.id,), unending=(rules.ENVELOPE.id,), again=True)
+
+
 def delivery(topic: Hashable) -> Delivery:
-    """What is broken by a line that nothing owes, or by one that does not come."""
-    if topic == "names":
-        return Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,))
-    return Delivery(unowed=(rules.RUNNING.id,), unending=(rules.ENVELOPE.id,))
+    """What is broken by a line that nothing owes, or by one that does not come: RUNNING and the name come again."""
+    return _NAMES if topic == "names" else _STATUSES

@@ -158,6 +158,12 @@ AI_18_EARLY = Ambiguity(
     {"a": "it is ignored", "b": "it is kept until the name is known"},
     default="a",
 )
+AI_18_UNNAMED = Ambiguity(
+    "AI-18.unnamed",
+    "What becomes of a connection that says no name?",
+    {"c": "it is kept", "d": "it is closed after a time"},
+    default="c",
+)
 AI_19 = Ambiguity(
     "AI-19",
     "What becomes of a mission without a robot?",
@@ -266,6 +272,7 @@ AMBIGUITIES = (
     AI_16_BACK,
     AI_17,
     AI_18_EARLY,
+    AI_18_UNNAMED,
     AI_19,
     AI_20_KEYS,
     AI_20_NULL,
@@ -289,7 +296,6 @@ WAIVED: Mapping[str, str] = {
     "AI-08 b": "no stop message is documented, so none could be told from a mistake",
     "AI-14 a, b": "several channels of one robot are the question of AI-11 c",
     "AI-16 c": "both connections getting the mission is a violation",
-    "AI-18 c, d": "nothing is owed to a connection without a name, so closing it cannot be seen",
     "AI-20 b": "mission files are not the server's; a submission is refused for all that is not asked apart",
     "AI-21": "a handle exists once that mission was submitted: no upstream is further down, none makes a cycle",
     "AI-22 a to h": "it makes and submits in one; an ended upstream counts at once (g); h is a violation",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -17,11 +17,12 @@ from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split
 from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Heard, Passes, Statuses, Submission
-from missionfsm.isaac.server.lifecycle import started, urgent, zero_means
+from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
 from missionfsm.isaac.server.readings import (
     AI_02,
     AI_04,
     AI_05,
+    AI_18_UNNAMED,
     AI_19,
     AI_22_STARTED,
     AI_25_HEADER,
@@ -212,6 +213,19 @@ def _quiet(before: Server, move: Move) -> Move:
     return move.to(move.state, rules.SILENCE.id) if goes_on else move
 
 
+def _closing(server: Server, at: Hashable) -> tuple[Step, ...]:
+    """A connection that said no name is closed, whenever that is (AI-18.unnamed)."""
+    link = next((one for one in server.links if topic(one.slot) == at), None)
+    if link is None or link.name is not None:
+        return ()
+    _, tired = split(Move(server), AI_18_UNNAMED, "c")
+    return (
+        ()
+        if tired is None
+        else tuple(_step(server, move.to(move.state, rules.UNNAMED.id)) for move in closed(tired, link))
+    )
+
+
 def _urgent(server: Server) -> tuple[Step, ...]:
     # Decisions alone are kept apart: one that was undone would be due again.
     return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server))))
@@ -280,9 +294,10 @@ def _matches(view: Sends, content: Said | Garbled) -> tuple[Match, ...] | Mismat
     if wrong:
         return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number")
     if content.channel != view.channel:
-        return Mismatch(rules.CHANNEL.id, f"the mission came on channel {content.channel!r}, not {view.channel!r}")
+        says = f"the mission came on channel {content.channel!r}, not {view.channel!r}"
+        return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)
     if content.what != view.config:
-        return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}")
+        return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}", near=True)
     assumes = (AI_28_CONFIG["b" if content.form == "text" else "a"], AI_25_HEADER["n" if content.bare else "s"])
     told = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
     return (Match(assumes, ((0, 0),) if content.named else (), told),)
@@ -330,7 +345,7 @@ POSSIBILITIES = tuple(
 )
 
 
-_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,))
+_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=True)
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 
@@ -355,6 +370,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         spontaneous=_spontaneous,
         matches=_matches,
         delivery=lambda _: _DELIVERY,
+        closing=_closing,
         unopened=(rules.UNNAMED.id,),
         sequence=lambda _: (),
         names=lambda server: 2 * len(server.missions) + len(server.links),

@@ -267,7 +267,7 @@ class Nearest:
         ways = self.moves.matches(owed, message.content)
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
-            least = SHAPE if isinstance(message.content, Garbled) else VALUE
+            least = SHAPE if ways.near or isinstance(message.content, Garbled) else VALUE
             return [Problem(ways.says, (ways.rule,), least + further)]
         found: list[list[Problem]] = []
         for way in ways:

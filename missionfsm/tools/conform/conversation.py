@@ -201,7 +201,7 @@ class Conversation:
         for one in notifications:
             if one.method in ("message", "closed"):
                 said = {**one.params, "closed": True} if one.method == "closed" else one.params
-                self._hear({key: said[key] for key in STREAM_KEYS if key in said})
+                self._hear({key: said[key] for key in (*STREAM_KEYS, "connection") if key in said})
             elif one.method == "history":
                 self._hear(one.params)
                 self._asked = one.params.get("method", self._asked)

@@ -11,18 +11,24 @@ import contextlib
 import multiprocessing
 import queue
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import orjson
 from attrs import frozen
 
 from missionfsm.kernel.codec import JSON
 
+if TYPE_CHECKING:
+    from missionfsm.tools.check.verdict import Verdict
+
 MAX_WAITING_LINES = 1_000_000
 """Lines that may wait to be written or judged; what comes beyond them is counted and left out."""
+PAGE_SECONDS = 2
+"""How often the page is written and refreshed."""
 _END = None
 
 Tell = Callable[[str], None]
@@ -45,19 +51,21 @@ class Recorder:
         file: where the lines are written; "" for nowhere.
         judge: whether they are judged.
         readings: the readings to assume.
+        html: a page that says how it stands, written anew every few seconds; "" for none. Needs `judge`.
         tell: takes a line for people, from another thread.
 
     Raises:
         OSError: the file cannot be written.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all but the first have a default
         self,
         head: dict[str, JSON],
         *,
         file: str = "",
         judge: bool = True,
         readings: dict[str, str] | None = None,
+        html: str = "",
         tell: Tell,
     ) -> None:
         self._lines: queue.SimpleQueue[JSON] = queue.SimpleQueue()
@@ -69,16 +77,16 @@ class Recorder:
         self._process: Any = None
         self.judged: Judged | None = None
         if judge:
-            self._begin_judging(head, readings or {})
+            self._begin_judging(head, readings or {}, html)
         self._thread = threading.Thread(target=self._run, name="missionfsm-recorder", daemon=True)
         self._thread.start()
         self.record(head)
 
-    def _begin_judging(self, head: dict[str, JSON], readings: dict[str, str]) -> None:
+    def _begin_judging(self, head: dict[str, JSON], readings: dict[str, str], html: str) -> None:
         context = multiprocessing.get_context("spawn")
         receive, self._to_judge = context.Pipe(duplex=False)
         self._from_judge, send = context.Pipe(duplex=False)
-        self._process = context.Process(target=_judge, args=(head, readings, receive, send), daemon=True)
+        self._process = context.Process(target=_judge, args=(head, readings, html, receive, send), daemon=True)
         self._process.start()
         receive.close()
         send.close()
@@ -157,18 +165,21 @@ class Recorder:
         return self.judged
 
 
-def _judge(head: dict[str, JSON], readings: dict[str, str], lines: Connection, say: Connection) -> None:
+def _judge(head: dict[str, JSON], readings: dict[str, str], html: str, lines: Connection, say: Connection) -> None:
     """The judge's process: reads lines until their end; says what breaks at once, and the verdict at the end."""
-    import signal  # noqa: PLC0415 - only this process needs it
+    import os  # noqa: PLC0415 - only this process needs it
+    import signal  # noqa: PLC0415 - as above
 
-    from missionfsm.app.asked import judged_system  # noqa: PLC0415
     from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
     from missionfsm.oracle.transcript import head as read_head  # noqa: PLC0415
+    from missionfsm.systems import system  # noqa: PLC0415
     from missionfsm.tools.check.judge import Judge  # noqa: PLC0415
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's Ctrl-C is for the proxy, which ends this by its pipe
-    first = read_head(head)
-    judge = Judge(judged_system(first.system, strict=first.strict), first, readings=readings)
+    if hasattr(os, "nice"):
+        os.nice(10)  # traffic comes first
+    judge = Judge(system(head["system"]), read_head(head), readings=readings)
+    page = _Page(html, lambda text: say.send(Judged(text, conforms=True)))
     wrong = False
     with contextlib.suppress(EOFError):
         while True:
@@ -182,7 +193,55 @@ def _judge(head: dict[str, JSON], readings: dict[str, str], lines: Connection, s
                     say.send(Judged(f"what was recorded cannot be judged any further: {error}", conforms=False))
                     wrong = True
                 if wrong and judge.violation is not None:
-                    say.send(Judged(str(judge.verdict()), conforms=False))
+                    verdict = judge.verdict()
+                    page.told(verdict, over=False)
+                    say.send(Judged(str(verdict), conforms=False))
+            if not wrong:
+                page.so_far(head["system"], judge.read)
     verdict = judge.verdict()
+    page.told(verdict, over=True)
     say.send(Judged(str(verdict), verdict.conforms, verdict.to_json()))
     say.close()
+
+
+class _Page:
+    """The page of a judge that goes on: it refreshes itself until traffic ends.
+
+    Args:
+        path: where it is; "" for nowhere.
+        tell: takes a line for people: the page cannot be written, and is not any more.
+    """
+
+    def __init__(self, path: str, tell: Tell) -> None:
+        self._path = path
+        self._tell = tell
+        self._written = 0.0
+
+    def so_far(self, name: str, lines: int) -> None:
+        """Nothing is wrong yet."""
+        now = time.monotonic()
+        if self._path and now - self._written >= PAGE_SECONDS:
+            self._written = now
+            says = f"{name}: nothing is wrong so far, {lines:,} lines"
+            page = f"<!doctype html><html><head><title>{says}</title></head><body><p>{says}</p></body></html>"
+            self._write(page, over=False)
+
+    def told(self, verdict: Verdict, *, over: bool) -> None:
+        """There is a verdict; it is final once traffic is over."""
+        if self._path:
+            from missionfsm.pages.report import Judged as On  # noqa: PLC0415 - pages are for who wants them
+            from missionfsm.pages.report import report  # noqa: PLC0415
+            from missionfsm.systems import system  # noqa: PLC0415
+
+            self._write(report([On(verdict, "", "")], system), over=over)
+
+    def _write(self, page: str, *, over: bool) -> None:
+        if not over:
+            page = page.replace("<head>", f'<head><meta http-equiv="refresh" content="{PAGE_SECONDS}">', 1)
+        beside = Path(f"{self._path}.new")
+        try:  # a reader sees the old page or the new one, never half of it
+            beside.write_text(page, encoding="utf-8")
+            beside.replace(self._path)
+        except OSError as error:
+            self._tell(f"{self._path}: {error.strerror or error}; the page is not written any more")
+            self._path = ""

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from attrs import evolve
 
-from missionfsm.cli.common import BAD_INPUT, stop
+from missionfsm.cli.common import BAD_INPUT, complain, stop
 from missionfsm.kernel.alphabet import Alphabet, Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import Subject
@@ -97,7 +97,7 @@ def over_grpc(  # noqa: PLR0913 - options of the command
     if not colon or not host or not port.isdecimal() or not 0 < int(port) <= 65535:
         stop(f"--grpc {address}: expected HOST:PORT, such as localhost:50051", BAD_INPUT)
     target = Target(address, read_token(token), certificate=tls or "", timeout=timeout, settle=settle or SETTLE_SECONDS)
-    subject = GrpcSubject(system, target, read_world(world), force=force)
+    subject = GrpcSubject(system, target, read_world(world), force=force, tell=complain)
     if settle is None and subject.driven:
         subject.settle_within(DRIVEN_SETTLE_SECONDS)
     return subject

@@ -4,6 +4,7 @@ Plain functions for typer; what takes long to import, and what the extra ``grpc`
 """
 
 import contextlib
+import enum
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -30,6 +31,14 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.adapters.grpc.proxy import Proxy
+
+
+class Begins(enum.StrEnum):
+    """Where a recording begins."""
+
+    FRESH = "fresh"
+    ANYWHERE = "anywhere"
+
 
 SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="bear.mission or bear.status.")]
 
@@ -148,9 +157,15 @@ def proxy(  # noqa: PLR0913 - options of the command
     tls: Annotated[
         str, typer.Option(metavar="FILE", help="The robot has TLS: its authority in PEM, or system for the machine's.")
     ] = "",
+    begins: Annotated[
+        Begins, typer.Option(help="Whether the robot has done nothing yet, or is in use already.")
+    ] = Begins.FRESH,
     json: JsonFile = None,
+    html: Annotated[
+        str | None, typer.Option(metavar="FILE", help="A page that says how it stands; it refreshes itself.")
+    ] = None,
 ) -> None:
-    """Stand between clients and a robot that has done nothing yet: pass everything on, record it, say what breaks.
+    """Stand between clients and a robot: pass everything on, record it, say what breaks as soon as it does.
 
     Traffic is never held up by a verdict, a full disk or a slow terminal. Exit status when interrupted: 0 if what was
     seen conforms, 1 if not.
@@ -167,10 +182,12 @@ def proxy(  # noqa: PLR0913 - options of the command
 
     if system not in SERVICES:
         stop(f"{system}: there is a proxy for {' and '.join(SERVICES)}", BAD_INPUT)
-    refuse_outputs({"--record": record, "--json": json}, (world,))
+    refuse_outputs({"--record": record, "--json": json, "--html": html}, (world,))
     head: dict[str, JSON] = {"missionfsm": 1, "system": system, "world": read_world(world), "drives": []}
+    if begins is Begins.ANYWHERE:
+        head["begins"] = begins.value
     with _bad_input():
-        recorder = Recorder(head, file=record or "", readings=choice(reading), tell=complain)
+        recorder = Recorder(head, file=record or "", readings=choice(reading), html=html or "", tell=complain)
         relay = Proxy(system, Target(grpc, certificate=tls), recorder.record)
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(_relayed(relay, host, listen, f"to {grpc}; Ctrl-C ends it"))

@@ -262,3 +262,50 @@ def test_a_full_disk_ends_the_file_and_nothing_else() -> None:
     assert told == ["/dev/full: No space left on device; nothing more is recorded, traffic goes on"]
     assert judged is not None
     assert judged.conforms
+
+
+def test_a_page_says_how_it_stands(tmp_path: Path) -> None:
+    """While traffic goes on the page refreshes itself, at once with what broke; at the end it is the report."""
+    page = tmp_path / "day.html"
+    recorder, _ = record(GOOD, html=str(page))
+    assert eventually(page.exists)
+    assert 'http-equiv="refresh"' in page.read_text()
+    assert "nothing is wrong so far" in page.read_text()
+    for line in BAD:
+        recorder.record(line)
+    assert eventually(lambda: "another-mission-is-active-or-queued" in page.read_text())
+    assert 'http-equiv="refresh"' in page.read_text()
+    recorder.close()
+    assert 'http-equiv="refresh"' not in page.read_text()
+
+
+def test_a_page_that_cannot_be_written_is_told_once(tmp_path: Path) -> None:
+    """A page in no folder is said in one line, and judging goes on."""
+    recorder, told = record(GOOD, html=str(tmp_path / "none" / "day.html"))
+    judged = recorder.close()
+    assert told == [f"{tmp_path}/none/day.html: No such file or directory; the page is not written any more"]
+    assert judged is not None
+    assert judged.conforms
+
+
+def test_a_robot_that_is_killed_and_comes_back_is_served_again(lines: list[JSON]) -> None:
+    """Calls in between are UNAVAILABLE and streams end with it; the proxy lives on and finds the new robot."""
+    with serve("bear.mission") as robot:
+        relay, port = Relay(robot.target, lines.append), robot.port
+        method = METHODS["SubscribeMissionStatus"]
+        stream = relay.channel.unary_stream(path(method))(b"")
+        next(stream)
+    with pytest.raises(grpc.RpcError) as ended:
+        next(stream)
+    assert ended.value.code() in (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.CANCELLED)
+    with serve("bear.mission", port=port):
+        assert eventually(lambda: _answers(relay))
+    assert [line for line in lines if line.get("closed")] != []
+    relay.close()
+
+
+def _answers(relay: Relay) -> bool:
+    try:
+        return bool(relay.call("ChargeRobot")["missionId"])
+    except grpc.RpcError as error:
+        return error.code() is grpc.StatusCode.FAILED_PRECONDITION

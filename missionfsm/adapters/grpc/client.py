@@ -80,6 +80,7 @@ class GrpcSubject:
         target: where it is.
         world: its world, as JSON, where the control service cannot change it.
         force: whether a reset may end and clear missions that this tester did not create.
+        tell: takes a line for people: the server sent a field that the table does not know; once for each.
         clock, sleep: seconds that pass, and how to wait.
 
     Raises:
@@ -93,6 +94,7 @@ class GrpcSubject:
         world: JSON = None,
         *,
         force: bool = False,
+        tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -100,6 +102,7 @@ class GrpcSubject:
         self.target = target
         self.world = world or {}
         self._force = force
+        self._tell = tell
         self._clock, self._sleep = clock, sleep
         self._methods = methods(system)
         try:
@@ -198,6 +201,8 @@ class GrpcSubject:
             return {"malformed": str(error)}
         for place in unknown(method.response, data):
             name = f"{method.name}: field {place}"
+            if name not in self.unknown:
+                self._tell(f"{name} is not of the published definitions; it is passed over")
             self.unknown[name] = self.unknown.get(name, 0) + 1
         return found
 

@@ -118,7 +118,8 @@ public final class Adapter {
 
     static boolean isGoal(JsonObject goal) {
         if (goal.has("pose")) {
-            return inside(goal, "pose").entrySet().stream().allMatch(one -> Double.isFinite(one.getValue().getAsDouble()));
+            var numbers = inside(goal, "pose").asMap().values().stream();
+            return numbers.allMatch(one -> Double.isFinite(one.getAsDouble()));
         }
         return goal.has("destinationId") && DESTINATIONS.contains(goal.get("destinationId").getAsString());
     }

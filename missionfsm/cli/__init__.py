@@ -26,6 +26,7 @@ for _command in (
     judging.teeth,
     listing.rules,
     listing.readings,
+    listing.schema,
     diagram.diagram,
     judging.adapter,
     isaac.dispatch,

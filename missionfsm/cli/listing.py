@@ -1,7 +1,8 @@
-"""The commands that list: rules and readings."""
+"""The commands that list: rules, readings, the schemas of the two formats."""
 
 from __future__ import annotations
 
+import enum
 from typing import Annotated
 
 import typer
@@ -57,3 +58,20 @@ def readings(system: Which = None, json: AsJson = False) -> None:
                 say("\n".join(lines))
     if json:
         write_json("-", found)
+
+
+class Format(enum.Enum):
+    """What there are schemas of."""
+
+    ADAPTER = "adapter"
+    HISTORY = "history"
+
+
+def schema(
+    which: Annotated[Format, typer.Argument(metavar="adapter|history", help="The protocol or the format.")],
+    system: Annotated[str | None, typer.Option(metavar="SYSTEM", help="Whose lines; any system's if left out.")] = None,
+) -> None:
+    """Write the JSON Schema of a line of the adapter protocol or of the history format."""
+    from missionfsm.tools.schema import schema as made  # noqa: PLC0415 - commands load what they need
+
+    write_json("-", made(which.value, the_system(system) if system is not None else None))

@@ -11,6 +11,7 @@ from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.picture import Plan, Sketch
 from missionfsm.kernel.rules import Rule
+from missionfsm.kernel.shapes import Shapes
 from missionfsm.kernel.spec import Spec, Step
 
 
@@ -51,6 +52,7 @@ class System:
         bends, twists: how an implementation may break its promises, besides the ways that fit any system.
         reaching: id or name of a rule to the readings under which its condition can come about at all.
         sketches, plans: what of it is drawn besides its charts.
+        shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
     """
 
     name: str
@@ -63,3 +65,4 @@ class System:
     reaching: Mapping[str, Mapping[str, str]] = field(factory=dict)
     sketches: tuple[Sketch, ...] = ()
     plans: tuple[Plan, ...] = ()
+    shapes: Callable[[], Shapes] = Shapes

@@ -139,6 +139,10 @@ _READERS: Mapping[str, tuple[Callable[[str, JSON], Request], type]] = {
 }
 
 
+REQUESTS: Mapping[str, type] = {method: kind for method, (_, kind) in _READERS.items()}
+"""The message that a call takes."""
+
+
 def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     """The mission id of an UpdateMission and the params with a dash in its place; other requests have none."""
     if method != "UpdateMission" or not isinstance(params, dict):
@@ -194,7 +198,7 @@ def _write_wanted(wanted: Wanted, kinds: Mapping[tuple[str, str], Kind]) -> JSON
 
 # Answers.
 
-_IDS = {
+RESULTS: Mapping[str, type] = {
     "CreateMission": wire.MissionId,
     "AppendMission": wire.MissionId,
     "ChargeRobot": wire.MissionId,
@@ -204,6 +208,8 @@ _IDS = {
     "CreateMissionWorkflow": wire.MissionIds,
     "ClearMissionStatus": wire.MissionIds,
 }
+"""The message that a call answers with; the others answer with an empty one, or with a stream."""
+
 _NAMED, _LISTED = Answer(OK), Answer(OK, unordered=True)
 _WITH_MORE = Answer(OK, MORE), Answer(OK, MORE, unordered=True)
 
@@ -216,7 +222,7 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             message = f"{method} answered {brief(result)}, which carries no stream number"
             raise UnreadableError(message)
         return Answer(OK), (("stream", stream),)
-    kind = _IDS.get(method)
+    kind = RESULTS.get(method)
     if kind is wire.MissionId and isinstance(result, dict) and len(result) == 1:
         name = result.get("missionId")
         if isinstance(name, str) and name:
@@ -242,7 +248,7 @@ def write_answer(method: str, _: Answer, names: tuple[Name, ...]) -> JSON:
     """The result of a call that succeeded."""
     if method in STREAMS:
         return {"stream": names[0][1]}  # type: ignore[index]
-    kind = _IDS.get(method)
+    kind = RESULTS.get(method)
     if kind is wire.MissionIds:
         return {"missionIds": list(names)}
     return {"missionId": names[0]} if kind is wire.MissionId else {}
@@ -495,4 +501,4 @@ CODEC = Codec(
     skim=skim,
     robot_in_params=True,
 )
-__all__ = ["CODEC"]
+__all__ = ["CODEC", "REQUESTS", "RESULTS", "STREAMS"]

@@ -9,6 +9,7 @@ from missionfsm.bear.mission.mutations import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission.pictures import SKETCHES
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
 from missionfsm.bear.mission.scripts import SCRIPTS
+from missionfsm.bear.mission.shapes import shapes
 from missionfsm.bear.mission.spec import SPEC
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Naming, Prompt
 from missionfsm.kernel.codec import JSON
@@ -235,5 +236,14 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
 
 NAMING = Naming(given=lambda serial: f"mission-{serial}")
 SYSTEM = System(
-    SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, reaching=REACHING, sketches=SKETCHES
+    SPEC.system,
+    SPEC,
+    CODEC,
+    alphabet,
+    NAMING,
+    bends=BENDS,
+    twists=TWISTS,
+    reaching=REACHING,
+    sketches=SKETCHES,
+    shapes=shapes,
 )

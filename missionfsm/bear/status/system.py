@@ -6,10 +6,11 @@ from missionfsm.bear.status.alphabet import alphabet
 from missionfsm.bear.status.codec import CODEC
 from missionfsm.bear.status.mutations import BENDS, TWISTS
 from missionfsm.bear.status.pictures import SKETCHES
+from missionfsm.bear.status.shapes import shapes
 from missionfsm.bear.status.spec import SPEC
 from missionfsm.bear.status.state import SYSTEM as NAME
 from missionfsm.kernel.system import System
 
-SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, sketches=SKETCHES)
+SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, sketches=SKETCHES, shapes=shapes)
 
 __all__ = ["SYSTEM"]

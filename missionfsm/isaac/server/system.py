@@ -9,6 +9,7 @@ from missionfsm.isaac.server.mutations import BENDS, TWISTS
 from missionfsm.isaac.server.pictures import SKETCHES
 from missionfsm.isaac.server.plans import PLANS
 from missionfsm.isaac.server.scripts import SCRIPTS
+from missionfsm.isaac.server.shapes import shapes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
@@ -162,4 +163,15 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, sketches=SKETCHES, plans=PLANS)
+SYSTEM = System(
+    SPEC.system,
+    SPEC,
+    CODEC,
+    alphabet,
+    NAMING,
+    bends=BENDS,
+    twists=TWISTS,
+    sketches=SKETCHES,
+    plans=PLANS,
+    shapes=shapes,
+)

@@ -1,0 +1,62 @@
+"""JSON Schemas of what the lines of `bear.status` carry."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from missionfsm.bear.status import messages as wire
+from missionfsm.bear.status.codec import STREAMS
+from missionfsm.bear.status.state import GET, MAPS, PARTS, Endpoint
+from missionfsm.bear.wire.protojson import camel
+from missionfsm.bear.wire.schema import reference
+from missionfsm.kernel.rules import INTERNAL
+from missionfsm.kernel.shapes import BOOLEAN, TEXT, Shapes, record
+
+_SINGLES = (wire.BatteryMessage, wire.NavigationMessage, wire.RobotMessage)
+_ENTRIES = {
+    Endpoint.ERRORS: wire.ErrorCodesEntry,
+    Endpoint.NETWORK: wire.NetworkEntry,
+    Endpoint.ONLINE: wire.OnlineEntry,
+}
+
+
+def _drive(event: str, **fields: Any) -> dict[str, Any]:  # noqa: ANN401 - schemas
+    return record({"event": {"const": event}, **fields}, ("event", *(name for name in fields if name != "value")))
+
+
+def shapes() -> Shapes:
+    """The schemas of its world, drives, requests, answers and messages."""
+    found: dict[str, Any] = {}
+    robot = {
+        "robotId": TEXT,
+        "locationId": TEXT,
+        "owned": BOOLEAN,
+        "state": {"anyOf": [reference(wire.RobotState, found), {"type": "null"}]},
+        "wifi": {"anyOf": [reference(wire.Wifi, found), {"type": "null"}]},
+    }
+    location = record({"locationId": TEXT, "owned": BOOLEAN}, ("locationId",))
+    maps = (
+        record({name: {"type": "object", "additionalProperties": reference(_ENTRIES[endpoint], found)}}, more=True)
+        for endpoint, name in MAPS.items()
+    )
+    return Shapes(
+        world=record(
+            {
+                "robots": {"type": "array", "items": record(robot, ("robotId", "locationId"))},
+                "locations": {"type": "array", "items": location},
+            }
+        ),
+        drives={
+            "report": _drive("report", robotId=TEXT, part={"enum": [camel(one) for one in PARTS]}, value={}),
+            "restart": _drive("restart", robotId=TEXT),
+            "move": _drive("move", robotId=TEXT, locationId=TEXT),
+            "fault": _drive("fault", status={"const": INTERNAL}),
+        },
+        requests={
+            GET: reference(wire.StatusRequest, found),
+            **{method: reference(wire.SubscribeRequest, found) for method in STREAMS},
+        },
+        results={GET: reference(wire.StatusResponse, found)},
+        messages=(*(reference(kind, found) for kind in _SINGLES), *maps),
+        definitions=found,
+    )

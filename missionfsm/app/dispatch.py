@@ -6,18 +6,21 @@ import asyncio
 import contextlib
 import logging
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import attrs
 
+from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
 from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
 from missionfsm.app.ending import told_to_end
+from missionfsm.isaac.runtime.graph import topological_order
 from missionfsm.isaac.runtime.log import Entry, Level, Narrator
 from missionfsm.isaac.runtime.missionfile import MissionFile
-from missionfsm.isaac.runtime.missions import INCOMPLETE, Effect, Status, StatusChanged
+from missionfsm.isaac.runtime.missions import INCOMPLETE, Effect, Snapshot, Status, StatusChanged
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.wire.framing import MAX_LINE
+from missionfsm.isaac.wire.messages import Uuid
 
 _LOOPBACK = ("127.", "localhost:", "[::1]:")
 
@@ -31,6 +34,12 @@ class Settings:
     name_channel: str = "name"
     profile: Profile = DOCUMENTED
     line_limit: int = MAX_LINE
+    journal: str | None = None
+    resume: str = "fail"
+
+
+class JournalMismatchError(Exception):
+    """A journal holds other missions than the file, in words for people."""
 
 
 class Dispatch:
@@ -67,33 +76,70 @@ class Dispatch:
         `tell` gets an entry for all that happens, on the event loop; it must not wait.
         """
         self._tell = tell
+        journal = None if self._settings.journal is None else Journal(self._settings.journal)
+        try:
+            await self._serve(journal)
+        finally:
+            if journal is not None:
+                journal.close()
+
+    async def _serve(self, journal: Journal | None) -> None:
         settings = self._settings
+        kept = () if journal is None else journal.missions()
+        uuids = self._kept(kept) if kept else tuple(fresh_uuid() for _ in self.statuses)
+        self.narrator.name(uuids)
+        for mission in kept:
+            self._stands(mission)
         server = TcpMissionServer(
             host=settings.host,
             port=settings.port,
             name_channel=settings.name_channel,
             profile=settings.profile,
             line_limit=settings.line_limit,
+            journal=journal,
+            resume=settings.resume,
             observer=self._observe,
         )
         self.narrator.peer = server.peer
-        uuids = tuple(fresh_uuid() for _ in self.statuses)
-        self.narrator.name(uuids)
         await server.start()
         try:
             with told_to_end(self._end), self._warnings():
                 self._say_where(server)
-                refused = server.submit_file(self.file, uuids)
+                refused = None if kept else server.submit_file(self.file, uuids)
                 if refused is not None:  # the file was read with this profile, so this does not happen
                     raise RuntimeError(str(refused))
+                server.failed.add_done_callback(lambda _: self._done.set())
                 if self._unfinished:
                     await self._done.wait()
+                if server.failed.done():
+                    raise server.failed.result()
         finally:
             await server.close()
         failed = len(self.statuses) - self.succeeded
         if self.ended_by is None:
             fields = {"succeeded": self.succeeded, "failed": failed}
             self._tell(Entry("summary", f"{self.succeeded} succeeded, {failed} did not", Level.INFO, fields))
+
+    def _kept(self, kept: Sequence[Snapshot]) -> tuple[Uuid, ...]:
+        """The identifiers of the file's missions in a journal that holds them."""
+        order = topological_order([entry.upstream for entry in self.file.missions])
+        if len(kept) != len(order):
+            raise JournalMismatchError(f"holds {len(kept)} missions and the file {len(order)}; take another journal")
+        uuids = dict(zip(order, (mission.uuid for mission in kept), strict=True))
+        found = tuple(uuids[index] for index in range(len(order)))
+        for index, mission in zip(order, kept, strict=True):
+            if self.file.missions[index].request(found) != mission.request:
+                raise JournalMismatchError(f"holds another missions[{index}] than the file; take another journal")
+        return found
+
+    def _stands(self, mission: Snapshot) -> None:
+        """Take note of where a mission stood when the last server ended."""
+        number = self.narrator.number(mission.uuid)
+        self.statuses[number] = mission.status
+        self._unfinished -= mission.status.terminal
+        fields = {"mission": number, "uuid": str(mission.uuid), "status": mission.status.value}
+        says = f"missions[{number}] {mission.request.robot}: {mission.status.value}, as the journal has it"
+        self._tell(Entry("restored", says, Level.INFO, {**fields, "robot": mission.request.robot}))
 
     def _say_where(self, server: TcpMissionServer) -> None:
         for address in server.addresses:

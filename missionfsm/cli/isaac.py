@@ -21,6 +21,13 @@ class ProfileName(enum.StrEnum):
     AS_SHIPPED = "as-shipped"
 
 
+class ResumeName(enum.StrEnum):
+    """What becomes of a mission that was under way when the server died."""
+
+    RERUN = "rerun"
+    FAIL = "fail"
+
+
 class LogName(enum.StrEnum):
     """How lines are written."""
 
@@ -47,6 +54,13 @@ def dispatch(  # noqa: PLR0913 - the options
     profile: Annotated[ProfileName, typer.Option(help="The readings to follow.")] = ProfileName.DOCUMENTED,
     line_limit: Annotated[int, typer.Option(min=1024, help="Bytes of the longest line that is read or sent.")] = 1
     << 20,
+    journal: Annotated[
+        Path | None,
+        typer.Option(help="Keep what was accepted and what became of it here; a second start goes on from it."),
+    ] = None,
+    resume: Annotated[
+        ResumeName, typer.Option(help="What becomes of a mission that was under way when the server died.")
+    ] = ResumeName.FAIL,
     log: Annotated[
         LogName | None, typer.Option(help="Lines with time and level, instead of the table or of plain lines.")
     ] = None,
@@ -60,8 +74,9 @@ def dispatch(  # noqa: PLR0913 - the options
     import asyncio  # noqa: PLC0415
 
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
+    from missionfsm.adapters.isaac.journal import JournalError  # noqa: PLC0415
     from missionfsm.adapters.isaac.lines import address  # noqa: PLC0415
-    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
+    from missionfsm.app.dispatch import Dispatch, JournalMismatchError, Settings  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
     from missionfsm.cli.isaac_view import LogFormat, view_for  # noqa: PLC0415
     from missionfsm.isaac.runtime.log import Level  # noqa: PLC0415
@@ -78,7 +93,8 @@ def dispatch(  # noqa: PLR0913 - the options
         complain(f"{file}: {odd}")
     if not isinstance(missions, MissionFile):
         raise typer.Exit(BAD_INPUT)
-    settings = Settings(host, port, name_channel, readings, line_limit)
+    kept = None if journal is None else str(journal)
+    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value)
     work = Dispatch(missions, settings)
     style = None if log is None else LogFormat(log.value)
     try:
@@ -88,6 +104,10 @@ def dispatch(  # noqa: PLR0913 - the options
         work.ended_by = signal.SIGINT
     except OSError as error:
         stop(f"cannot listen on {address((host, port))}: {error.strerror or error}", BAD_INPUT)
+    except JournalError as error:
+        stop(f"--journal: {error}", BAD_INPUT)
+    except JournalMismatchError as error:
+        stop(f"--journal: {journal}: {error}", BAD_INPUT)
     if work.ended_by is None:
         raise typer.Exit(0 if work.succeeded == len(missions.missions) else 1)
     left = f"{work.unfinished} of {len(missions.missions)} missions had not ended"

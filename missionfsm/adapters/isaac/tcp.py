@@ -7,16 +7,19 @@ reading is cut into slices, writing never waits, a peer that does not read is dr
 """
 
 import asyncio
+import contextlib
 import errno
 import os
 import random
 import socket
 import time
 import uuid as uuids
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final
 
+from missionfsm.adapters.isaac.journal import Bookkeeper, Journal, JournalError
 from missionfsm.adapters.isaac.lines import LOG, WRITE_TIMEOUT, Alarm, LineConnection, address
+from missionfsm.isaac.runtime.graph import topological_order
 from missionfsm.isaac.runtime.missionfile import MissionFile, submit_all
 from missionfsm.isaac.runtime.missions import Close, Effect, Ignored, MissionRequest, Refused, Send
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
@@ -69,7 +72,9 @@ class TcpMissionServer:
     """A mission server that listens. Made and used on one event loop; `observer` is told of every effect.
 
     `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are neither
-    read nor sent: a mission that needs more is refused.
+    read nor sent: a mission that needs more is refused. What a `journal` has is restored on start; `resume` says what
+    becomes of a mission that was under way, see `RESUME`. A journal that cannot be written ends the server: `failed`
+    then has the reason, nothing more is sent, and every connection is dropped.
     """
 
     def __init__(  # noqa: PLR0913 - all by keyword, each with a default
@@ -81,6 +86,8 @@ class TcpMissionServer:
         profile: Profile = DOCUMENTED,
         line_limit: int = MAX_LINE,
         write_timeout: float = WRITE_TIMEOUT,
+        journal: Journal | None = None,
+        resume: str = "fail",
         observer: Callable[[Effect], None] = _nothing,
     ) -> None:
         self.core = MissionServerCore(profile, name_channel=name_channel, line_limit=line_limit)
@@ -95,12 +102,22 @@ class TcpMissionServer:
         self.addresses: tuple[str, ...] = ()
         self._numbers: dict[LineConnection, int] = {}
         self._connections: dict[int, LineConnection] = {}
+        self.failed: asyncio.Future[JournalError] = asyncio.get_running_loop().create_future()
+        self._journal = journal
+        self._resume = resume
+        self._books = None if journal is None else Bookkeeper(self.core, journal)
         self._peers: dict[int, str] = {}
         self._accepted = 0
         self._closing = False
 
     async def start(self) -> None:
-        """Listen. OSError where the address cannot be had."""
+        """Take up what the journal has, and listen. OSError where the address cannot be had; JournalError."""
+        if self._journal is not None and self._books is not None:
+            snapshots = self._journal.missions()
+            self._books.restore(snapshots)
+            self._perform(self.core.restore(snapshots, self._resume, fresh_uuid, self._alarm.now()))
+            if self.failed.done():
+                raise self.failed.result()
         sockets = await listening(self.host, self.port)
         loop = asyncio.get_running_loop()
         self._servers = [await loop.create_server(self._accept, sock=one, backlog=BACKLOG) for one in sockets]
@@ -129,20 +146,46 @@ class TcpMissionServer:
 
     def create(self, request: MissionRequest, uuid: Uuid) -> Refused | None:
         """Make a mission known; see `MissionServerCore.create`."""
-        return self.core.create(request, uuid)
+        refused = self.core.create(request, uuid)
+        if refused is None and self._books is not None:
+            self._books.create(uuid)
+        return refused
 
     def submit(self, uuid: Uuid) -> Refused | None:
         """Run a created mission; see `MissionServerCore.submit`."""
-        return self._taken(self.core.submit(uuid, self._alarm.now()))
+        return self._taken(self.core.submit(uuid, self._alarm.now()), submitted=True)
 
     def submit_file(self, file: MissionFile, fresh: tuple[Uuid, ...]) -> Refused | None:
         """Create and submit all missions of a file."""
-        return self._taken(submit_all(self.core, file, fresh, self._alarm.now()))
+        result = submit_all(self.core, file, fresh, self._alarm.now())
+        if self._books is not None:
+            for index in topological_order([entry.upstream for entry in file.missions]):
+                self._books.create(fresh[index])
+        return self._taken(result, submitted=True)
 
-    def _taken(self, result: Refused | tuple[Effect, ...]) -> Refused | None:
+    def cancel(self, uuid: Uuid) -> Refused | None:
+        """Give a mission up; see `MissionServerCore.cancel`."""
+        return self._taken(self.core.cancel(uuid, self._alarm.now()))
+
+    def retry(self, uuid: Uuid) -> Refused | None:
+        """Run a mission that failed once more; see `MissionServerCore.retry`."""
+        return self._taken(self.core.retry(uuid, fresh_uuid(), self._alarm.now()))
+
+    def forget(self, uuid: Uuid) -> Refused | None:
+        """Remember nothing more of a mission that has ended; see `MissionServerCore.forget`."""
+        refused = self.core.forget(uuid)
+        if refused is None and self._books is not None:
+            with self._fatal():
+                self._books.forget([uuid])
+        return refused
+
+    def _taken(self, result: Refused | tuple[Effect, ...], *, submitted: bool = False) -> Refused | None:
+        """Raises JournalError where it was taken and cannot be kept."""
         if isinstance(result, Refused):
             return result
-        self._perform(result)
+        self._perform(result, submitted=submitted)
+        if self.failed.done():
+            raise self.failed.result()
         return None
 
     def _accept(self) -> LineConnection:
@@ -182,18 +225,34 @@ class TcpMissionServer:
     def _ring(self) -> None:
         self._perform(self.core.advance(self._alarm.now()))
 
-    def _perform(self, effects: Iterable[Effect]) -> None:
-        for effect in effects:
-            if isinstance(effect, Send):
-                self._send(effect)
-            elif isinstance(effect, Close):
-                if (closed := self._connections.get(effect.connection)) is not None:
-                    closed.close()
-            elif isinstance(effect, Ignored):
-                LOG.debug("connection %d: %s", effect.connection, effect.reason)
-            self._observer(effect)
-        if not self._closing:
-            self._alarm.set(self.core.next_deadline())
+    def _perform(self, effects: Sequence[Effect], *, submitted: bool = False) -> None:
+        with self._fatal():
+            if self._books is not None:
+                self._books.note(effects, submitted=submitted)
+            for effect in effects:
+                if isinstance(effect, Send):
+                    self._send(effect)
+                elif isinstance(effect, Close):
+                    if (closed := self._connections.get(effect.connection)) is not None:
+                        closed.close()
+                elif isinstance(effect, Ignored):
+                    LOG.debug("connection %d: %s", effect.connection, effect.reason)
+                self._observer(effect)
+            if not self._closing:
+                self._alarm.set(self.core.next_deadline())
+
+    @contextlib.contextmanager
+    def _fatal(self) -> Iterator[None]:
+        """A journal that cannot be written ends everything: what is not kept is neither sent nor told."""
+        try:
+            yield
+        except JournalError as error:
+            self._closing = True
+            self._alarm.set(None)
+            if not self.failed.done():
+                self.failed.set_result(error)
+            for connection in tuple(self._numbers):
+                connection.abort()
 
     def _send(self, effect: Send) -> None:
         connection = self._connections.get(effect.connection)

@@ -19,7 +19,8 @@ class Status(enum.Enum):
     """Where a mission stands in the server.
 
     The first four are the documented incomplete ones (``MissionSubmission › Sample Usage``); SUCCESS and FAILED are
-    what the robot reported; the others say why a mission was given up: its robot's connection, a timeout, an upstream.
+    what the robot reported; the others say why a mission was given up: its robot's connection, a timeout, an upstream,
+    somebody who cancelled it.
     """
 
     CREATED = "CREATED"
@@ -31,6 +32,7 @@ class Status(enum.Enum):
     FAILED_DISCONNECTED = "FAILED_DISCONNECTED"
     FAILED_TIMEDOUT = "FAILED_TIMEDOUT"
     FAILED_UPSTREAM = "FAILED_UPSTREAM"
+    FAILED_CANCELLED = "FAILED_CANCELLED"
 
     @property
     def terminal(self) -> bool:
@@ -149,6 +151,25 @@ class Ignored:
 
 
 Effect = Send | Close | StatusChanged | RobotOnline | RobotOffline | RobotTakenOver | Ignored
+
+
+RESUME: Final = ("rerun", "fail")
+"""What becomes of a mission that was under way when the server died: it is run again, or has failed."""
+
+
+@attrs.frozen
+class Snapshot:
+    """A mission as it is kept over a restart of the server.
+
+    `attempt` is what the robot knows it by, another for every retry. `number` is its place in the order of submission;
+    -1 for a mission that was made known and not submitted.
+    """
+
+    uuid: Uuid
+    request: MissionRequest
+    status: Status
+    attempt: Uuid
+    number: int
 
 
 @attrs.frozen

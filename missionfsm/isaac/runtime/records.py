@@ -16,11 +16,13 @@ class MissionRecord:
     request: MissionRequest
     key: str  # of its robot; empty without one, which no robot can be called
     status_channel: str
+    attempt: Uuid  # what the robot knows it by: its own identifier, or that of its last retry
     status: Status = Status.CREATED
     number: int = -1  # in the order of submission; -1 before
     waiting: int = 0  # upstreams not yet done
     doomed: bool = False  # an upstream failed
     ended: bool = False
+    needed: int = 0  # missions that have not ended and name it as upstream
     downstream: "list[MissionRecord]" = attrs.Factory(list)
     in_flight: bool = False  # sent and not ended
     was_sent: bool = False

@@ -26,6 +26,8 @@ class Scheduler:
         self.profile = profile
         self.now = -math.inf
         self.missions: dict[Uuid, MissionRecord] = {}
+        self.attempts: dict[Uuid, MissionRecord] = {}
+        self.submitted = 0
         self.robots: dict[str, RobotRecord] = {}
         self.unfinished = 0
         self.effects: list[Effect] = []
@@ -34,7 +36,6 @@ class Scheduler:
         self._dirty: dict[LaneRecord, None] = {}
         self._maybe_idle: dict[str, None] = {}
         self._pass_at: float | None = None
-        self._submitted = 0
 
     def begin(self, now: float) -> None:
         """An event happens at `now`; what was due by then comes first."""
@@ -94,12 +95,13 @@ class Scheduler:
         elif kind == "silence" and target.heard + self.profile.silence_timeout > self.now:
             self.arm(target, "silence", target.heard + self.profile.silence_timeout)
         else:
-            self._abort(target)
+            self.abort(target, Status.FAILED_TIMEDOUT)
 
     # dependencies
 
     def depend(self, mission: MissionRecord, upstream: MissionRecord) -> None:
         """Note that `mission`, which is being made, cannot go before `upstream` has succeeded."""
+        upstream.needed += 1
         started = upstream.status is Status.STARTED and self.profile.started_upstream_fails
         if upstream.status is Status.SUCCESS:
             return
@@ -155,6 +157,9 @@ class Scheduler:
         self.change(mission, status)
         mission.ended = True
         mission.due.clear()
+        for upstream in dict.fromkeys(mission.request.upstream):
+            if upstream in self.missions:
+                self.missions[upstream].needed -= 1
         robot = self.robots[mission.key]
         del robot.unfinished[mission.uuid]
         self.unfinished -= 1
@@ -173,13 +178,9 @@ class Scheduler:
 
     # queues
 
-    def admit(self, mission: MissionRecord) -> None:
-        """Take a created mission into its robot's queue."""
-        mission.number = self._submitted
-        self._submitted += 1
-        self.unfinished += 1
-        robot = self.robot(mission.request.robot or "")
-        robot.unfinished[mission.uuid] = mission
+    def admit(self, mission: MissionRecord, number: int | None = None) -> None:
+        """Take a created mission into its robot's queue, behind all others or at a place that it had."""
+        robot = self.enter(mission, self.submitted if number is None else number)
         if mission.doomed and (mission.waiting == 0 or self.profile.ai_36 == "a"):
             self.finish(mission, Status.FAILED_UPSTREAM)
             return
@@ -194,6 +195,22 @@ class Scheduler:
             self._lane(robot, mission).line.append(mission)
         if mission.waiting == 0:
             self._ready(mission)
+
+    def enter(self, mission: MissionRecord, number: int) -> RobotRecord:
+        """Count a mission as one that its robot has to do, at a place in the order of submission."""
+        mission.number = number
+        self.submitted = max(self.submitted, number + 1)
+        self.unfinished += 1
+        robot = self.robot(mission.request.robot or "")
+        robot.unfinished[mission.uuid] = mission
+        return robot
+
+    def unqueue(self, mission: MissionRecord) -> None:
+        """Take a mission that has ended out of its robot's line, before it is queued again."""
+        robot = self.robots.get(mission.key)
+        for lane in () if robot is None else robot.lanes.values():
+            if mission in lane.line:
+                lane.line.remove(mission)
 
     def _ready(self, mission: MissionRecord) -> None:
         self.change(mission, Status.QUEUED)
@@ -228,8 +245,8 @@ class Scheduler:
     def _take(self, lane: LaneRecord) -> MissionRecord | None:
         if self.profile.ai_12 == "a":
             while lane.ready:
-                mission = heapq.heappop(lane.ready)[1]
-                if not mission.ended:
+                order, mission = heapq.heappop(lane.ready)
+                if not mission.ended and abs(order) == mission.number:  # a retry has another number
                     return mission
             return None
         while lane.line and lane.line[0].ended:
@@ -246,7 +263,7 @@ class Scheduler:
         mission.in_flight = mission.was_sent = True
         lane.sent[mission.uuid] = mission
         self.effects.append(
-            Send(connection.id, request.channel, MissionProto(mission.uuid, request.config), mission.uuid)
+            Send(connection.id, request.channel, MissionProto(mission.attempt, request.config), mission.uuid)
         )
         self.change(mission, Status.STARTED)
         if profile.ai_05 == "a":
@@ -276,9 +293,10 @@ class Scheduler:
         if self.profile.ai_06 == "a":
             self._arm_timeout(mission, "run", mission.request.timeout)
 
-    def _abort(self, mission: MissionRecord) -> None:
+    def abort(self, mission: MissionRecord, status: Status) -> None:
+        """Give a mission up; its robot is not told, for there are no words for it."""
         connection = self.robots[mission.key].connection if mission.in_flight else None
-        self.finish(mission, Status.FAILED_TIMEDOUT)
+        self.finish(mission, status)
         if connection is not None and self.profile.ai_08 == "c":
             self._close(connection, f"mission {mission.uuid} was aborted")
 

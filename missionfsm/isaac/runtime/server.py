@@ -12,9 +12,10 @@ what an event really changes is touched (a failure cancels all that depends on i
 Always kept: a mission is not sent before all its upstreams have succeeded, nor twice, save by AI-15 b.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
+from missionfsm.isaac.runtime.again import restore, run_again, runnable_again
 from missionfsm.isaac.runtime.missions import (
     DEFAULT_STATUS_CHANNEL,
     Close,
@@ -26,6 +27,7 @@ from missionfsm.isaac.runtime.missions import (
     RobotOnline,
     RobotTakenOver,
     RobotView,
+    Snapshot,
     Status,
     too_long,
 )
@@ -83,6 +85,11 @@ class MissionServerCore:
         found = self._scheduler.missions.get(mission)
         return found is not None and found.number >= 0
 
+    def snapshot(self, mission: Uuid) -> Snapshot:
+        """A mission as it is kept over a restart; KeyError for one that was never created here, or is forgotten."""
+        found = self._scheduler.missions[mission]
+        return Snapshot(found.uuid, found.request, found.status, found.attempt, found.number)
+
     def statuses(self) -> Iterator[tuple[Uuid, Status]]:
         """All missions in the order in which they were created."""
         return ((uuid, mission.status) for uuid, mission in self._scheduler.missions.items())
@@ -110,7 +117,7 @@ class MissionServerCore:
 
         So no cycle can be made. Nothing is sent before `submit`.
         """
-        if uuid in self._scheduler.missions:
+        if self._known(uuid):
             return Refused(f"mission {uuid} exists already")
         key = self._scheduler.key(request.robot or "")
         if not key and self.profile.ai_19 == "c":
@@ -120,14 +127,23 @@ class MissionServerCore:
         for number, upstream in enumerate(request.upstream):
             if upstream not in self._scheduler.missions:
                 return Refused(f"upstream[{number}]: there is no mission {upstream} yet")
+        mission = self._record(uuid, request, uuid)
+        for upstream in dict.fromkeys(request.upstream):
+            self._scheduler.depend(mission, self._scheduler.missions[upstream])
+        return None
+
+    def _known(self, uuid: Uuid) -> bool:
+        return uuid in self._scheduler.missions or uuid in self._scheduler.attempts
+
+    def _record(self, uuid: Uuid, request: MissionRequest, attempt: Uuid) -> MissionRecord:
         follows = self.profile.status_channel_follows_channel
         fallback = f"{request.channel}_status" if follows else DEFAULT_STATUS_CHANNEL
         status_channel = fallback if request.status_channel is None else request.status_channel
-        mission = MissionRecord(uuid, request, key, status_channel)
-        for upstream in dict.fromkeys(request.upstream):
-            self._scheduler.depend(mission, self._scheduler.missions[upstream])
-        self._scheduler.missions[uuid] = mission
-        return None
+        key = self._scheduler.key(request.robot or "")
+        self._scheduler.missions[uuid] = made = MissionRecord(uuid, request, key, status_channel, attempt)
+        if attempt != uuid:
+            self._scheduler.attempts[attempt] = made
+        return made
 
     def submit(self, uuid: Uuid, now: float) -> Refused | tuple[Effect, ...]:
         """A created mission is to be run. MissionSubmission › MissionServer Class."""
@@ -144,6 +160,70 @@ class MissionServerCore:
         if mission.number < 0:
             for one in self._scheduler.not_submitted(mission) if self.profile.ai_22_upstream == "c" else (mission,):
                 self._scheduler.admit(one)
+        return self._scheduler.end()
+
+    def cancel(self, uuid: Uuid, now: float) -> Refused | tuple[Effect, ...]:
+        """Give a submitted mission up, as FAILED_CANCELLED; what waits for it is cancelled with it.
+
+        A robot that runs it is not told, for the documents have no words for it: its next mission preempts it.
+        """
+        mission = self._scheduler.missions.get(uuid)
+        if mission is None or mission.number < 0:
+            return Refused(f"there is no submitted mission {uuid}")
+        if mission.ended:
+            return Refused(f"mission {uuid} has ended: {mission.status.value}")
+        self._scheduler.begin(now)
+        if not mission.ended:  # what was due by now came first
+            self._scheduler.abort(mission, Status.FAILED_CANCELLED)
+        return self._scheduler.end()
+
+    def retry(self, uuid: Uuid, attempt: Uuid, now: float) -> Refused | tuple[Effect, ...]:
+        """Run a mission that failed once more, behind what waits, and all that was cancelled because of it.
+
+        The robot is sent it under the fresh identifier `attempt`, so that nothing that is still said of the last one
+        is taken for this one.
+        """
+        mission = self._scheduler.missions.get(uuid)
+        if mission is None:
+            return Refused(f"there is no mission {uuid}")
+        if not mission.ended or mission.status is Status.SUCCESS:
+            return Refused(f"mission {uuid} has not failed: {mission.status.value}")
+        if self._known(attempt):
+            return Refused(f"mission {attempt} exists already")
+        again = runnable_again(self._scheduler, mission)
+        if not again:
+            return Refused(f"mission {uuid} has an upstream that has not succeeded; retry that")
+        self._scheduler.begin(now)
+        run_again(self._scheduler, again, attempt)
+        return self._scheduler.end()
+
+    def forget(self, uuid: Uuid) -> Refused | None:
+        """Remember nothing more of a mission that has ended and that nothing waits for."""
+        mission = self._scheduler.missions.get(uuid)
+        if mission is None:
+            return Refused(f"there is no mission {uuid}")
+        if not mission.ended:
+            return Refused(f"mission {uuid} has not ended: {mission.status.value}")
+        if mission.needed:
+            return Refused(f"mission {uuid} is upstream of {mission.needed} that have not ended")
+        del self._scheduler.missions[uuid]
+        self._scheduler.attempts.pop(mission.attempt, None)
+        return None
+
+    def restore(
+        self, snapshots: Sequence[Snapshot], resume: str, fresh: Callable[[], Uuid], now: float
+    ) -> tuple[Effect, ...]:
+        """Go on where a server ended, before anything else happens here.
+
+        Args:
+            snapshots: all its missions, in the order in which they were created.
+            resume: what becomes of a mission that was under way, see `RESUME`.
+            fresh: makes identifiers that nobody has used, for what is run again.
+            now: the time.
+        """
+        self._scheduler.begin(now)
+        made = [(self._record(one.uuid, one.request, one.attempt), one) for one in snapshots]
+        restore(self._scheduler, made, resume, fresh)
         return self._scheduler.end()
 
     def connected(self, connection: int, now: float) -> tuple[Effect, ...]:
@@ -293,7 +373,8 @@ class MissionServerCore:
     def _meant(self, robot: RobotRecord, header: Header, payload: MissionStatusProto) -> MissionRecord | None:
         uuid = header.uuid if self.profile.ai_10 == "c" else payload.uuid
         if uuid is not None:
-            return self._scheduler.missions.get(uuid)
+            found = self._scheduler.attempts.get(uuid) or self._scheduler.missions.get(uuid)
+            return None if found is None or found.attempt != uuid else found
         if self.profile.ai_10 != "a":
             return None
         running = (mission for lane in robot.lanes.values() for mission in lane.sent.values())

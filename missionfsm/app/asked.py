@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 from attrs import evolve, field, frozen
 
+from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.middle import in_the_middle
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transport import over_transport
 from missionfsm.systems import system
@@ -20,6 +22,9 @@ class Asked:
         readings: ambiguity id to the letter of the only reading that is to hold.
         no_flagged: whether nothing may depart from the letter of the text.
         strict: whether nothing was lost, doubled or made up on the way, whatever the first line says.
+        anywhere: whether it begins while the system is in use, whatever the first line says.
+        others: whether others, whose calls are not in it, use the system as well, whatever the first line says.
+        settled_after: how many seconds (of `at`) after its cause something is late; None: never.
         eager: whether everything that a transport does is thought of at every event, not only where it is needed.
         only: the robots that are to be judged; all if there are none.
     """
@@ -27,18 +32,30 @@ class Asked:
     readings: Mapping[str, str] = field(factory=dict)
     no_flagged: bool = False
     strict: bool = False
+    anywhere: bool = False
+    others: bool = False
+    settled_after: float | None = None
     eager: bool = False
     only: frozenset[str | None] = frozenset()
 
 
 @functools.cache
-def judged_system(name: str, *, strict: bool) -> System:
+def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bool = False) -> System:
     """The system with a name as a log of it is judged: seen through the transport, unless that is strict.
 
     What has no streams has none that could lose anything: Isaac's lines travel over one TCP connection.
 
+    Args:
+        anywhere: whether the log begins while the system is in use.
+        others: whether others use it as well.
+
     Raises:
-        UnreadableError: there is no such system.
+        UnreadableError: there is no such system, or no log of it can be judged so.
     """
     found = system(name)
-    return found if strict or not found.codec.streams else evolve(found, spec=over_transport(found.spec))
+    if (anywhere or others) and found.spec.middle is None:
+        says = "a log of it has to begin with its beginning" if anywhere else "it does not say what others may do"
+        message = f"{name}: {says}"
+        raise UnreadableError(message)
+    spec = in_the_middle(found.spec, anywhere=anywhere, others=others)
+    return evolve(found, spec=spec if strict or not found.codec.streams else over_transport(spec))

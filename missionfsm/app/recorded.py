@@ -152,12 +152,18 @@ class _Judges:
     """
 
     def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int) -> None:
-        self._head = head(line)
-        self._system = judged_system(self._head.system, strict=asked.strict or self._head.strict)
+        first = head(line)
+        self._head = first = evolve(
+            first,
+            strict=asked.strict or first.strict,
+            anywhere=asked.anywhere or first.anywhere,
+            others=asked.others or first.others,
+        )
+        self._system = judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others)
         self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
         self.addresses.whose(line)
         decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
-        self._only = asked.only
+        self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
         patience = PATIENCE if self._waits else BUDGET
         self._automaton = Automaton(self._system.spec, self._head.drives, decided, patience, eager=asked.eager)
@@ -183,12 +189,14 @@ class _Judges:
             keep=keep,
             apart=True,
             waits=self._waits,
+            settled_after=self._settled_after,
         )
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""
         again, take = self._texts.again, self._nobody.take
-        read_again, looks, nobody = not (self._keep or self._only), self._lost is None, self._nobody
+        read_again = not (self._keep or self._only or self._settled_after is not None)
+        looks, nobody = self._lost is None, self._nobody
         for number, text in numbered:
             try:
                 if looks and not number % LOOK:
@@ -211,7 +219,7 @@ class _Judges:
             judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
         if self._lost is None and robot is not None and not judge.read % LOOK:
             self._look(judge)
-        comes_again = plain and not self._keep and robot is None
+        comes_again = plain and not self._keep and robot is None and judge.quiet is None
         right = judge.take(self._texts.read(text, line), number) if comes_again else judge.feed(line, number)
         if not right:
             self._stopped.setdefault(robot, judge.place or number)
@@ -228,6 +236,9 @@ class _Judges:
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
             raise _UndecidedError(by_params=self.addresses.by_call)
+        if self._settled_after is not None and not any(judge.quiet and judge.quiet.timed for judge in judges.values()):
+            message = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
+            raise UnreadableError(message)
         told = [(robot, judge, judge.verdict()) for robot, judge in judges.items()]
         return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]
 

@@ -170,15 +170,20 @@ def _judge(head: dict[str, JSON], readings: dict[str, str], html: str, lines: Co
     import os  # noqa: PLC0415 - only this process needs it
     import signal  # noqa: PLC0415 - as above
 
+    from missionfsm.app.asked import judged_system  # noqa: PLC0415
     from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
     from missionfsm.oracle.transcript import head as read_head  # noqa: PLC0415
-    from missionfsm.systems import system  # noqa: PLC0415
     from missionfsm.tools.check.judge import Judge  # noqa: PLC0415
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's Ctrl-C is for the proxy, which ends this by its pipe
     if hasattr(os, "nice"):
         os.nice(10)  # traffic comes first
-    judge = Judge(system(head["system"]), read_head(head), readings=readings)
+    first = read_head(head)
+    judge = Judge(
+        judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others),
+        first,
+        readings=readings,
+    )
     page = _Page(html, lambda text: say.send(Judged(text, conforms=True)))
     wrong = False
     with contextlib.suppress(EOFError):

@@ -253,6 +253,13 @@ class Transport(enum.Enum):
     STRICT = "strict"
 
 
+class Beginning(enum.Enum):
+    """With what a log begins."""
+
+    FRESH = "fresh"
+    ANYWHERE = "anywhere"
+
+
 def check(  # noqa: PLR0913 - options of the command
     files: Annotated[list[str], typer.Argument(metavar="FILE…", help="Recorded histories; - is stdin.")],
     reading: Readings = None,
@@ -260,6 +267,17 @@ def check(  # noqa: PLR0913 - options of the command
     transport: Annotated[
         Transport, typer.Option(help="Whether messages may be lost, doubled or made up on the way.")
     ] = Transport.IMPERFECT,
+    begins: Annotated[
+        Beginning,
+        typer.Option(help="Whether the logs begin with a robot that has done nothing, or while it is in use."),
+    ] = Beginning.FRESH,
+    others: Annotated[
+        bool, typer.Option("--others", help="Others, whose calls are not in the logs, use the robots as well.")
+    ] = False,
+    settled_after: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", min=0, callback=_finite, help="What is due so long (of `at`) is late."),
+    ] = None,
     expect_violations: KnownFile = None,
     json: JsonFile = None,
     html: HtmlFile = None,
@@ -268,7 +286,13 @@ def check(  # noqa: PLR0913 - options of the command
     from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415 - commands load what they need
 
     readings = choice(reading)
-    how = {"no_flagged": no_flagged, "strict": transport is Transport.STRICT}
+    how = {
+        "no_flagged": no_flagged,
+        "strict": transport is Transport.STRICT,
+        "anywhere": begins is Beginning.ANYWHERE,
+        "others": others,
+        "settled_after": settled_after,
+    }
     known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
     refuse_outputs({"--json": json, "--html": html}, (*files, expect_violations))
     reached: list[tuple[str, str | None, Verdict]] = []

@@ -178,6 +178,7 @@ def proxy(  # noqa: PLR0913 - options of the command
     from missionfsm.adapters.grpc.client import Target  # noqa: PLC0415
     from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
     from missionfsm.adapters.grpc.proxy import Proxy  # noqa: PLC0415
+    from missionfsm.app.asked import judged_system  # noqa: PLC0415
     from missionfsm.app.recorder import Recorder  # noqa: PLC0415
 
     if system not in SERVICES:
@@ -187,6 +188,7 @@ def proxy(  # noqa: PLR0913 - options of the command
     if begins is Begins.ANYWHERE:
         head["begins"] = begins.value
     with _bad_input():
+        judged_system(system, strict=False, anywhere=begins is Begins.ANYWHERE)
         recorder = Recorder(head, file=record or "", readings=choice(reading), html=html or "", tell=complain)
         relay = Proxy(system, Target(grpc, certificate=tls), recorder.record)
         with contextlib.suppress(KeyboardInterrupt):

@@ -278,6 +278,27 @@ class Parting:
     whose: Callable[[Event], Hashable | None]
 
 
+@frozen
+class Middle:
+    """What lets a system be judged without its beginning.
+
+    Attributes:
+        world: state to the world that it is in, as `Spec.initial` takes it.
+        shown: (world, content) to states that a message may show, each with the view of it, as long as it is well
+            formed. The names of each are those of the content, as `Spec.matches` pairs them.
+        samples: world to states that stand for all there are as far as answers differ.
+        topic: content to the topic of a channel that shows it.
+        follows: (state, its names, state after it, its names) to whether the one may have become the other by
+            whatever calls.
+    """
+
+    world: Callable[[State], Hashable]
+    shown: Callable[[Any, Any], tuple[tuple[State, View], ...]]
+    samples: Callable[[Any], tuple[State, ...]]
+    topic: Callable[[Any], Hashable]
+    follows: Callable[[State, tuple[int, ...], State, tuple[int, ...]], bool]
+
+
 @frozen(eq=False)
 class Spec:
     """A system as a nondeterministic labelled transition system.
@@ -326,6 +347,9 @@ class Spec:
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
         restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
+        middle: what lets it be judged without its beginning, or None where that cannot be.
+        anywhere: whether what is observed began while it was in use (`missionfsm.kernel.middle`).
+        others: whether others, whose calls are not observed, use it as well.
     """
 
     system: str
@@ -363,6 +387,9 @@ class Spec:
     unopened: tuple[str, ...] = ()
     transport: bool = False
     restarted: Callable[[State], Step] | None = None
+    middle: Middle | None = None
+    anywhere: bool = False
+    others: bool = False
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

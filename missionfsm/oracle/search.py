@@ -23,6 +23,9 @@ T = TypeVar("T")
 WIDTH = 1
 """How many explanations are followed at once."""
 
+SOME = 8
+"""How many explanations are followed of an event that the system itself does not explain."""
+
 EFFORT = 300
 """How much of the budget goes into finding more than one explanation of an event at once, the first time."""
 
@@ -36,6 +39,7 @@ class Layer:
         more: what else explains the event as well; None where that is all.
         begun: whether the event was looked at; once it was too dear to look at all of it, it is looked at anew.
         effort: how much of the budget goes into finding more than one explanation at once.
+        partly: whether no more than some of what explains the event was asked for.
     """
 
     explanations: tuple[Explanation, ...]
@@ -43,11 +47,12 @@ class Layer:
     more: Iterator[Sighting] | None = field(default=None, repr=False)
     begun: bool = False
     effort: int = EFFORT
+    partly: bool = False
 
     @property
     def unfinished(self) -> bool:
         """Whether there may be other explanations of the event after these that were not looked at."""
-        return self.more is not None
+        return self.more is not None or self.partly
 
 
 class Search:
@@ -116,13 +121,16 @@ class Search:
         Raises:
             ExhaustedError: it costs more than the budget.
         """
-        if not self.oracle.spec.transport:
+        spec = self.oracle.spec
+        if not (spec.transport or spec.anywhere or spec.others):
             return False
         symbol = self._symbols[len(self.layers) - 1]
         while self.layers:
-            found = self._spending(lambda: self.oracle.step(self.layers[-1].explanations, *symbol))
+            here = self.layers[-1]
+            found = self._spending(lambda: self.oracle.beyond(self.layers[-1].explanations, *symbol, most=SOME))
             if found:
-                self._enter(found)
+                here.partly = len(found) == SOME
+                self._enter(sift(self.moves, found))
                 return True
             if not self.differently():
                 break

@@ -31,7 +31,7 @@ from missionfsm.kernel.text import brief
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
 _ANY_KEYS = ("at", "robot")
-_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", "begins", "transport", *_ANY_KEYS))
+_HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", "begins", "others", "transport", *_ANY_KEYS))
 STRICT, ANYWHERE = "strict", "anywhere"
 STREAM_KEYS = ("stream", "message", "closed", "error")
 _KEYS: Mapping[str, frozenset[str]] = {
@@ -61,6 +61,7 @@ class Head:
         drives: the drives that the tester commanded. Without them the environment may have done everything by itself.
         strict: whether nothing was lost, doubled or made up on the way.
         anywhere: whether it begins while the system is in use; nothing is known of what was before.
+        others: whether others, whose calls are not in it, use the system as well.
     """
 
     system: str
@@ -68,6 +69,7 @@ class Head:
     drives: tuple[str, ...] = ()
     strict: bool = False
     anywhere: bool = False
+    others: bool = False
 
     @property
     def line(self) -> dict[str, JSON]:
@@ -77,6 +79,8 @@ class Head:
             line["drives"] = list(self.drives)
         if self.anywhere:
             line["begins"] = ANYWHERE
+        if self.others:
+            line["others"] = True
         if self.strict:
             line["transport"] = STRICT
         return line
@@ -107,7 +111,10 @@ def head(line: JSON) -> Head:
     for key, value in (("begins", ANYWHERE), ("transport", STRICT)):
         if key in line and line[key] != value:
             raise _wrong(f"{key}: {brief(line[key])} is not known; it is {value!r} or left out")
-    return Head(name, line.get("world", {}), tuple(drives), "transport" in line, "begins" in line)
+    others = line.get("others", False)
+    if not isinstance(others, bool):
+        raise _wrong(f"others: {brief(others)} is neither true nor false")
+    return Head(name, line.get("world", {}), tuple(drives), "transport" in line, "begins" in line, others)
 
 
 class Transcript:
@@ -117,6 +124,7 @@ class Transcript:
         codec: how the system's JSON is read.
         fingerprint: JSON to something hashable that tells it from other JSON; a fast one makes reading fast.
         lost: ids of calls that are known to have no answer.
+        anywhere: whether calls were sent before the first line.
 
     Attributes:
         answered: the request that the answer is to that was read last.
@@ -127,10 +135,13 @@ class Transcript:
         codec: Codec,
         fingerprint: Callable[[JSON], Hashable] = repr,
         lost: frozenset[int] = frozenset(),
+        *,
+        anywhere: bool = False,
     ) -> None:
         self.codec = codec
         self._fingerprint = fingerprint
         self._lost = lost
+        self._anywhere = anywhere
         self._open: dict[int, tuple[str, Any]] = {}
         self.answered: Any = None
         self._sent = IdSet()
@@ -231,6 +242,8 @@ class Transcript:
     def _return(self, line: dict[str, Any]) -> tuple[Event, ...]:
         number = self._number(line, "return")
         waiting = self._open.pop(number, None)
+        if waiting is None and self._anywhere and self._sent.add(number):
+            return ()  # the answer to a call that was sent before the log began
         if waiting is None:
             raise _wrong(f"return {number}: no call with this id is waiting for an answer")
         method, self.answered = waiting

@@ -13,7 +13,7 @@ from typing import Any
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Match, Mismatch, Step
-from missionfsm.oracle import lenient
+from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,
@@ -58,20 +58,47 @@ class Oracle:
         """
         self.moves.reset()
         explanations = tuple(explanations)
+        found: Iterable[Sighting] = self.explained(explanations, kind, *what)
         if self.eager:
-            some = itertools.chain(*(self._leniently(level, explanations, kind, *what) for level in (0, 1)))
-            return sift(self.moves, some) or sift(self.moves, self._leniently(2, explanations, kind, *what))
-        found = sift(self.moves, self.explained(explanations, kind, *what))
-        # Where nothing explains it: what may become of things on their way, or else a robot that has restarted.
+            found = (*found, *self._leniently(1, explanations, kind, *what))
+        return sift(self.moves, found) or sift(self.moves, self.beyond(explanations, kind, *what))
+
+    def beyond(
+        self,
+        explanations: Iterable[Explanation],
+        kind: type,
+        *what: Any,  # noqa: ANN401
+        most: int | None = None,
+    ) -> tuple[Sighting, ...]:
+        """What explains an event that the system does not explain: the transport, or somebody who is not in the log.
+
+        Args:
+            explanations, kind, what: see `step`.
+            most: how many explanations are wanted; all if None.
+        """
+        found: tuple[Sighting, ...] = ()
+        # What may become of things on their way, or else a robot that has restarted.
         for level in (1, 2) if self.spec.transport else ():
-            found = found or sift(self.moves, self._leniently(level, explanations, kind, *what))
+            found = found or self._leniently(level, explanations, kind, *what, most=most)
+        if not found and (self.spec.anywhere or self.spec.others):
+            relations = (one for one in what[2] if one != lenient.REDELIVERED) if kind is Received else ()
+            assumed = self._sequence(relations)
+            if assumed is not None:
+                found = tuple(itertools.islice(middle.unforeseen(self.moves, explanations, assumed, kind, *what), most))
         return found
 
-    def _leniently(self, level: int, explanations: tuple[Explanation, ...], kind: type, *what: Any) -> list[Sighting]:  # noqa: ANN401
-        """What explains an event with as much of the transport as the level says; at 0 with nothing of it."""
+    def _leniently(
+        self,
+        level: int,
+        explanations: Iterable[Explanation],
+        kind: type,
+        *what: Any,  # noqa: ANN401
+        most: int | None = None,
+    ) -> tuple[Sighting, ...]:
+        """What explains an event with as much of the transport as the level says."""
         self._lenient = level
         try:
-            return list(self.explained(explanations, kind, *what))
+            return tuple(itertools.islice(self.explained(explanations, kind, *what), most))
         finally:
             self._lenient = 0
 
@@ -106,6 +133,11 @@ class Oracle:
                 continue
             failed = tuple(self._failed(explanation, position, answer, names))
             yield from (Sighting(tidy(one)) for one in failed)
+            if middle.is_unknown(explanation):
+                yield from middle.answered(self.moves, explanation, position, answer, names)
+                continue
+            for one in middle.wild(self.moves, explanation, position, answer, names):
+                yield Sighting(tidy(one))
             if explanation.calls[position].done is None:
                 # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
                 if not any(one.lost != explanation.lost and one.assumed == explanation.assumed for one in failed):
@@ -213,6 +245,11 @@ class Oracle:
             if not assumed:
                 continue
             start = Sighting(explanation.but(assumed=assumed))
+            if middle.is_unknown(explanation):
+                yield from middle.shown(self.moves, start.explanation, channel, content, names)
+                continue
+            if self.spec.anywhere:
+                start = Sighting(middle.joined(self.moves, start.explanation, channel, content))
             if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
                 yield from self._showings(start, channel, None, content, names, echo=True)
             if not ("equal" in relations and echoes):
@@ -367,7 +404,11 @@ class Oracle:
         known: list[Explanation] = []
         unknown: list[Explanation] = []
         for explanation in explanations:
-            (known if name in _channel_names(explanation) else unknown).append(explanation)
+            named = name in _channel_names(explanation)
+            if not named and self.spec.anywhere:  # it was opened before the log began
+                yield Sighting(explanation)
+            if not (middle.is_unknown(explanation) and not named):
+                (known if named else unknown).append(explanation)
         if self.spec.closing is not None:
             yield from self._closed((*known, *unknown), name)
         for sighting in (*map(Sighting, known), *self.moves.closure(unknown)):
@@ -423,6 +464,9 @@ class Oracle:
             later: list[Sighting] = []
             for sighting in todo:
                 here = sighting.explanation
+                if middle.is_unknown(here):
+                    yield sighting
+                    continue
                 if self.moves.outdone(seen, here):
                     continue
                 rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))

@@ -135,6 +135,7 @@ def _history(system: System | None, shapes: Shapes) -> dict[str, Any]:
         "world": shapes.world or OBJECT,
         "drives": _TEXTS,
         "begins": {"const": "anywhere"},
+        "others": {"type": "boolean"},
         "transport": {"const": "strict"},
     }
 

@@ -22,6 +22,7 @@ from missionfsm.bear.mission.effects import (
 )
 from missionfsm.bear.mission.events import Happening, by_itself, due, happens
 from missionfsm.bear.mission.foresight import foresees
+from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_58_SENT, AM_61, AMBIGUITIES
@@ -396,6 +397,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
         restarted=_restarted,
+        middle=MIDDLE,
         unopened=(OWED.id,),
     )
 

@@ -21,6 +21,7 @@ from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent
 from missionfsm.tools.check.nearest import Call, Circumstances
 from missionfsm.tools.check.phrases import event_words
+from missionfsm.tools.check.quiet import Quiet
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
@@ -49,6 +50,7 @@ class Judge:
         apart: whether what is exercised is counted apart from what other judges see who share the automaton.
         waits: whether an event that is too dear to explain at once may wait for those that follow; nobody who drives
             an implementation can wait.
+        settled_after: how many seconds (of `at`) after its cause something is late; None: never.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
@@ -72,6 +74,7 @@ class Judge:
         keep: int = KEPT,
         apart: bool = False,
         waits: bool = True,
+        settled_after: float | None = None,
     ) -> None:
         self.system = system
         self.head = head
@@ -90,7 +93,8 @@ class Judge:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, BUDGET)
         self.rulings = Rulings(self.belief)
         self._seen = self.rulings.seen
-        self.transcript = Transcript(system.codec, fingerprint, lost)
+        self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
+        self.quiet = None if settled_after is None else Quiet(settled_after)
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0
@@ -119,6 +123,8 @@ class Judge:
             UnreadableError: the line is not of the format.
         """
         events = self.transcript.read(line)
+        if self.quiet is not None:
+            events = self.quiet.settling(line.get("at"), events)
         if self.right:
             self.lines.append(line)
         return self.take(events, place)
@@ -214,6 +220,9 @@ class Judge:
             about = Circumstances(self._asked, self.rulings.found, tuple(self.recent))
             belief = self.belief.latest if isinstance(self.belief, Parted) else self.belief
             found = violation(belief, self._unexplained, about)
+            if self.quiet is not None and type(self._unexplained) is Settled:
+                seen = f"nothing had come of it after {self.quiet.seconds:g} s, or by {found.observed}"
+                found = evolve(found, observed=seen)
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 

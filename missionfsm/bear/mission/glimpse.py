@@ -1,0 +1,158 @@
+"""What one status message tells of a robot of which nothing else is known: where a log begins while it is in use.
+
+What a message does not show is left open as far as that makes few robots: of which kind the active mission is, whether
+it was told to finish. What is left out here is found out to be so later, and flagged (`missionfsm.kernel.middle`).
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterator
+
+from missionfsm.bear.mission.readings import AM_26
+from missionfsm.bear.mission.state import (
+    AUTOMATIC,
+    ENDED,
+    FAMILY,
+    GOALLESS,
+    NOT_CHOSEN,
+    PATROLS,
+    Fault,
+    Kind,
+    Mission,
+    Robot,
+    World,
+)
+from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, Seen, listing
+from missionfsm.bear.wire.messages import Goal, MissionState, MissionType, State
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
+from missionfsm.kernel.spec import Middle
+
+MOST = 16
+"""How many robots are imagined behind one message at most."""
+
+
+@functools.lru_cache(maxsize=1_000)
+def shown(world: World, content: Seen | Garbled) -> tuple[tuple[Robot, Listing], ...]:
+    """Robots that a message may show, the likeliest first, each with the view of it."""
+    if isinstance(content, Garbled):
+        return ()
+    robots = itertools.islice(_robots(world, content), MOST)
+    return tuple((robot, listing(robot)) for robot in dict.fromkeys(robots))
+
+
+def _robots(world: World, content: Seen) -> Iterator[Robot]:
+    missions = content.states.missions
+    if not all(content.named) or not missions:
+        yield Robot(world, fresh=False)
+        yield Robot(world)
+        return
+    ended = next((place for place, one in enumerate(missions) if one.state not in ENDED), len(missions))
+    # What has ended does nothing any more, so that it may have been of the kind of which least is known.
+    done = tuple(Mission(Kind.RETURN, (), _state(one)) for one in missions[:ended])
+    rest = missions[ended:]
+    for active in (True, False) if rest and rest[0].state is State.STATE_PAUSED else (_runs(rest),):
+        heads = tuple(_active(world, rest[0])) if active else (None,)
+        waiting = rest[1:] if active else rest
+        pending = tuple(_waiting(world, one) for one in waiting)
+        for head in heads:
+            yield Robot(world, done, head, pending, fresh=False)
+            if head is None and pending:
+                yield Robot(world, done, None, pending, halted=True, fresh=False)
+
+
+def _runs(rest: tuple[MissionState, ...]) -> bool:
+    return bool(rest) and rest[0].state is State.STATE_RUNNING
+
+
+def _state(message: MissionState) -> State:
+    return State(message.state)
+
+
+def _active(world: World, message: MissionState) -> Iterator[Mission]:
+    index = message.current_goal_index
+    for kind in _kinds(world, message):
+        goals = () if kind in GOALLESS else message.goals
+        places = (0,) if kind in GOALLESS else (index, NOT_CHOSEN) if kind in AUTOMATIC else (index,)
+        for goal in places:
+            for finishing in (False, True):
+                yield Mission(kind, goals, _state(message), goal, finishing)
+
+
+def _waiting(world: World, message: MissionState) -> Mission:
+    kind = _kinds(world, message)[0]
+    goals = () if kind in GOALLESS else message.goals
+    return Mission(kind, goals, goal=NOT_CHOSEN if kind in AUTOMATIC else 0)
+
+
+def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
+    """The kinds that a mission of this type may have, of those that behave alike only one."""
+    told = message.mission_type or MissionType()
+    known = [kind for kind, types in TYPES.items() if told in types or told == FAMILY_TYPES.get((kind, world.family))]
+    if not known or told == MissionType():
+        known += [kind for kind in AM_26 if FAMILY[kind] in (None, world.family)]
+    kinds = known if message.goals else []
+    if not kinds:
+        kinds = [Kind.RETURN] if len(message.goals) > 1 else [Kind.CHARGE, Kind.RETURN]
+    alike = {(kind in PATROLS, kind in AUTOMATIC, kind in GOALLESS and kind): kind for kind in reversed(kinds)}
+    return tuple(reversed(alike.values()))
+
+
+@functools.lru_cache(maxsize=100)
+def samples(world: World) -> tuple[Robot, ...]:
+    """Robots that stand for all there are as far as answers differ."""
+    goals = tuple(Goal(destination_id=name) for name in world.destinations[:2]) or (Goal(destination_id="-"),)
+    kinds = [kind for kind in Kind if FAMILY[kind] in (None, world.family)]
+    active = [
+        Mission(kind, () if kind in GOALLESS else goals, state, goal, finishing)
+        for kind in kinds
+        for state in (State.STATE_RUNNING, State.STATE_PAUSED)
+        for goal in ((0,) if kind in GOALLESS else range(len(goals)))
+        for finishing in (False, True)
+    ]
+    waits = Mission(Kind.BASE_NAVIGATE, goals[:1])
+    over = Mission(Kind.BASE_NAVIGATE, goals[:1], State.STATE_SUCCEEDED)
+    calm = [
+        Robot(world),
+        Robot(world, fresh=False),
+        Robot(world, (over,), fresh=False),
+        *(
+            Robot(world, done, None, (waits,), halted=halted, fresh=False)
+            for done in ((), (over,))
+            for halted in (False, True)
+        ),
+        *(
+            Robot(world, done, one, pending, fresh=False)
+            for one in active
+            for done in ((), (over,))
+            for pending in ((), (waits,))
+        ),
+    ]
+    armed = [
+        Robot(one.world, one.done, one.active, one.pending, one.halted, one.fresh, Fault(status, applied))
+        for one in (calm[1], calm[2], Robot(world, (), active[0], (waits,), fresh=False))
+        for status in (INTERNAL, DEADLINE_EXCEEDED)
+        for applied in (False, True)
+    ]
+    return (*calm, *armed)
+
+
+def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tuple[int, ...]) -> bool:
+    """Whether the one may have become the other by whatever calls.
+
+    Missions keep their order, and one that has ended stays as it ended.
+    """
+    places = {name: place for place, name in enumerate(names_after)}
+    kept = [places[name] for name in names if name in places]
+    ended = zip(names, before.done, strict=False)
+    return kept == sorted(kept) and all(
+        after.listed[places[name]].state is one.state for name, one in ended if name in places
+    )
+
+
+MIDDLE = Middle(world=lambda robot: robot.world, shown=shown, samples=samples, topic=lambda _: TOPIC, follows=follows)
+
+
+__all__ = ["MIDDLE"]

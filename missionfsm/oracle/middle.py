@@ -1,0 +1,203 @@
+"""What an observation tells of a system of which nothing was known, or that others have brought somewhere else.
+
+`missionfsm.oracle.transition` asks this of explanations whose state is `Unknown`: nothing is judged but whether some
+state allows an answer, until a message shows the state. Where nothing explains an event, `unforeseen` says how others
+can have brought it about, which assumes a reading of `missionfsm.kernel.middle`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Hashable, Iterable, Iterator
+from typing import Any
+
+from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
+from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
+from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.spec import Match, Mismatch, Spec, View
+from missionfsm.oracle.explanation import (
+    GONE,
+    Channel,
+    Explanation,
+    InFlight,
+    Names,
+    Owed,
+    Ready,
+    fresh,
+    tidy,
+)
+from missionfsm.oracle.successors import Moves, Sighting
+
+WILD = Ready(Answer("*"), (), (), ())
+"""The answer of a call that took effect, or was refused, while nothing was known: any that some state allows."""
+_FREE = Owed(ANY, (), passing=True, optional=True)
+
+
+def is_unknown(explanation: Explanation) -> bool:
+    """Whether nothing is known of the state."""
+    return type(explanation.state) is Unknown
+
+
+def plausible(moves: Moves, explanation: Explanation, call: InFlight, answer: Answer) -> Iterator[tuple[Hashable, ...]]:
+    """The topics of the channels that such an answer opens, once for each way in which some state allows it."""
+    middle = moves.spec.middle
+    state = explanation.state
+    if middle is not None and not is_unknown(explanation):
+        state = Unknown(middle.world(state))
+    found = dict.fromkeys(
+        tuple(one.topic for one in step.opens)
+        for step in moves.outcomes(state, call.request, (None,) * len(call.args))
+        if step.answer is not None and meet(explanation.assumed, step.assumes) and moves.agreements(step.answer, answer)
+    )
+    yield from found
+
+
+def answered(moves: Moves, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Sighting]:
+    """The explanations in which a call is answered as some state allows, of which nothing more is known."""
+    call = here.calls[position]
+    rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+    known = {channel.name for channel in rest.channels}
+    for topics in plausible(moves, here, call, answer):
+        opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
+        channels = (*rest.channels, *(one for one in opened if one.name not in known))
+        yield Sighting(tidy(rest.but(channels=channels)))
+
+
+def shown(  # noqa: PLR0913 - a message, and what is known
+    moves: Moves,
+    here: Explanation,
+    channel: int,
+    content: Any,  # noqa: ANN401 - of any system
+    names: Names,
+    *,
+    then: bool = False,
+) -> Iterator[Sighting]:
+    """The explanations in which a message shows the state, whatever it was before.
+
+    Args:
+        then: whether it has to be one that the state before may have become.
+    """
+    spec, middle = moves.spec, moves.spec.middle
+    if middle is None:
+        return
+    if GONE in names:
+        if is_unknown(here):
+            yield Sighting(here)  # it shows what was before
+        return
+    world = here.state.world if is_unknown(here) else middle.world(here.state)
+    for state, view in middle.shown(world, content):
+        matches = spec.matches(view, content)
+        if isinstance(matches, Mismatch):
+            continue
+        for match in matches:
+            moves.spend()
+            assumed = meet(here.assumed, match.assumes)
+            own = _names(spec, here, state, match, names)
+            if assumed and not (then and not middle.follows(here.state, here.names, state, own)):
+                looks = spec.looks(view, content)
+                after = _standing(here, state, own, channel, middle.topic(content), view, looks)
+                yield Sighting(tidy(after.but(assumed=assumed)), match.rules)
+
+
+def _names(spec: Spec, here: Explanation, state: Any, match: Match, names: Names) -> Names:  # noqa: ANN401
+    known = {ref: names[at] for ref, at in match.names}
+    unseen = fresh(here)
+    return tuple(known[ref] if ref in known else next(unseen) for ref in range(spec.names(state)))
+
+
+def _standing(  # noqa: PLR0913 - what a message fixes
+    here: Explanation,
+    state: Any,  # noqa: ANN401 - of any system
+    names: Names,
+    name: int,
+    topic: Hashable,
+    view: View,
+    looks: Hashable,
+) -> Explanation:
+    """The explanation in that state, shown on one channel; the others may show it as well, or what was on its way."""
+    channels = [
+        Channel(one.name, one.topic, one.last, (_FREE, Owed(view, names, passing=True)))
+        for one in here.channels
+        if one.name != name
+    ]
+    calls = tuple(
+        one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
+        for one in here.calls
+    )
+    told = Channel(name, topic, Owed(view, names, looks=looks))
+    gone = tuple(one for one in here.gone if one not in names)
+    return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
+
+
+def joined(moves: Moves, here: Explanation, channel: int, content: Any) -> Explanation:  # noqa: ANN401
+    """The explanation with a channel that was opened before the log began; it may show anything first."""
+    middle, known = moves.spec.middle, {one.name for one in here.channels}
+    if middle is None or isinstance(content, Garbled) or channel in known:
+        return here
+    return here.but(channels=(*here.channels, Channel(channel, middle.topic(content), None, (_FREE,))))
+
+
+def unforeseen(
+    moves: Moves,
+    explanations: Iterable[Explanation],
+    assumed: Iterable[Assumption],
+    kind: type,
+    *what: Any,  # noqa: ANN401
+) -> Iterator[Sighting]:
+    """How somebody whose calls are not in the log, or who called before it began, can have brought an event about.
+
+    Args:
+        assumed: what is assumed where the numbers of a message compare so with those before.
+    """
+    spec = moves.spec
+    acted = LOG_02["b"] if spec.others else LOG_01["b"]
+    for one in explanations:
+        agreed = meet(one.assumed, (acted, *assumed))
+        here = one.but(assumed=agreed)
+        if not agreed or is_unknown(here):
+            continue
+        if kind is Received:
+            content, names, _, channel = what
+            yield from shown(moves, here, channel, content, names, then=True)
+            yield from _late(here, channel, content)
+        elif kind is Returned:
+            answer, names, call = what
+            place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
+            if place is not None:
+                for after in answered(moves, here, place, answer, names):
+                    yield Sighting(_lost_sight(moves, after.explanation))
+        elif kind is Driven or (kind is Settled and spec.anywhere):
+            yield Sighting(_lost_sight(moves, here))
+
+
+def _late(here: Explanation, name: int, content: Any) -> Iterator[Sighting]:  # noqa: ANN401
+    """The explanation in which a channel that was opened before the log began still shows what was before."""
+    channels = (channel for channel in here.channels if channel.name == name)
+    if not isinstance(content, Garbled) and any(one.last and one.last.view is ANY for one in channels):
+        yield Sighting(here)
+
+
+def _lost_sight(moves: Moves, here: Explanation) -> Explanation:
+    """The explanation in which nothing is known of the state any more."""
+    assert moves.spec.middle is not None, "asked only of systems that can be judged so"  # noqa: S101
+    channels = tuple(Channel(one.name, one.topic, Owed(ANY, ()), (_FREE,)) for one in here.channels)
+    calls = tuple(
+        one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
+        for one in here.calls
+    )
+    unknown = Unknown(moves.spec.middle.world(here.state))
+    return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
+
+
+def wild(moves: Moves, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
+    """The explanation in which a call took effect, or was refused, while nothing was known, and is answered so."""
+    call = here.calls[position]
+    if WILD in call.ready:
+        known = {channel.name for channel in here.channels}
+        for topics in itertools.islice(plausible(moves, here, call, answer), 1):
+            if all(name in known for name in names[: len(topics)]):
+                yield here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+
+
+__all__ = ["answered", "is_unknown", "joined", "shown", "unforeseen", "wild"]

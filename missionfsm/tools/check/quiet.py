@@ -1,0 +1,57 @@
+"""When everything has settled, told by the time: nothing has happened for so long that what is outstanding is late."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from missionfsm.kernel.history import Event, Received, Settled
+
+_SETTLED = Settled()
+
+
+class Quiet:
+    """Says of one conversation when it has been quiet for long enough.
+
+    A message that says again what its stream showed last is no cause of anything, so that it breaks no silence.
+
+    Args:
+        seconds: how long (of `at`) after its cause something is late.
+
+    Attributes:
+        timed: whether any line has said when it was.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.timed = False
+        self._since: float | None = None
+        self._waiting = False
+        self._shown: dict[Hashable, Hashable] = {}
+
+    def settling(self, at: float | None, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """The events of a line, after a `Settled` where everything had settled before it.
+
+        Args:
+            at: when the line was, in seconds; None if it does not say.
+        """
+        before: tuple[Event, ...] = ()
+        if at is not None:
+            self.timed = True
+            if self._waiting and self._since is not None and at - self._since >= self.seconds:
+                before, self._waiting = (_SETTLED,), False
+        causes = sum(map(self._is_cause, events))  # each of them is noted
+        if causes:
+            self._since, self._waiting = self._since if at is None else at, True
+        return (*before, *events)
+
+    def _is_cause(self, event: Event) -> bool:
+        if type(event) is not Received:
+            return True
+        key = (event.channel, *(track for track, _ in event.marks))
+        says = (event.content, event.names)
+        again = self._shown.get(key) == says
+        self._shown[key] = says
+        return not again
+
+
+__all__ = ["Quiet"]

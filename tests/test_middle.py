@@ -1,0 +1,177 @@
+"""Logs that begin while a robot is in use, and robots that others use as well."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import orjson
+import pytest
+from commandline import CommandLine
+from traffic import navigate, readings_at_random, walk
+
+from missionfsm.app.asked import judged_system
+from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.transcript import head
+from missionfsm.tools.check.judge import Judge
+
+
+@cache
+def automaton(name: str, drives: tuple[str, ...], *, strict: bool, anywhere: bool, others: bool) -> Automaton:
+    spec = judged_system(name, strict=strict, anywhere=anywhere, others=others).spec
+    return Automaton(spec, drives)
+
+
+def read(first: Any, lines: list[Any]) -> Judge:
+    said = head(first)
+    how = {"strict": said.strict, "anywhere": said.anywhere, "others": said.others}
+    judge = Judge(
+        judged_system(said.system, **how), said, automaton(said.system, said.drives, **how), apart=True, waits=False
+    )
+    for line in lines:
+        if not judge.feed(line):
+            break
+    return judge
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6, 7, 8])
+def test_a_conforming_history_that_is_cut_anywhere_is_no_violation(seed: int) -> None:
+    """However much of a right history is missing at its beginning, what is left is never a violation."""
+    log = walk(seed, 14, readings_at_random(seed), drives=seed % 2 == 0)
+    first = {**log.head, "begins": "anywhere", "transport": "strict"}
+    wrong = {}
+    for cut in range(len(log.lines)):
+        judge = read(first, log.lines[cut:])
+        if not judge.right:
+            wrong[cut] = str(judge.verdict())
+    assert wrong == {}
+
+
+def shown(number: int, *missions: tuple[str, str], table: str = "table-1", stream: int = 1) -> Any:
+    """A message that lists missions, each with its id and the end of its state's name."""
+    listed = [
+        {
+            "missionId": name,
+            "state": f"STATE_{state}",
+            "missionType": {"baseType": "BASE_TYPE_NAVIGATE"},
+            "goals": [{"destinationId": table}],
+            "currentGoalIndex": 0,
+        }
+        for name, state in missions
+    ]
+    active = next((at for at, (_, state) in enumerate(missions) if state in ("RUNNING", "PAUSED")), -1)
+    metadata = {"timestamp": "2025-04-01T17:05:00.001Z", "sequenceNumber": number}
+    return {
+        "stream": stream,
+        "message": {"metadata": metadata, "missionStates": {"missions": listed, "currentMissionIndex": active}},
+    }
+
+
+def call(number: int, method: str, params: Any, answer: Any) -> list[Any]:
+    return [{"call": number, "method": method, "params": params}, {"return": number, **answer}]
+
+
+HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}, "transport": "strict"}
+ANYWHERE, OTHERS = {**HEAD, "begins": "anywhere"}, {**HEAD, "others": True}
+REFUSED = {"error": {"status": "FAILED_PRECONDITION", "message": ""}}
+BUSY = shown(4211, ("X", "SUCCEEDED"), ("Y", "RUNNING"))
+FIRST = [*call(1, "SubscribeMissionStatus", {}, {"result": {"stream": 1}}), shown(1)]
+MINE = [*call(2, "CreateMission", navigate("table-1"), {"result": {"missionId": "A"}}), shown(2, ("A", "RUNNING"))]
+THEIRS = shown(3, ("A", "SUCCEEDED"), ("T", "RUNNING"))
+RIGHT = {
+    "nothing is known, so that any answer may be right": (ANYWHERE, call(1, "SkipGoal", {}, REFUSED), ""),
+    "the state is shown and goes on": (ANYWHERE, [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "SUCCEEDED"))], ""),
+    "an answer to a call from before": (ANYWHERE, [{"return": 9, "result": {}}, BUSY], ""),
+    "a call from before takes effect": (
+        ANYWHERE,
+        [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), ("Z", "DEFAULT"))],
+        "LOG-01",
+    ),
+    "a stream from before": (ANYWHERE, [BUSY, shown(7, ("X", "SUCCEEDED"), ("Y", "RUNNING"), stream=2)], ""),
+    "a stream from before ends": (ANYWHERE, [BUSY, {"stream": 5, "closed": True}], ""),
+    "others create": (
+        OTHERS,
+        [*FIRST, *MINE, THEIRS, *call(3, "CreateMission", navigate("table-2"), REFUSED)],
+        "LOG-02",
+    ),
+    "others create before it is shown": (
+        OTHERS,
+        [*FIRST, *call(2, "CreateMission", navigate("table-2"), REFUSED), shown(2, ("T", "RUNNING"))],
+        "LOG-02",
+    ),
+    "others clear": (OTHERS, [*FIRST, *MINE, shown(3, ("A", "SUCCEEDED")), shown(4)], "LOG-02"),
+    "others cancel": (
+        {**OTHERS, "drives": ["missionFailed"]},
+        [*FIRST, *MINE, shown(3, ("A", "CANCELED"))],
+        "LOG-02",
+    ),
+}
+WRONG = {
+    "an answer that no state allows": (ANYWHERE, call(1, "CreateMission", navigate("nowhere"), {"result": {}})),
+    "a call that is refused for what is shown": (
+        ANYWHERE,
+        [BUSY, *call(1, "SkipGoal", {}, {"error": {"status": "NOT_FOUND", "message": ""}})],
+    ),
+    "a mission that has ended runs again": (ANYWHERE, [BUSY, shown(4212, ("X", "RUNNING"))]),
+    "missions change places": (ANYWHERE, [BUSY, shown(4212, ("Y", "SUCCEEDED"), ("X", "SUCCEEDED"))]),
+    "goals change": (ANYWHERE, [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), table="table-2")]),
+    "numbers go back": (ANYWHERE, [BUSY, shown(4210, ("X", "SUCCEEDED"), ("Y", "SUCCEEDED"))]),
+    "a mission of others runs again": (OTHERS, [*FIRST, *MINE, THEIRS, shown(4, ("A", "RUNNING"), ("T", "SUCCEEDED"))]),
+    "nobody said that there are others": (HEAD, [*FIRST, *MINE, THEIRS]),
+    "nobody said that it begins anywhere": (HEAD, [BUSY]),
+}
+
+
+@pytest.mark.parametrize("case", RIGHT)
+def test_what_is_not_in_the_log_is_explained(case: str) -> None:
+    """What was before the log, and what others do, is no violation; it is flagged where something has to be assumed."""
+    first, lines, flag = RIGHT[case]
+    judge = read(first, lines)
+    assert judge.right, str(judge.verdict())
+    flagged = {one.partition("=")[0] for one in judge.verdict().flagged}
+    assert flagged & {"LOG-01", "LOG-02"} == ({flag} if flag else set())
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_no_caller_can_do_is_wrong(case: str) -> None:
+    """What nobody can bring about, whoever called before or besides, is a violation."""
+    first, lines = WRONG[case]
+    judge = read(first, lines)
+    assert judge.violation is not None
+
+
+def test_what_is_outstanding_for_long_is_late(command_line: CommandLine, tmp_path: Path) -> None:
+    """After a silence of so many seconds everything has settled, also where the last message is said again."""
+    head_line = {key: value for key, value in HEAD.items() if key != "transport"}
+    lines = [
+        *FIRST,
+        *MINE,
+        *call(3, "AppendMission", navigate("table-1"), {"result": {"missionId": "B"}}),
+        shown(3, ("A", "RUNNING"), ("B", "DEFAULT")),
+        shown(4, ("A", "SUCCEEDED"), ("B", "DEFAULT")),
+        shown(5, ("A", "SUCCEEDED"), ("B", "DEFAULT")),
+    ]
+    path = tmp_path / "log"
+    timed = [{**line, "at": 10.0 * number} for number, line in enumerate(lines)]
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in [head_line, *timed]))
+    assert command_line("check", path).status == 0
+    assert command_line("check", path, "--settled-after", "11").status == 0
+    late = [*timed[:-1], {**timed[-1], "at": 500.0}]
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in [head_line, *late]))
+    assert command_line("check", path).status == 0
+    assert command_line("check", path, "--settled-after", "60").status == 1
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in [head_line, *lines]))
+    ended = command_line("check", path, "--settled-after", "60")
+    assert (ended.status, "--settled-after" in ended.err) == (2, True)
+
+
+@pytest.mark.parametrize("option", [("--begins", "anywhere"), ("--others",)])
+def test_a_system_that_cannot_be_judged_so_says_so(
+    command_line: CommandLine, tmp_path: Path, option: tuple[str, ...]
+) -> None:
+    """A log of a system that can only be judged from its beginning is bad input, in one line."""
+    path = tmp_path / "log"
+    path.write_bytes(orjson.dumps({"missionfsm": 1, "system": "isaac.robot", "world": {}}) + b"\n")
+    ended = command_line("check", path, *option)
+    assert (ended.status, ended.err.count("\n"), "isaac.robot: " in ended.err) == (2, 1, True)

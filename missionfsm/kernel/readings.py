@@ -65,6 +65,7 @@ class Ambiguity:
     rule: str = ""
     _bit: Mapping[str, int] = field(init=False, repr=False)
     _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
+    _named: dict[str | tuple[str, ...], Assumption] = field(init=False, repr=False, factory=dict)
     group: int = field(init=False, repr=False)
     """The bits of all its readings."""
 
@@ -81,8 +82,12 @@ class Ambiguity:
         Raises:
             ValueError: there is no such letter, or none at all is given.
         """
-        chosen = self.checked((letters,) if isinstance(letters, str) else letters)
-        return self.where(functools.reduce(int.__or__, (self._bit[letter] for letter in chosen)))
+        named = self._named.get(letters)
+        if named is None:
+            chosen = self.checked((letters,) if isinstance(letters, str) else letters)
+            bits = functools.reduce(int.__or__, (self._bit[letter] for letter in chosen))
+            named = self._named[letters] = self.where(bits)
+        return named
 
     def checked(self, letters: Iterable[str]) -> tuple[str, ...]:
         """These letters. Raises ValueError if one of them is no reading, or there is none."""
@@ -99,6 +104,11 @@ class Ambiguity:
         if made is None:
             made = self._made[bits] = Assumption(self, ~(self.group & ~bits), self.group)
         return made
+
+    @property
+    def bits(self) -> tuple[int, ...]:
+        """The bit of each reading, in the order of the letters."""
+        return tuple(self._bit.values())
 
     def besides(self, *letters: str) -> Assumption:
         """The assumption that none of these letters is followed. Raises ValueError as indexing does."""
@@ -143,7 +153,12 @@ def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = 
 
 def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> int:
     """Only what is in `choice` is decided; the rest stays open. Raises ValueError as `choose` does."""
-    ambiguities = tuple(ambiguities)
+    return _constrained(tuple(ambiguities), tuple(choice.items()))
+
+
+@functools.lru_cache(maxsize=1_000)
+def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, str], ...]) -> int:
+    choice = dict(chosen)
     decided: dict[Ambiguity, str] = {}
     for name in sorted(choice, key=lambda name: name.count(".")):
         letter = choice[name]
@@ -185,14 +200,22 @@ def unflagged(ambiguities: Iterable[Ambiguity]) -> int:
     return meet(ANYTHING, (one.besides(*one.flagged) for one in ambiguities if one.flagged))
 
 
-def merge(first: int, second: int, groups: Iterable[int]) -> int | None:
+def by_bit(ambiguities: Iterable[Ambiguity]) -> dict[int, int]:
+    """The bits of all readings of an ambiguity, by the bit of each of its readings; `merge` takes this."""
+    return {bit: one.group for one in ambiguities for bit in one.bits}
+
+
+def merge(first: int, second: int, groups: Mapping[int, int]) -> int | None:
     """One set of assumptions that stands for exactly these two, or None where there is none.
 
     A set of assumptions is a box: a choice for every question, independently. Two boxes make a box when one holds the
     other or when they differ in a single question.
+
+    Args:
+        groups: what `by_bit` makes of the questions.
     """
     union = first | second
     if union in (first, second):
         return union
     differing = first ^ second
-    return union if any(not differing & ~group for group in groups) else None
+    return None if differing & ~groups.get(differing & -differing, 0) else union

@@ -10,7 +10,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
 
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, meet
+from missionfsm.kernel.readings import ANYTHING, by_bit, meet
 from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
@@ -73,7 +73,7 @@ class Moves:
         self.driven = frozenset(driven)
         self.assumed = assumed
         self.budget = budget
-        self.groups = tuple(ambiguity.group for ambiguity in spec.ambiguities)
+        self.groups = by_bit(spec.ambiguities)
         self._outcomes: dict[Any, tuple[Step, ...]] = {}
         self._effects: dict[Any, tuple[Step, ...]] = {}
         self._idle: dict[Any, tuple[Step, ...]] = {}

@@ -14,6 +14,7 @@ from missionfsm.kernel.readings import (
     ANYTHING,
     Ambiguity,
     Assumption,
+    by_bit,
     choose,
     clashes,
     constrain,
@@ -26,7 +27,7 @@ COLOUR = Ambiguity("R-1", "Which colour?", {"a": "red", "b": "green", "c": "blue
 DAY = Ambiguity("R-2.day", "Which day?", {"a": "Monday", "b": "Friday"}, "a")
 HOUR = Ambiguity("R-2.hour", "Which hour?", {"b": "noon", "c": "midnight"}, "c")
 ALL = (COLOUR, DAY, HOUR)
-GROUPS = tuple(one.group for one in ALL)
+GROUPS = by_bit(ALL)
 Choices = frozenset[tuple[str, ...]]
 
 assumptions = st.sampled_from(ALL).flatmap(

@@ -57,6 +57,7 @@ class Live:
         self.system = system
         self._lock = threading.RLock()
         self._record = record
+        self._rules = system.spec.rules_by_id
         self._drives = [one for one in system.spec.drives if one not in undriven]
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
@@ -88,7 +89,7 @@ class Live:
     def _answered(self, exchange: Exchange) -> Answered:
         if exchange.error is None:
             return Answered(exchange.result)
-        rules = tuple(self.system.spec.rule(rule) for rule in self._subject.rules)
+        rules = tuple(self._rules[rule] for rule in self._subject.rules)
         return Answered(None, exchange.error, tuple(rule.id for rule in rules), tuple(str(rule.cite) for rule in rules))
 
     def reset(self, world: JSON) -> None:

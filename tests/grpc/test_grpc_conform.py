@@ -39,7 +39,7 @@ def subject(name: str, address: str, **options: Any) -> Iterator[GrpcSubject]:
 def judged(name: str, address: str, seed: int, **options: Any) -> Verdict:
     """The verdict of a short run."""
     with subject(name, address, **options) as server:
-        return conform(in_binary(system(name)), server, examples=2, tours=2, steps=20, seed=seed, advice=False)
+        return conform(in_binary(system(name)), server, examples=2, tours=1, steps=15, seed=seed, advice=False)
 
 
 @pytest.mark.parametrize("name", ["bear.mission", "bear.status"])

@@ -341,3 +341,35 @@ def test_tls_is_spoken_with_a_certificate(tmp_path: Path) -> None:
         assert subject.exchange("CreateMission", NAVIGATE).error is None
         subject.close()
         assert refusal(Client(robot.target), "ChargeRobot").code() is grpc.StatusCode.UNAVAILABLE
+
+
+def test_no_message_is_left_behind_where_threads_drive(robot: Served, client: Client) -> None:
+    """Whatever threads cause, every subscriber sees every event, in order, up to the last."""
+    client.call("CreateMission", NAVIGATE)
+    streams = [client.subscribe()[1] for _ in range(3)]
+
+    def work(_: int) -> None:
+        other = Client(robot.target)
+        for _ in range(20):
+            other.call("AppendMission", NAVIGATE)
+            robot.drive("goalReached")
+        other.channel.close()
+
+    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+        list(pool.map(work, range(3)))
+    last = number_of(client.subscribe()[1].get(timeout=WAIT))
+    seen = [[number_of(message) for message in until(last, one)] for one in streams]
+    assert seen[0] == seen[1] == seen[2] == sorted(set(seen[0]))
+
+
+def number_of(message: JSON) -> int:
+    return int(message["metadata"]["sequenceNumber"])
+
+
+def until(last: int, messages: queue.Queue[JSON]) -> Iterator[JSON]:
+    """The messages of a stream up to the one with a number."""
+    while True:
+        message = messages.get(timeout=WAIT)
+        yield message
+        if number_of(message) == last:
+            return

@@ -9,8 +9,9 @@ from __future__ import annotations
 import asyncio
 import concurrent.futures
 import contextlib
+import functools
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import Any, Self
 
@@ -31,12 +32,15 @@ from missionfsm.adapters.grpc.descriptors import (
     pool,
 )
 from missionfsm.adapters.grpc.faults import Dice, Faults
+from missionfsm.adapters.grpc.outgoing import Inbox, Outgoing
 from missionfsm.bear.wire.fields import PACKAGE, Method
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 
 MAX_UNSENT_MESSAGES = 10_000
 """Messages that wait for a subscriber who does not read; then its stream ends with RESOURCE_EXHAUSTED."""
+REMEMBERED_MESSAGES = 100
+"""Messages whose bytes are remembered, since other streams show the same one."""
 MAX_MESSAGE_BYTES = 4 * 1024 * 1024
 """What gRPC takes of one message unless told otherwise."""
 STOP_SECONDS = 0.1
@@ -97,11 +101,13 @@ class _Tokens(aio.ServerInterceptor):
 class _Handlers(grpc.GenericRpcHandler):
     """The calls of a system, and the control service."""
 
-    def __init__(self, live: Robots, dice: Dice, *, with_control: bool) -> None:
+    def __init__(self, live: Robots, dice: Dice, loop: asyncio.AbstractEventLoop, *, with_control: bool) -> None:
         self._live = live
+        self._inbox = Inbox(loop)
         self._dice = dice
         self._by_path = {path(one): self._handler(one) for one in methods(live.system.name).values()}
-        self._open: set[_Outgoing] = set()
+        self._open: set[Outgoing] = set()
+        self._bytes: dict[int, tuple[JSON, bytes]] = {}
         if with_control:
             for name in control.UNARY:
                 self._by_path[f"/{control.SERVICE}/{name}"] = grpc.unary_unary_rpc_method_handler(
@@ -115,17 +121,9 @@ class _Handlers(grpc.GenericRpcHandler):
 
     def _handler(self, method: Method) -> grpc.RpcMethodHandler:
         if method.streams:
+            return grpc.unary_stream_rpc_method_handler(functools.partial(self._stream, method))
 
-            async def stream(request: bytes, context: Context) -> AsyncIterator[bytes]:
-                async for one in self._stream(method, request, context):
-                    yield one
-
-            return grpc.unary_stream_rpc_method_handler(stream)
-
-        async def unary(request: bytes, context: Context) -> bytes:
-            return await self._unary(method, request, context)
-
-        return grpc.unary_unary_rpc_method_handler(unary)
+        return grpc.unary_unary_rpc_method_handler(functools.partial(self._unary, method))
 
     @staticmethod
     async def _read(method: Method, request: bytes, context: Context) -> JSON:
@@ -151,10 +149,19 @@ class _Handlers(grpc.GenericRpcHandler):
             return Spoilt(error, applied=deadline == "applied")
         return None
 
+    def _encoded(self, method: Method, message: JSON) -> bytes:
+        """The bytes of a message; streams that show the same event share the message, and so its bytes."""
+        known = self._bytes.get(id(message))
+        if known is None or known[0] is not message:
+            if len(self._bytes) >= REMEMBERED_MESSAGES:
+                self._bytes.clear()
+            known = self._bytes[id(message)] = (message, encode(method.response, message))
+        return known[1]
+
     async def _stream(self, method: Method, request: bytes, context: Context) -> AsyncIterator[bytes]:
         params = await self._read(method, request, context)
         loop = asyncio.get_running_loop()
-        outgoing = _Outgoing(loop, dict(context.invocation_metadata() or ()))
+        outgoing = Outgoing(self._inbox, dict(context.invocation_metadata() or ()))
         answered = self._live.subscribe(method.name, params, outgoing.come)
         if answered.error is not None:
             await _refuse(context, answered)
@@ -169,7 +176,7 @@ class _Handlers(grpc.GenericRpcHandler):
                     return
                 if outgoing.unsent > MAX_UNSENT_MESSAGES:
                     await context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, "the subscriber does not read")
-                data = encode(method.response, message)
+                data = self._encoded(method, message)
                 copies = self._dice.copies(first=first)
                 for _ in range(copies):
                     yield data
@@ -210,67 +217,6 @@ class _Handlers(grpc.GenericRpcHandler):
     async def _history(self, _: bytes, __: Context) -> AsyncIterator[bytes]:
         for line in self._live.history():
             yield control.pack(line)
-
-
-class _Outgoing:
-    """The messages of one stream, from the robot to its subscriber.
-
-    Args:
-        loop: the loop of the server.
-        metadata: what the subscriber sent along; it may name a session, and the stream within it.
-
-    Attributes:
-        session, stream: those names; "" for none.
-        sent: how many messages went out.
-    """
-
-    def __init__(self, loop: asyncio.AbstractEventLoop, metadata: Mapping[str, str]) -> None:
-        self.session = metadata.get(control.SESSION_KEY, "")
-        self.stream = metadata.get(control.STREAM_KEY, "")
-        self.sent = 0
-        self._loop = loop
-        self._waiting: asyncio.Queue[JSON | asyncio.Future[None]] = asyncio.Queue()
-
-    @property
-    def unsent(self) -> int:
-        """How many messages wait."""
-        return self._waiting.qsize()
-
-    def come(self, message: JSON) -> None:
-        """Take a message, from whichever thread it comes."""
-        try:
-            here: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
-        except RuntimeError:
-            here = None
-        if here is self._loop:
-            self._waiting.put_nowait(message)
-        else:
-            with contextlib.suppress(RuntimeError):  # the server stops; nobody reads any more
-                self._loop.call_soon_threadsafe(self._waiting.put_nowait, message)
-
-    async def next(self, seconds: float | None) -> JSON:
-        """The next message, once all before it went out; None once so many seconds have passed."""
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(seconds):
-                while True:
-                    found = await self._waiting.get()
-                    if not isinstance(found, asyncio.Future):
-                        return found
-                    found.set_result(None)
-        return None
-
-    def flushed(self) -> asyncio.Future[None]:
-        """Done once all that waits now went out, or the stream ended."""
-        found = self._loop.create_future()
-        self._waiting.put_nowait(found)
-        return found
-
-    def close(self) -> None:
-        """Nothing goes out any more."""
-        while not self._waiting.empty():
-            found = self._waiting.get_nowait()
-            if isinstance(found, asyncio.Future):
-                found.set_result(None)
 
 
 async def _refuse(context: Context, answered: Answered) -> None:
@@ -321,9 +267,9 @@ class Server:
         self.live = live
         self._host = f"[{host}]" if ":" in host else host
         self._security = security
-        self._handlers = _Handlers(live, Dice(faults, seed), with_control=with_control)
-        self._with_control = with_control
         self._loop = asyncio.new_event_loop()
+        self._handlers = _Handlers(live, Dice(faults, seed), self._loop, with_control=with_control)
+        self._with_control = with_control
         self._thread = threading.Thread(target=self._loop.run_forever, name="missionfsm-grpc", daemon=True)
         self._thread.start()
         self._server: aio.Server | None = None

@@ -35,6 +35,7 @@ class Reference:
     ) -> None:
         self.model = Model(system, choice, twist=twist)
         self.rules: tuple[str, ...] = ()
+        self._says = {name: rule.says for name, rule in system.spec.rules_by_id.items()}
         self._bend = bend
         self._seconds = seconds
         self._here: Snapshot | None = None
@@ -115,18 +116,29 @@ class Reference:
         answer = reply.answer
         assert answer is not None, "a call is answered"  # noqa: S101 - a model always answers
         if answer.code != OK:
-            said = "; ".join(self.model.system.spec.rule(rule).says for rule in reply.rules)
+            said = "; ".join(self._says[rule] for rule in reply.rules)
             error = {"status": answer.code, "message": said}
             return Exchange(error=error, after=self._notifications(reply))
         return Exchange(codec.write_answer(method, answer, reply.names), after=self._notifications(reply))
 
     def _notifications(self, reply: Reply) -> tuple[Notification, ...]:
-        return tuple(map(self._notification, reply.sent))
+        """What is sent; streams that show the same event share its message."""
+        found: list[Notification] = []
+        last: Sent | None = None
+        for sent in reply.sent:
+            one = last is not None and (sent.number, sent.names) == (last.number, last.names) and sent.view is last.view
+            found.append(self._notification(sent, found[-1].params if one else None))
+            last = sent
+        return tuple(found)
 
-    def _notification(self, sent: Sent) -> Notification:
-        codec = self.model.system.codec
-        message = codec.write_message(sent.view, sent.names, self.model.choice, sent.number, self._seconds(sent.number))
-        message = self._bend(message)
+    def _notification(self, sent: Sent, same: JSON) -> Notification:
+        """The notification of what is sent; `same` is what was sent last, if it shows the same event."""
+        codec, choice = self.model.system.codec, self.model.choice
+        if same is None:
+            seconds = self._seconds(sent.number)
+            message = self._bend(codec.write_message(sent.view, sent.names, choice, sent.number, seconds))
+        else:
+            message = same.get("message", same.get("line"))
         kind, number = _channel(sent.channel)
         if kind == "connection":
             return Notification("line", {"connection": number, "line": message})

@@ -1,0 +1,162 @@
+"""How fast robots are served, and what the proxy adds, beside a bare echo server of grpcio in the same run.
+
+    pytest -o addopts= tests/bench/test_bench_grpc.py -s
+
+Clients and servers share one process, and so its one interpreter at a time: only the ratios say something.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import statistics
+import threading
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from typing import Any
+
+import grpc
+import pytest
+from grpc import aio
+
+from missionfsm.adapters.grpc.client import Target
+from missionfsm.adapters.grpc.descriptors import encode, methods, path
+from missionfsm.adapters.grpc.proxy import Proxy
+from missionfsm.app.serve import serve
+
+CALLS = 2_000
+EVENTS = 100
+METHODS = methods("bear.mission")
+SUBSCRIBE = METHODS["SubscribeMissionStatus"]
+GOAL = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+
+
+class Loop:
+    """An event loop in a thread of its own."""
+
+    def __init__(self) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
+
+    def run(self, work: Any) -> Any:
+        return asyncio.run_coroutine_threadsafe(work, self.loop).result(30)
+
+    def close(self) -> None:
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self.thread.join()
+        self.loop.close()
+
+
+class Echo(grpc.GenericRpcHandler):
+    """Answers every unary call with its request, and sends what it is told to on every stream."""
+
+    def __init__(self) -> None:
+        self.queues: list[asyncio.Queue[bytes]] = []
+
+    def service(self, details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler:
+        async def echo(request: bytes, _: Any) -> bytes:
+            return request
+
+        async def stream(request: bytes, _: Any) -> AsyncIterator[bytes]:
+            mine: asyncio.Queue[bytes] = asyncio.Queue()
+            self.queues.append(mine)
+            yield request
+            while True:
+                yield await mine.get()
+
+        if details.method.endswith("Subscribe"):
+            return grpc.unary_stream_rpc_method_handler(stream)
+        return grpc.unary_unary_rpc_method_handler(echo)
+
+    async def tell(self, message: bytes) -> None:
+        for one in self.queues:
+            one.put_nowait(message)
+
+
+@contextlib.contextmanager
+def echoing() -> Iterator[tuple[str, Callable[[bytes], Awaitable[None]], Loop]]:
+    """The bare server: where it is, how to make it send, and its loop."""
+    loop, handler = Loop(), Echo()
+
+    async def start() -> tuple[aio.Server, int]:
+        server = aio.server()
+        server.add_generic_rpc_handlers((handler,))
+        port = server.add_insecure_port("127.0.0.1:0")
+        await server.start()
+        return server, port
+
+    server, port = loop.run(start())
+    yield f"127.0.0.1:{port}", handler.tell, loop
+    loop.run(server.stop(0))
+    loop.close()
+
+
+@contextlib.contextmanager
+def relayed(upstream: str) -> Iterator[str]:
+    """A proxy before a server: where it is."""
+    loop, proxy = Loop(), Proxy("bear.mission", Target(upstream), lambda _: None)
+    loop.run(proxy.start("127.0.0.1", 0))
+    yield f"127.0.0.1:{proxy.port}"
+    loop.run(proxy.stop(0))
+    loop.close()
+
+
+def calls_a_second(target: str, name: str, request: bytes) -> tuple[float, float]:
+    """Unary calls, one after the other: how many a second, and the median in milliseconds."""
+    with grpc.insecure_channel(target) as channel:
+        ask = channel.unary_unary(name)
+        times = []
+        for _ in range(CALLS):
+            begun = time.perf_counter()
+            with contextlib.suppress(grpc.RpcError):
+                ask(request, timeout=10)
+            times.append(time.perf_counter() - begun)
+    return CALLS / sum(times), 1000 * statistics.median(times)
+
+
+def messages_a_second(target: str, name: str, subscribers: int, cause: Callable[[], object]) -> float:
+    """Messages to so many subscribers, from the first event to the last message."""
+    with grpc.insecure_channel(target) as channel:
+        streams = [channel.unary_stream(name)(b"") for _ in range(subscribers)]
+        for one in streams:
+            next(one)
+        begun = time.perf_counter()
+        for _ in range(EVENTS):
+            cause()
+        for one in streams:
+            for _ in range(EVENTS):
+                next(one)
+        taken = time.perf_counter() - begun
+        for one in streams:
+            one.cancel()
+    return subscribers * EVENTS / taken
+
+
+def test_unary_calls_beside_an_echo() -> None:
+    """Calls a second to the robot, and through the proxy, against those to the echo server."""
+    request = encode(METHODS["CreateMission"].request, GOAL)
+    with echoing() as (echo, _, _):
+        bare, bare_ms = calls_a_second(echo, "/bench.Echo/Call", request)
+        with relayed(echo) as proxy:
+            _, proxied_ms = calls_a_second(proxy, path(METHODS["CreateMission"]), request)
+    with serve("bear.mission") as robot:
+        robot_calls, _ = calls_a_second(robot.target, path(METHODS["CreateMission"]), request)
+    print(f"\nunary: echo {bare:,.0f}/s, robot {robot_calls:,.0f}/s: {robot_calls / bare:.2f} of it")
+    print(f"proxy: {proxied_ms - bare_ms:.2f} ms added to {bare_ms:.2f} ms (medians)")
+
+
+@pytest.mark.parametrize("subscribers", [1, 8, 200])
+def test_messages_beside_an_echo(subscribers: int) -> None:
+    """Messages a second to subscribers of the robot against those of the echo server."""
+    with echoing() as (echo, tell, loop):
+        payload = b"x" * 400
+        bare = messages_a_second(echo, "/bench.Echo/Subscribe", subscribers, lambda: loop.run(tell(payload)))
+    with serve("bear.mission", world={"family": "servi"}) as robot:
+        with grpc.insecure_channel(robot.target) as channel:
+            create = METHODS["CreateMission"]
+            goals = [{"destinationId": "table-1"}, {"destinationId": "table-2"}]
+            patrol = {"mission": {"serviMission": {"deliveryPatrolMission": {"goals": goals}}}}
+            channel.unary_unary(path(create))(encode(create.request, patrol), timeout=10)
+        robot_rate = messages_a_second(robot.target, path(SUBSCRIBE), subscribers, lambda: robot.drive("goalReached"))
+    print(f"\n{subscribers} subscribers: echo {bare:,.0f}/s, robot {robot_rate:,.0f}/s: {robot_rate / bare:.2f} of it")

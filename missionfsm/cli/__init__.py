@@ -7,17 +7,24 @@ from __future__ import annotations
 
 import io
 import sys
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
 from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, wire
-from missionfsm.cli.common import BAD_INPUT, complain
+from missionfsm.cli.common import BAD_INPUT, DONE, complain, say
+from missionfsm.cli.defaults import defaults
 from missionfsm.cli.signals import ended_like_ctrl_c
 from missionfsm.kernel.codec import UnreadableError
 
 app = typer.Typer(
-    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None, help=__doc__
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=__doc__,
 )
 for _command in (
     judging.conform,
@@ -37,13 +44,30 @@ for _command in (
     app.command()(_command)
 
 
+def _version(*, wanted: bool) -> None:
+    if wanted:
+        from missionfsm import __version__  # noqa: PLC0415 - seldom asked for
+
+        say(f"missionfsm {__version__}")
+        raise typer.Exit(DONE)
+
+
+@app.callback(help=__doc__)
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=lambda wanted: _version(wanted=wanted), help="Show it.")
+    ] = False,
+) -> None:
+    """Options of the program itself."""
+
+
 def main() -> None:
     """Run the command line."""
     if isinstance(sys.stdout, io.TextIOWrapper):  # it may have no daggers, and no encoding has all names of files
         sys.stdout.reconfigure(errors="replace")
     try:
         with ended_like_ctrl_c():
-            app()
+            app(default_map=defaults(typer.main.get_group(app), Path.cwd()))
     except KeyboardInterrupt:
         sys.exit(130)
     except UnreadableError as error:

@@ -59,6 +59,9 @@ JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Wr
 NoFlagged = Annotated[
     bool, typer.Option("--no-flagged", help="What is explained, and yet departs from the text, is a violation.")
 ]
+JunitFile = Annotated[
+    str | None, typer.Option("--junit", metavar="FILE", help="Write the verdict as JUnit XML; - is stdout.")
+]
 KnownFile = Annotated[
     str | None,
     typer.Option(
@@ -140,6 +143,7 @@ def conform(  # noqa: PLR0913 - options of the command
     ] = None,
     json: JsonFile = None,
     html: HtmlFile = None,
+    junit: JunitFile = None,
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
@@ -150,7 +154,8 @@ def conform(  # noqa: PLR0913 - options of the command
     judged = the_system(system)
     readings = choice(reading)
     known = _known(expect_violations, judged)
-    refuse_outputs({"--record": record, "--json": json, "--html": html}, (expect_violations, missions))
+    outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit}
+    refuse_outputs(outputs, (expect_violations, missions))
     deadline = None if seconds is None else time.monotonic() + seconds
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
@@ -196,6 +201,8 @@ def conform(  # noqa: PLR0913 - options of the command
     with troubles.kept():
         write_report(html, ("", None, verdict))
     with troubles.kept():
+        _write_junit(junit, [(verdict.implementation or system, verdict)])
+    with troubles.kept():
         _record(record, judged, verdict)
     troubles.end(DONE if verdict.conforms else FAILED)
 
@@ -208,6 +215,16 @@ def _told(found: Verdict | Exploration | Teeth | Hazards, json: str | None) -> T
     with troubles.kept():
         write_json(json, found.to_json())
     return troubles
+
+
+def _write_junit(path: str | None, named: list[tuple[str, Verdict]]) -> None:
+    """Write verdicts for build servers, if that is wanted."""
+    if path is None:
+        return
+    from missionfsm.adapters.outputs import write_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.check.junit import junit  # noqa: PLC0415
+
+    write_whole(path, junit(named))
 
 
 def _record(path: str | None, system: System, verdict: Verdict) -> None:
@@ -281,6 +298,7 @@ def check(  # noqa: PLR0913 - options of the command
     expect_violations: KnownFile = None,
     json: JsonFile = None,
     html: HtmlFile = None,
+    junit: JunitFile = None,
 ) -> None:
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
     from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415 - commands load what they need
@@ -294,7 +312,7 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
-    refuse_outputs({"--json": json, "--html": html}, (*files, expect_violations))
+    refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*files, expect_violations))
     reached: list[tuple[str, str | None, Verdict]] = []
     troubles = Troubles()
     for path in files:  # one that cannot be read keeps none of the others from being judged
@@ -313,6 +331,8 @@ def check(  # noqa: PLR0913 - options of the command
             write_json(json, verdicts[0] if len(verdicts) == 1 else verdicts)
         with troubles.kept():
             write_report(html, *reached)
+        with troubles.kept():
+            _write_junit(junit, [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached])
     troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
 
 

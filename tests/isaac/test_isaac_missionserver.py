@@ -6,6 +6,8 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -173,3 +175,130 @@ def test_isaac_facade_a_mission_shows_itself() -> None:
     mission = Mission("r")
     assert repr(mission) == f"<Mission {mission.uuid} for 'r': CREATED>"
     assert mission.robot == "r"
+
+
+@pytest.mark.usefixtures("fleet")
+def test_isaac_facade_what_happens_is_told_and_can_be_undone(server: MissionServer) -> None:
+    """Callbacks hear every status in order; a cancelled mission can be retried; what has ended is forgotten."""
+    heard: list[tuple[Mission, Mission.Status]] = []
+    told = threading.Event()
+
+    def hear(mission: Mission, status: Mission.Status) -> None:
+        heard.append((mission, status))
+        if status is Mission.Status.SUCCESS:
+            told.set()
+        raise RuntimeError
+
+    ends = server.on_status(hear)
+    nobody = Mission("nobody")
+    server.submit(nobody)
+    server.cancel(nobody)
+    assert nobody.status is Mission.Status.FAILED_CANCELLED
+    with pytest.raises(MissionRefusedError, match="has ended: FAILED_CANCELLED"):
+        server.cancel(nobody)
+    server.retry(nobody)
+    assert nobody.status is Mission.Status.QUEUED
+    mission = Mission("carter-01", config={"a": {"b": {"c": 1}}})
+    server.submit(mission)
+    assert server.wait(mission, timeout=10)
+    assert told.wait(10)
+    names = [status.name for one, status in heard if one is mission]
+    assert names == ["QUEUED", "STARTED", "RUNNING", "SUCCESS"]
+    assert [status.name for one, status in heard if one is nobody] == ["QUEUED", "FAILED_CANCELLED", "QUEUED"]
+    assert "carter-01" in server.get_robots()
+    assert (mission.channel, mission.config) == ("mission", {"a": {"b": {"c": 1}}})
+    ends()
+    with pytest.raises(MissionRefusedError, match="has not ended: QUEUED"):
+        server.forget(nobody)
+    assert server.forget() == 1
+    after = Mission("carter-01", upstream=[mission])
+    assert after.outstanding_upstream == ()
+    server.submit(after)
+    assert server.wait(after, timeout=10)
+    server.cancel(nobody)
+    assert server.forget() == 2
+    with pytest.raises(MissionRefusedError, match="is forgotten, and had not succeeded"):
+        server.submit(Mission("r", upstream=[nobody]))
+
+
+def test_isaac_facade_memory_is_bounded_by_what_is_unfinished() -> None:
+    """Three hundred missions that end and are forgotten leave nothing behind, but for the one that waits."""
+
+    async def scenario() -> None:
+        async with AsyncMissionServer(0) as server:
+            waiting = Mission("nobody")
+            server.submit(waiting)
+            for _ in range(300):
+                mission = Mission("r")
+                server.submit(mission)
+                server.cancel(mission)
+                server.forget(mission)
+            assert server._tcp is not None
+            scheduler = server._tcp.core._scheduler
+            assert list(scheduler.missions) == [waiting.uuid]
+            assert (len(scheduler.robots), len(server._missions), len(scheduler.deadlines)) == (1, 1, 0)
+
+    asyncio.run(scenario())
+
+
+def test_isaac_facade_statuses_can_be_iterated() -> None:
+    """`async for` gives where a mission stands and all that follows, to any number of readers, until its end."""
+
+    async def scenario() -> None:
+        async with AsyncMissionServer(0) as server, asyncio.timeout(20):
+            core = RobotCore("r", script=(Behavior("succeed", 0.01),), codelet=Codelet(period=0.01))
+            mission, never = Mission("r"), Mission("nobody")
+            server.submit(mission)
+            server.submit(never)
+
+            async def follow(one: Mission) -> list[str]:
+                return [status.name async for status in server.statuses(one)]
+
+            readers = [asyncio.create_task(follow(one)) for one in (mission, mission, never)]
+            robot = asyncio.create_task(TcpRobot(core, port=server.port).run())
+            expected = ["QUEUED", "STARTED", "RUNNING", "SUCCESS"]
+            assert await asyncio.gather(*readers[:2]) == [expected, expected]
+            robot.cancel()
+            await asyncio.wait([robot])
+            await server.close()
+            assert await readers[2] == ["QUEUED"]
+
+    asyncio.run(scenario())
+
+
+def test_isaac_facade_a_journal_is_taken_up(tmp_path: Path) -> None:
+    """A server on the journal of another has its missions, as objects, with their upstreams."""
+    with MissionServer(0, journal=tmp_path / "journal") as first:
+        one = Mission("r", config={"n": {"c": {"p": 1}}})
+        two = Mission("s", upstream=[one], timeout=7)
+        first.submit(two)
+        first.submit(one)
+        first.cancel(one)
+        assert first.missions == ()
+    with MissionServer(0, journal=tmp_path / "journal", resume="rerun") as second:
+        assert [(mission.uuid, mission.status.name) for mission in second.missions] == [
+            (one.uuid, "FAILED_CANCELLED"),
+            (two.uuid, "FAILED_UPSTREAM"),
+        ]
+        again = second.missions[1]
+        assert (again.request, again.upstream) == (two.request, second.missions[:1])
+        second.retry(second.missions[0])
+        assert [mission.status.name for mission in second.missions] == ["QUEUED", "QUEUED"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"robot": 1},
+        {"channel": 5},
+        {"status_channel": b"x"},
+        {"timeout": "7"},
+        {"start_timeout": True},
+        {"upstream": [1]},
+    ],
+    ids=lambda wrong: next(iter(wrong)),
+)
+def test_isaac_facade_what_is_of_another_kind_is_refused(wrong: dict[str, Any]) -> None:
+    """A channel that is a number and the like say at once what is wrong."""
+    with pytest.raises(TypeError, match=f"{next(iter(wrong))}: wanted .*, found "):
+        Mission(**{"robot": "r", **wrong})

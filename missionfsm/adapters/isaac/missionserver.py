@@ -12,107 +12,112 @@ have an event loop, :class:`AsyncMissionServer` is the same on that loop::
 """
 
 import asyncio
-import math
+import contextlib
+import queue
 import threading
-from collections.abc import Coroutine, Iterable, Mapping
+from collections.abc import AsyncIterator, Callable, Coroutine
+from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import Any, Self, TypeVar
 from weakref import WeakValueDictionary
 
-from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
-from missionfsm.isaac.runtime.missions import DEFAULT_START_TIMEOUT, Effect, MissionRequest, Refused, StatusChanged
+import attrs
+
+from missionfsm.adapters.isaac.journal import Journal
+from missionfsm.adapters.isaac.lines import LOG
+from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError, upstreams_first
+from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer
+from missionfsm.isaac.runtime.missions import Effect, Refused, StatusChanged
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
-from missionfsm.isaac.wire import strictjson
+from missionfsm.isaac.wire.framing import MAX_LINE
+from missionfsm.isaac.wire.messages import Uuid
 
-if TYPE_CHECKING:
-    from missionfsm.isaac.wire.messages import Uuid
+__all__ = ["AsyncMissionServer", "Mission", "MissionRefusedError", "MissionServer"]
+
+Callback = Callable[[Mission, MissionStatus], object]
+"""Is called with a mission and its new status."""
 
 T = TypeVar("T")
 
 
-class MissionRefusedError(ValueError):
-    """The server did not take a mission; missions upstream of it may have been made known to it."""
-
-
-class Mission:
-    """A mission, with the documented keys and defaults. Its `status` changes once it is submitted.
-
-    `config` is any JSON object. Timeouts are seconds, 0 … inf. ValueError for what cannot be sent.
-    """
-
-    Status = MissionStatus
-
-    def __init__(  # noqa: PLR0913 - the documented keys
-        self,
-        robot: str | None = None,
-        channel: str = "mission",
-        config: Mapping[str, Any] | None = None,
-        upstream: Iterable["Mission"] = (),
-        *,
-        status_channel: str | None = None,
-        start_timeout: float = DEFAULT_START_TIMEOUT,
-        timeout: float = math.inf,
-    ) -> None:
-        self.upstream = tuple(upstream)
-        self.uuid: Uuid = fresh_uuid()
-        self.request = MissionRequest(
-            robot=robot,
-            channel=channel,
-            status_channel=status_channel,
-            config=_config_text({} if config is None else config),
-            start_timeout=start_timeout,
-            timeout=timeout,
-            upstream=tuple(mission.uuid for mission in self.upstream),
-        )
-        self._status = MissionStatus.CREATED
-        self._server: object = None
-
-    @property
-    def status(self) -> MissionStatus:
-        """Where the mission stands; may be read from any thread."""
-        return self._status
-
-    @property
-    def robot(self) -> str | None:
-        """The robot that the mission is for."""
-        return self.request.robot
-
-    def __repr__(self) -> str:
-        return f"<Mission {self.uuid} for {self.request.robot!r}: {self._status.value}>"
+@attrs.frozen
+class _Settings:
+    port: int
+    name_channel: str
+    host: str
+    profile: Profile
+    line_limit: int
+    journal: str | Path | None
+    resume: str
 
 
 class AsyncMissionServer:
-    """The mission server on the running event loop: `await start()`, or ``async with``."""
+    """The mission server on the running event loop: `await start()`, or ``async with``.
 
-    def __init__(
+    Args:
+        port: where robots connect; 0 is any free one.
+        name_channel: where they say their names.
+        host: the address that is listened on; ``::`` is every one of this machine.
+        profile: the readings that are followed.
+        line_limit: bytes of the longest line that is read or sent; a mission that needs more is refused.
+        journal: a file in which everything that was accepted survives the server. What it has is in `missions`.
+        resume: what becomes of a mission that was under way when the last server died: "rerun" or "fail".
+    """
+
+    def __init__(  # noqa: PLR0913 - all but the page's two by keyword
         self,
         port: int = DEFAULT_PORT,
         name_channel: str = "name",
         *,
         host: str = LOOPBACK,
         profile: Profile = DOCUMENTED,
+        line_limit: int = MAX_LINE,
+        journal: str | Path | None = None,
+        resume: str = "fail",
     ) -> None:
-        self._settings = (host, port, name_channel, profile)
+        self._settings = _Settings(port, name_channel, host, profile, line_limit, journal, resume)
         self._tcp: TcpMissionServer | None = None
+        self._journal: Journal | None = None
         self._missions: WeakValueDictionary[Uuid, Mission] = WeakValueDictionary()
+        self._restored: dict[Uuid, Mission] = {}
+        self._callbacks: list[Callback] = []
+        self._followers: dict[Uuid, list[asyncio.Queue[MissionStatus | None]]] = {}
         self._changed = asyncio.Event()
         self._closed = False
 
     async def start(self) -> None:
-        """Listen. OSError where the address cannot be had."""
-        host, port, name_channel, profile = self._settings
+        """Listen. OSError where the address cannot be had, JournalError where the journal cannot."""
+        settings = self._settings
+        if settings.journal is not None:
+            self._journal = Journal(settings.journal)
+            for kept in self._journal.missions():
+                upstream = [self._restored[one] for one in kept.request.upstream if one in self._restored]
+                self._restored[kept.uuid] = self._missions[kept.uuid] = Mission.restored(kept, upstream, self)
         self._tcp = TcpMissionServer(
-            host=host, port=port, name_channel=name_channel, profile=profile, observer=self._observe
+            host=settings.host,
+            port=settings.port,
+            name_channel=settings.name_channel,
+            profile=settings.profile,
+            line_limit=settings.line_limit,
+            journal=self._journal,
+            resume=settings.resume,
+            observer=self._observe,
         )
+        self._tcp.failed.add_done_callback(lambda _: self._changed.set())
         await self._tcp.start()
 
     async def close(self) -> None:
         """Stop listening and drop all robots; missions keep their status, and nobody waits for them any more."""
         self._closed = True
         self._changed.set()
+        for followers in self._followers.values():
+            for follower in followers:
+                follower.put_nowait(None)
         if self._tcp is not None:
             await self._tcp.close()
+        if self._journal is not None:
+            self._journal.close()
 
     async def __aenter__(self) -> Self:
         await self.start()
@@ -128,28 +133,97 @@ class AsyncMissionServer:
         """The port that is listened on."""
         return self._running().port
 
+    @property
+    def missions(self) -> tuple[Mission, ...]:
+        """What the journal had when the server started, without what was forgotten since."""
+        return tuple(self._restored.values())
+
+    def get_robots(self) -> list[str]:
+        """The names of the robots that are connected."""
+        return [robot.robot for robot in self._running().core.robots() if robot.connection is not None]
+
     def submit(self, mission: Mission) -> None:
         """Run the mission when its upstreams have succeeded and its robot is there. MissionRefusedError if refused."""
         tcp = self._running()
-        for one in _upstreams_first(mission):
-            if one._server is not None and one._server is not self:  # noqa: SLF001 - our own class
+        for one in upstreams_first(mission):
+            if one.server is not None and one.server is not self:
                 msg = f"{one!r} belongs to another server"
                 raise MissionRefusedError(msg)
-            if one._server is None:  # noqa: SLF001
-                _raise(tcp.create(one.request, one.uuid))
-                one._server = self  # noqa: SLF001
+            if one.server is None:
+                _raise(tcp.create(one.outstanding_request(), one.uuid))
+                one.server = self
                 self._missions[one.uuid] = one
         _raise(tcp.submit(mission.uuid))
 
-    async def wait(self, *missions: Mission, timeout: float | None = None) -> bool:  # noqa: ASYNC109 - the blocking twin has it
-        """Until these missions, or all submitted ones, have ended; False after `timeout` seconds, or on close."""
+    def cancel(self, mission: Mission) -> None:
+        """Give a submitted mission up, and what waits for it. MissionRefusedError where it has ended.
+
+        A robot that runs it is not told, for the documents have no words for it: its next mission preempts it.
+        """
+        _raise(self._running().cancel(mission.uuid))
+
+    def retry(self, mission: Mission) -> None:
+        """Run a mission that failed once more, and what was cancelled because of it. MissionRefusedError if refused."""
+        _raise(self._running().retry(mission.uuid))
+
+    def forget(self, *missions: Mission) -> int:
+        """Remember nothing more of these missions, or of all that have ended and that nothing waits for. How many.
+
+        A mission keeps its status. It may still be named as upstream if it has succeeded. MissionRefusedError for one
+        that was named here and cannot be forgotten.
+        """
+        tcp = self._running()
+        ended = [uuid for uuid, status in tcp.core.statuses() if status.terminal] if not missions else []
+        gone = 0
+        for uuid in [mission.uuid for mission in missions] or ended:
+            refused = tcp.forget(uuid)
+            if missions:
+                _raise(refused)
+            if refused is None:
+                gone += 1
+                self._restored.pop(uuid, None)
+                if (mission := self._missions.pop(uuid, None)) is not None:
+                    mission.forgotten = True
+        return gone
+
+    def on_status(self, callback: Callback) -> Callable[[], None]:
+        """Have a callback called at every change of status, on the event loop; it must not wait.
+
+        What is returned ends that. An exception of a callback is logged and hurts nobody else.
+        """
+        self._callbacks.append(callback)
+        return lambda: self._callbacks.remove(callback)
+
+    async def statuses(self, mission: Mission) -> AsyncIterator[MissionStatus]:
+        """The status of a mission and each that follows, until it has ended or the server is closed."""
+        follower: asyncio.Queue[MissionStatus | None] = asyncio.Queue()
+        followers = self._followers.setdefault(mission.uuid, [])
+        followers.append(follower)
         try:
+            status: MissionStatus | None = mission.status
+            while status is not None:
+                yield status
+                if status.terminal or self._closed:
+                    return
+                status = await follower.get()
+        finally:
+            followers.remove(follower)
+            if not followers:
+                self._followers.pop(mission.uuid, None)
+
+    async def wait(self, *missions: Mission, timeout: float | None = None) -> bool:  # noqa: ASYNC109 - the blocking twin has it
+        """Until these missions, or all submitted ones, have ended; False after `timeout` seconds, or on close.
+
+        JournalError where the journal could not be written, which ends the server.
+        """
+        failed = self._running().failed
+        with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(timeout):
-                while not self._closed and not self._all_ended(missions):
+                while not self._closed and not self._all_ended(missions) and not failed.done():
                     self._changed.clear()
                     await self._changed.wait()
-        except TimeoutError:
-            pass
+        if failed.done():
+            raise failed.result()
         return self._all_ended(missions)
 
     def _all_ended(self, missions: tuple[Mission, ...]) -> bool:
@@ -164,26 +238,39 @@ class AsyncMissionServer:
         return self._tcp
 
     def _observe(self, effect: Effect) -> None:
-        if isinstance(effect, StatusChanged):
-            mission = self._missions.get(effect.mission)
-            if mission is not None:
-                mission._status = effect.status  # noqa: SLF001 - our own class
-            self._changed.set()
+        if not isinstance(effect, StatusChanged):
+            return
+        self._changed.set()
+        mission = self._missions.get(effect.mission)
+        if mission is None:
+            return
+        mission.status = effect.status
+        for follower in self._followers.get(effect.mission, ()):
+            follower.put_nowait(effect.status)
+        for callback in tuple(self._callbacks):
+            try:
+                callback(mission, effect.status)
+            except Exception:  # noqa: BLE001 - whatever it is, the server goes on
+                LOG.exception("a callback failed at %r", mission)
 
 
 class MissionServer:
     """The mission server in a thread of its own. Listens from the moment it is made; OSError if it cannot.
 
-    Close it, or use it in a ``with``; a program that ends without closing it ends all the same.
+    Close it, or use it in a ``with``; a program that ends without closing it ends all the same. The arguments are
+    those of :class:`AsyncMissionServer`.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - as there
         self,
         port: int = DEFAULT_PORT,
         name_channel: str = "name",
         *,
         host: str = LOOPBACK,
         profile: Profile = DOCUMENTED,
+        line_limit: int = MAX_LINE,
+        journal: str | Path | None = None,
+        resume: str = "fail",
     ) -> None:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="missionfsm-server", daemon=True)
@@ -191,7 +278,7 @@ class MissionServer:
         self._closed = False
         self._thread.start()
         try:
-            self._server = self._call(self._make(port, name_channel, host, profile))
+            self._server = self._call(self._make(port, name_channel, host, profile, line_limit, journal, resume))
         except BaseException:
             self._stop()
             raise
@@ -203,11 +290,64 @@ class MissionServer:
 
     def submit(self, mission: Mission) -> None:
         """Run the mission when its upstreams have succeeded and its robot is there. MissionRefusedError if refused."""
+        self._on_loop(lambda: self._server.submit(mission))
 
-        async def submit() -> None:
-            self._server.submit(mission)
+    def cancel(self, mission: Mission) -> None:
+        """See `AsyncMissionServer.cancel`."""
+        self._on_loop(lambda: self._server.cancel(mission))
 
-        self._call(submit())
+    def retry(self, mission: Mission) -> None:
+        """See `AsyncMissionServer.retry`."""
+        self._on_loop(lambda: self._server.retry(mission))
+
+    def forget(self, *missions: Mission) -> int:
+        """See `AsyncMissionServer.forget`."""
+        return self._on_loop(lambda: self._server.forget(*missions))
+
+    def get_robots(self) -> list[str]:
+        """The names of the robots that are connected."""
+        return self._on_loop(self._server.get_robots)
+
+    @property
+    def missions(self) -> tuple[Mission, ...]:
+        """What the journal had when the server started, without what was forgotten since."""
+        return self._on_loop(lambda: self._server.missions)
+
+    def on_status(self, callback: Callback) -> Callable[[], None]:
+        """Have a callback called at every change of status, in a thread of its own, so that it may take its time.
+
+        What is returned ends that. An exception of a callback is logged and hurts nobody else.
+        """
+        changes: queue.SimpleQueue[tuple[Mission, MissionStatus] | None] = queue.SimpleQueue()
+
+        def run() -> None:
+            while (change := changes.get()) is not None:
+                try:
+                    callback(*change)
+                except Exception:  # noqa: BLE001 - whatever it is, the server goes on
+                    LOG.exception("a callback failed at %r", change[0])
+
+        thread = threading.Thread(target=run, name="missionfsm-callback", daemon=True)
+        thread.start()
+
+        def put(mission: Mission, status: MissionStatus) -> None:
+            changes.put((mission, status))
+
+        ends = self._on_loop(lambda: self._server.on_status(put))
+
+        def end() -> None:
+            self._on_loop(ends)
+            changes.put(None)
+            if thread is not threading.current_thread():
+                thread.join()
+
+        return end
+
+    def _on_loop(self, work: Callable[[], T]) -> T:
+        async def run() -> T:
+            return work()
+
+        return self._call(run())
 
     def wait(self, *missions: Mission, timeout: float | None = None) -> bool:
         """Until these missions, or all submitted ones, have ended; False after `timeout` seconds, or on close."""
@@ -234,9 +374,23 @@ class MissionServer:
         self.close()
 
     @staticmethod
-    async def _make(port: int, name_channel: str, host: str, profile: Profile) -> AsyncMissionServer:
-        server = AsyncMissionServer(port, name_channel, host=host, profile=profile)
-        await server.start()
+    async def _make(  # noqa: PLR0913 - the arguments
+        port: int,
+        name_channel: str,
+        host: str,
+        profile: Profile,
+        line_limit: int,
+        journal: str | Path | None,
+        resume: str,
+    ) -> AsyncMissionServer:
+        server = AsyncMissionServer(
+            port, name_channel, host=host, profile=profile, line_limit=line_limit, journal=journal, resume=resume
+        )
+        try:
+            await server.start()
+        except BaseException:
+            await server.close()
+            raise
         return server
 
     def _call(self, work: Coroutine[Any, Any, T]) -> T:
@@ -263,32 +417,6 @@ class MissionServer:
             if late:
                 self._loop.run_until_complete(asyncio.wait(late))
         self._loop.close()
-
-
-def _config_text(config: Mapping[str, Any]) -> str:
-    try:
-        text = strictjson.compact(dict(config))
-    except (TypeError, ValueError, RecursionError) as error:
-        msg = f"config is not JSON: {error}"
-        raise ValueError(msg) from None
-    problem = next(strictjson.faults(strictjson.parse(text), "config"), None)
-    if problem is not None:
-        msg = f"{problem[0]} {problem[1]}"
-        raise ValueError(msg)
-    return text
-
-
-def _upstreams_first(mission: Mission) -> list[Mission]:
-    order: dict[Uuid, Mission] = {}
-    stack = [(mission, False)]
-    while stack:
-        one, expanded = stack.pop()
-        if expanded:
-            order.setdefault(one.uuid, one)
-        elif one.uuid not in order and (one._server is None or one is mission):  # noqa: SLF001 - our own class
-            stack.append((one, True))
-            stack.extend((upstream, False) for upstream in reversed(one.upstream))
-    return list(order.values())
 
 
 def _raise(refused: Refused | None) -> None:

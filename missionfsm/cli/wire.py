@@ -4,7 +4,6 @@ Plain functions for typer; what takes long to import, and what the extra ``grpc`
 """
 
 import contextlib
-import enum
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -25,20 +24,12 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
-from missionfsm.cli.judging import JsonFile, Readings
+from missionfsm.cli.judging import Beginning, JsonFile, Readings
 from missionfsm.cli.overgrpc import TokenFile, needs_grpc, read_token, read_world
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.adapters.grpc.proxy import Proxy
-
-
-class Begins(enum.StrEnum):
-    """Where a recording begins."""
-
-    FRESH = "fresh"
-    ANYWHERE = "anywhere"
-
 
 SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="bear.mission or bear.status.")]
 
@@ -158,8 +149,11 @@ def proxy(  # noqa: PLR0913 - options of the command
         str, typer.Option(metavar="FILE", help="The robot has TLS: its authority in PEM, or system for the machine's.")
     ] = "",
     begins: Annotated[
-        Begins, typer.Option(help="Whether the robot has done nothing yet, or is in use already.")
-    ] = Begins.FRESH,
+        Beginning, typer.Option(help="Whether the robot has done nothing yet, or is in use already.")
+    ] = Beginning.FRESH,
+    others: Annotated[
+        bool, typer.Option("--others", help="Others, who do not go through the proxy, use the robot as well.")
+    ] = False,
     json: JsonFile = None,
     html: Annotated[
         str | None, typer.Option(metavar="FILE", help="A page that says how it stands; it refreshes itself.")
@@ -185,10 +179,12 @@ def proxy(  # noqa: PLR0913 - options of the command
         stop(f"{system}: there is a proxy for {' and '.join(SERVICES)}", BAD_INPUT)
     refuse_outputs({"--record": record, "--json": json, "--html": html}, (world,))
     head: dict[str, JSON] = {"missionfsm": 1, "system": system, "world": read_world(world), "drives": []}
-    if begins is Begins.ANYWHERE:
+    if begins is Beginning.ANYWHERE:
         head["begins"] = begins.value
+    if others:
+        head["others"] = True
     with _bad_input():
-        judged_system(system, strict=False, anywhere=begins is Begins.ANYWHERE)
+        judged_system(system, strict=False, anywhere=begins is Beginning.ANYWHERE, others=others)
         recorder = Recorder(head, file=record or "", readings=choice(reading), html=html or "", tell=complain)
         relay = Proxy(system, Target(grpc, certificate=tls), recorder.record)
         with contextlib.suppress(KeyboardInterrupt):

@@ -32,7 +32,7 @@ NEAR = 100
 FEWER = {"isaac.server": 1}
 """Where two missions have too many states under all readings at once: how many are few enough for that."""
 
-SITUATIONS = 20
+SITUATIONS = 12
 """In how many different situations every prompt is tried."""
 
 State = Any
@@ -262,13 +262,16 @@ def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
 
 @pytest.mark.parametrize("decided", [True, False], ids=["default readings", "all readings"])
 def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
-    """The shortcut of a system reaches exactly the states that its steps reach, in every world."""
+    """The shortcut of a system reaches exactly the states that its steps reach, in every world.
+
+    Under all readings at once, two missions are tried in the first world and one in the others.
+    """
     if lab.spec.abstraction.shortcut is None:
         pytest.skip(f"{lab.system.name} has no shortcut")
     assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
     slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, shortcut=None))
-    bounds = Bounds(2, goals=1, batch=2)
-    for world in lab.worlds:
+    for number, world in enumerate(lab.worlds):
+        bounds = Bounds(2 if decided or number == 0 else 1, goals=1, batch=2)
         alphabet = lab.system.alphabet(world, bounds)
         labels = Labels.of(lab.system, alphabet.plain, alphabet.plain_drives)
         start = lab.start(world)

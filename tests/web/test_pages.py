@@ -202,8 +202,8 @@ def test_a_demanded_reading_leaves_no_other() -> None:
     bound = Graph(
         explored, Bounds(1, goals=1, batch=1), constrain(explored.spec.ambiguities, {"AM-02.unknown": "a"})
     ).data()
-    asked = [letters for some in free["assumes"] for name, letters in some if name == "AM-02.unknown"]
-    left = [letters for some in bound["assumes"] for name, letters in some if name == "AM-02.unknown"]
+    asked = [letters for some in free["assumes"] for name, letters in some if name == "AM-02.unknown.idle"]
+    left = [letters for some in bound["assumes"] for name, letters in some if name == "AM-02.unknown.idle"]
     assert any("a" not in letters for letters in asked)
     assert all("a" in letters for letters in left)
     assert len(bound["effects"]) < len(free["effects"])

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from commandline import CommandLine
 
 from missionfsm.app.docpages import regenerate
 from missionfsm.oracle.transcript import head
@@ -43,7 +44,9 @@ def anchors(path: Path) -> set[str]:
 
 def test_there_are_pages() -> None:
     """The pages that others point to are there, so that the tests below test something."""
-    assert {"adapter.md", "architecture.md", "history.md"} <= {path.name for path in PAGES}
+    assert {"adapter.md", "architecture.md", "embedding.md", "history.md", "tutorial.md"} <= {
+        path.name for path in PAGES
+    }
 
 
 @pytest.mark.parametrize("page", PAGES, ids=named)
@@ -73,6 +76,16 @@ def test_json_that_is_shown_is_json(text: str) -> None:
             json.loads(line)
 
 
+def test_toml_that_is_shown_is_options(
+    command_line: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A table of pyproject.toml that is shown has options that exist."""
+    for _, text in blocks("toml"):
+        (tmp_path / "pyproject.toml").write_text(text)
+        monkeypatch.chdir(tmp_path)
+        assert command_line("rules", "isaac.robot").status == 0
+
+
 def test_the_history_that_is_shown_conforms() -> None:
     """The example of the history format is a history, and it conforms."""
     (text,) = [text for page, text in blocks("jsonl") if page == "history.md"]
@@ -94,6 +107,12 @@ def test_shell_that_is_shown_runs(script: str, tmp_path: Path) -> None:
     )
     assert ran.returncode == 0, ran.stderr + ran.stdout
     assert ran.stdout
+    for page, text in blocks("text"):
+        if page == "tutorial.md" and "fault.jsonl" in script:  # how the story goes depends on who answers first
+            *_, found = text.split("\n\n")
+            assert re.sub(r"\d+", "N", found) in re.sub(r"\d+", "N", ran.stdout)
+            assert ran.stdout.startswith("violates: bear.mission missionfsm reference 1")
+            assert "\nfault.jsonl: violates: bear.mission" in ran.stdout
 
 
 @pytest.mark.parametrize("script", [script for path in PAGES for script in RUN_PYTHON.findall(path.read_text())])

@@ -230,7 +230,7 @@ def test_only_what_is_cut_short_is_called_so(command_line: CommandLine, tmp_path
 
 @pytest.mark.parametrize(
     ("name", "says"),
-    [("missing.jsonl", "No such file or directory"), ("", "Is a directory"), (300 * "x", "File name too long")],
+    [("missing.jsonl", "No such file or directory"), (300 * "x", "File name too long")],
 )
 def test_what_is_no_file_is_refused(command_line: CommandLine, tmp_path: Path, name: str, says: str) -> None:
     """A path without a file ends with status 2 and the system's word for it."""
@@ -443,3 +443,46 @@ def test_ids_are_a_set() -> None:
     assert [ids.add(number) for number in numbers] == [True] * len(numbers)
     assert [ids.add(number) for number in numbers] == [False] * len(numbers)
     assert ids.add(2)
+
+
+def test_a_folder_is_judged_as_a_whole(command_line: CommandLine, tmp_path: Path) -> None:
+    """All histories in a folder are judged, in as many processes as one likes, and a summary says what they come to."""
+    folder = tmp_path / "logs"
+    (folder / "day").mkdir(parents=True)
+    right, wrong = (
+        [FIRST, CLEAR, CLEARED],
+        [FIRST, '{"call": 1, "method": "SkipGoal", "params": {}}', '{"return": 1, "result": {}}'],
+    )
+    for name, lines in (("a.jsonl", right), ("day/b.jsonl", wrong), ("day/c.jsonl", wrong), ("notes.txt", ["no"])):
+        (folder / name).write_text("\n".join(lines) + "\n")
+    out = tmp_path / "out.json"
+    alone = command_line("check", folder, "--json", out, "--jobs", "1")
+    verdicts = orjson.loads(out.read_bytes())
+    together = command_line("check", folder, "--json", out, "--jobs", "2")
+    assert (alone.status, together.status) == (1, 1)
+    assert orjson.loads(out.read_bytes()) == verdicts
+    assert [(one["file"], one["verdict"]) for one in verdicts] == [
+        (str(folder / "a.jsonl"), "conforms"),
+        (str(folder / "day/b.jsonl"), "violates"),
+        (str(folder / "day/c.jsonl"), "violates"),
+    ]
+    assert alone.out.startswith("3 judged: 1 conforms, 2 violates, 0 inconclusive; 0 flagged\n")
+    assert [line.split()[1:] for line in alone.out.splitlines() if "SkipGoal" in line] == [
+        ["2", "day/b.jsonl,", "line", "3"]
+    ]
+
+
+def test_what_cannot_be_read_in_a_folder_is_said_and_the_rest_is_judged(
+    command_line: CommandLine, tmp_path: Path
+) -> None:
+    """A file that cannot be read is bad input; the others of its folder are judged all the same."""
+    (tmp_path / "a.jsonl").write_text(f"{FIRST}\nnothing\n")
+    (tmp_path / "b.jsonl").write_text(f"{FIRST}\n{CLEAR}\n{CLEARED}\n")
+    ended = command_line("check", tmp_path)
+    assert (ended.status, ended.out.startswith("1 judged: 1 conforms"), "a.jsonl:2" in ended.err) == (2, True, True)
+
+
+def test_a_folder_without_histories_is_bad_input(command_line: CommandLine, tmp_path: Path) -> None:
+    """A folder in which nothing is a history is said to be so, in one line."""
+    ended = command_line("check", tmp_path)
+    assert (ended.status, ended.out, ended.err.count("\n")) == (2, "", 1)

@@ -12,6 +12,8 @@ import pytest
 from commandline import CommandLine
 
 from missionfsm import systems
+from missionfsm.kernel.middle import MIDDLE
+from missionfsm.kernel.transport import TRANSPORT
 
 FIRST = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 DELIVERY = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
@@ -195,8 +197,10 @@ def test_explore_says_what_it_saw(command_line: CommandLine) -> None:
 @pytest.mark.parametrize("what", ["rules", "readings"])
 def test_lists_are_whole(command_line: CommandLine, what: str) -> None:
     """``rules`` and ``readings`` list everything of every system, in words and as JSON."""
-    specs = [systems.system(name).spec for name in systems.names()]
-    ids = [one.id for spec in specs for one in (spec.all_rules if what == "rules" else spec.ambiguities)]
+    ids = []
+    for one in map(systems.system, systems.names()):
+        logs = (*(TRANSPORT if one.codec.streams else ()), *(MIDDLE if one.spec.middle else ()))
+        ids += [each.id for each in (one.spec.all_rules if what == "rules" else (*one.spec.ambiguities, *logs))]
     words, json = command_line(what), command_line(what, "--json")
     assert [one["id"] for one in orjson.loads(json.out)] == ids
     assert [one for one in ids if one not in words.out] == []

@@ -27,7 +27,6 @@ from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
-from missionfsm.oracle.successors import BUDGET
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed
@@ -71,6 +70,8 @@ def check_file(
 
 LONGEST_SECOND_LOOK = 20_000
 """The line up to which a violation is looked at for a second time."""
+SECOND_PATIENCE = 2_000
+"""How many explanations an event may cost then, before the first verdict stands."""
 
 
 def _better(first: Verdict, second: Verdict | None) -> Verdict:
@@ -165,7 +166,7 @@ class _Judges:
         decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
         self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
-        patience = PATIENCE if self._waits else BUDGET
+        patience = PATIENCE if self._waits else SECOND_PATIENCE
         self._automaton = Automaton(self._system.spec, self._head.drives, decided, patience, eager=asked.eager)
         self._no_flagged = asked.no_flagged
         self._lost = lost

@@ -8,7 +8,6 @@ import re
 import secrets
 import sys
 import time
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -278,7 +277,9 @@ class Beginning(enum.Enum):
 
 
 def check(  # noqa: PLR0913 - options of the command
-    files: Annotated[list[str], typer.Argument(metavar="FILE…", help="Recorded histories; - is stdin.")],
+    files: Annotated[
+        list[str], typer.Argument(metavar="FILE…", help="Recorded histories, or folders of them; - is stdin.")
+    ],
     reading: Readings = None,
     no_flagged: NoFlagged = False,
     transport: Annotated[
@@ -295,13 +296,22 @@ def check(  # noqa: PLR0913 - options of the command
         float | None,
         typer.Option(metavar="SECONDS", min=0, callback=_finite, help="What is due so long (of `at`) is late."),
     ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Files judged at a time; by default as many as are worth it.")
+    ] = None,
+    summary: Annotated[
+        bool | None,
+        typer.Option("--summary/--no-summary", help="Only what all verdicts come to, as for folders; or every one."),
+    ] = None,
     expect_violations: KnownFile = None,
     json: JsonFile = None,
     html: HtmlFile = None,
     junit: JunitFile = None,
 ) -> None:
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
-    from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.many import histories, judge_files  # noqa: PLC0415 - commands load what they need
+    from missionfsm.cli.summary import Told  # noqa: PLC0415
+    from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415
 
     readings = choice(reading)
     how = {
@@ -312,14 +322,27 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
-    refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*files, expect_violations))
+    with one_line_errors():
+        found = histories(files)
+    refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*found, expect_violations))
+    many = found != files
+    told = Told(json) if (many if summary is None else summary) else None
     reached: list[tuple[str, str | None, Verdict]] = []
     troubles = Troubles()
-    for path in files:  # one that cannot be read keeps none of the others from being judged
+    with Bar("files", len(found)) as bar:
+        for one in judge_files(found, readings, jobs=jobs, progress=bar.one_more, **how):
+            with troubles.kept():
+                for line in () if told else one.said:
+                    say_shown(line, json=json)
+                for robot, judged in one.verdicts:
+                    reached.append((readable(one.path), robot, excused(judged, known)))
+                    if told is None:
+                        say_shown(_headed(*reached[-1]), json=json)
+                if one.trouble:  # one that cannot be read keeps none of the others from being judged
+                    raise UnreadableError(one.trouble)
+    if told is not None:
         with troubles.kept():
-            for robot, judged in _recorded(path, readings, lambda problem: say_shown(problem, json=json), **how):
-                reached.append((readable(path), robot, excused(judged, known)))
-                say_shown(_headed(*reached[-1]), json=json)
+            told.say(reached)
     stale = () if troubles else known.stale  # they may be met in what cannot be read
     with troubles.kept():
         for rule in stale:
@@ -328,24 +351,12 @@ def check(  # noqa: PLR0913 - options of the command
         more = {"stale": list(stale)} if stale else {}
         verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
         with troubles.kept():
-            write_json(json, verdicts[0] if len(verdicts) == 1 else verdicts)
+            write_json(json, verdicts[0] if len(verdicts) == 1 and not many else verdicts)
         with troubles.kept():
             write_report(html, *reached)
         with troubles.kept():
             _write_junit(junit, [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached])
     troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
-
-
-def _recorded(
-    path: str, readings: Mapping[str, str], tell: Callable[[str], None], **how: object
-) -> list[tuple[str | None, Verdict]]:
-    """The verdicts on a file. Raises UnreadableError, also for readings that there are not."""
-    from missionfsm.app.recorded import check_file  # noqa: PLC0415 - commands load what they need
-
-    try:
-        return check_file(path, readings, tell, **how)
-    except ValueError as error:
-        raise UnreadableError(str(error)) from None
 
 
 def _headed(path: str, robot: str | None, verdict: Verdict) -> str:

@@ -9,6 +9,7 @@ import typer
 
 from missionfsm.cli.common import say, the_system, write_json
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.middle import MIDDLE
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transport import TRANSPORT
 
@@ -39,7 +40,11 @@ def readings(system: Which = None, json: AsJson = False) -> None:
     """List every ambiguity with its readings; a star marks the reference's, a dagger a departure from the text."""
     found: list[JSON] = []
     for one in _systems(system):
-        for ambiguity in (*one.spec.ambiguities, *(TRANSPORT if one.codec.streams else ())):
+        for ambiguity in (
+            *one.spec.ambiguities,
+            *(TRANSPORT if one.codec.streams else ()),
+            *(MIDDLE if one.spec.middle else ()),
+        ):
             found.append(
                 {
                     "system": one.name,

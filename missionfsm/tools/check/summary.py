@@ -1,0 +1,77 @@
+"""Many verdicts in a few lines: how many conform, what is broken how often and where first, what is flagged."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from attrs import frozen
+
+from missionfsm.tools.check.verdict import Outcome, Verdict
+
+
+@frozen
+class Found:
+    """Something that several verdicts say.
+
+    Attributes:
+        what: the id of a rule or of a reading.
+        times: how many verdicts say it.
+        first: where it was said first: the file, the robot if there is one, the line if it is known.
+    """
+
+    what: str
+    times: int
+    first: str
+
+
+@frozen
+class Summary:
+    """What many verdicts come to.
+
+    Attributes:
+        outcomes: how many there are of each outcome.
+        events: how many events were judged altogether.
+        broken, flagged: rules that are broken, and readings that are followed though they are flagged; those that
+            most verdicts name come first.
+    """
+
+    outcomes: dict[Outcome, int]
+    events: int
+    broken: tuple[Found, ...]
+    flagged: tuple[Found, ...]
+
+
+def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
+    """What verdicts come to, each with its file and its robot."""
+    outcomes: Counter[Outcome] = Counter()
+    broken: Counter[str] = Counter()
+    flagged: Counter[str] = Counter()
+    first: dict[str, str] = {}
+    events = 0
+    for path, robot, verdict in verdicts:
+        outcomes[verdict.outcome] += 1
+        events += verdict.events
+        where = path if robot is None else f"{path}, {robot}"
+        if verdict.violation is not None:
+            at = f"{where}, line {verdict.violation.at}" if verdict.violation.where else where
+            for rule in dict.fromkeys(rule.id for rule in verdict.violation.rules):
+                broken[rule] += 1
+                first.setdefault(rule, at)
+        for reading in dict.fromkeys(map(_reading, verdict.flagged)):
+            flagged[reading] += 1
+            first.setdefault(reading, where)
+    return Summary(dict(outcomes), events, _found(broken, first), _found(flagged, first))
+
+
+def _reading(line: str) -> str:
+    """What a flagged line is about: the id and the letter of a reading, or its first words."""
+    reading, departs, _ = line.partition(" departs ")
+    return reading if departs else line.partition(",")[0]
+
+
+def _found(counted: Counter[str], first: dict[str, str]) -> tuple[Found, ...]:
+    return tuple(Found(what, times, first[what]) for what, times in counted.most_common())
+
+
+__all__ = ["Found", "Summary", "summed_up"]

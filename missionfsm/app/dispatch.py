@@ -6,7 +6,8 @@ import asyncio
 import contextlib
 import logging
 import signal
-from collections.abc import Callable, Iterator, Sequence
+import ssl
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import attrs
 
@@ -36,6 +37,8 @@ class Settings:
     line_limit: int = MAX_LINE
     journal: str | None = None
     resume: str = "fail"
+    tokens: Mapping[str, str] | None = attrs.field(default=None, repr=False)
+    tls: ssl.SSLContext | None = None
 
 
 class JournalMismatchError(Exception):
@@ -98,6 +101,8 @@ class Dispatch:
             line_limit=settings.line_limit,
             journal=journal,
             resume=settings.resume,
+            tokens=settings.tokens,
+            tls=settings.tls,
             observer=self._observe,
         )
         self.narrator.peer = server.peer
@@ -147,6 +152,9 @@ class Dispatch:
         if all(address.startswith(_LOOPBACK) for address in server.addresses):
             says = "only programs on this machine can connect; --host :: lets robots in from elsewhere"
             self._tell(Entry("loopback", says))
+        elif self._settings.tokens is None:
+            says = "whoever can connect can say any robot's name; --token FILE asks for a token"
+            self._tell(Entry("open", says, Level.WARNING))
 
     def _observe(self, effect: Effect) -> None:
         if isinstance(effect, StatusChanged):

@@ -61,6 +61,11 @@ def dispatch(  # noqa: PLR0913 - the options
     resume: Annotated[
         ResumeName, typer.Option(help="What becomes of a mission that was under way when the server died.")
     ] = ResumeName.FAIL,
+    token: Annotated[
+        Path | None, typer.Option(help="A JSON object of names and tokens: nobody is a robot without its token.")
+    ] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="The server's certificate, PEM; with --tls-key.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
     log: Annotated[
         LogName | None, typer.Option(help="Lines with time and level, instead of the table or of plain lines.")
     ] = None,
@@ -76,6 +81,7 @@ def dispatch(  # noqa: PLR0913 - the options
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
     from missionfsm.adapters.isaac.journal import JournalError  # noqa: PLC0415
     from missionfsm.adapters.isaac.lines import address  # noqa: PLC0415
+    from missionfsm.adapters.isaac.secrets import server_tls, tokens  # noqa: PLC0415
     from missionfsm.app.dispatch import Dispatch, JournalMismatchError, Settings  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
     from missionfsm.cli.isaac_view import LogFormat, view_for  # noqa: PLC0415
@@ -86,6 +92,10 @@ def dispatch(  # noqa: PLR0913 - the options
     readings = PROFILES[profile.value]
     try:
         text = read_whole(str(file))
+        names = None if token is None else tokens(str(token))
+        if (tls_cert is None) is not (tls_key is None):
+            stop("--tls-cert and --tls-key go together", BAD_INPUT)
+        tls = None if tls_cert is None else server_tls(str(tls_cert), str(tls_key))
     except UnreadableError as error:
         stop(str(error), BAD_INPUT)
     missions = parse(text, readings, line_limit=line_limit)
@@ -94,7 +104,7 @@ def dispatch(  # noqa: PLR0913 - the options
     if not isinstance(missions, MissionFile):
         raise typer.Exit(BAD_INPUT)
     kept = None if journal is None else str(journal)
-    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value)
+    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value, names, tls)
     work = Dispatch(missions, settings)
     style = None if log is None else LogFormat(log.value)
     try:

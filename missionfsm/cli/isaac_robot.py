@@ -6,13 +6,16 @@ Plain functions for typer; what takes long to import is imported inside them.
 import contextlib
 import enum
 import signal
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from missionfsm.cli.common import complain, stop
+from missionfsm.cli.common import complain, one_line_errors, stop
 
 if TYPE_CHECKING:
+    from ssl import SSLContext
+
     from missionfsm.isaac.runtime.robot import Behavior
 
 
@@ -34,10 +37,16 @@ def robot(  # noqa: PLR0913 - the options
         str | None, typer.Option(help="How each mission goes, the last for all that follow: succeed:0.5,fail,hang")
     ] = None,
     line_limit: Annotated[int, typer.Option(min=1024, help="Bytes of the longest line that is read.")] = 1 << 20,
+    token: Annotated[Path | None, typer.Option(help="A file with the token that goes with the name.")] = None,
+    tls_ca: Annotated[
+        Path | None, typer.Option(help="Speak TLS, with a server whose certificate these (PEM) vouch for.")
+    ] = None,
 ) -> None:
     """Simulate a robot that connects to a mission server, again and again, until interrupted."""
     import asyncio  # noqa: PLC0415
 
+    from missionfsm.adapters.isaac.secrets import client_tls  # noqa: PLC0415
+    from missionfsm.adapters.isaac.secrets import token as read_token  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
     from missionfsm.isaac.runtime.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
 
@@ -52,16 +61,26 @@ def robot(  # noqa: PLR0913 - the options
     if isinstance(steps, ScriptProblem):
         complain(f"--script: {steps}")
         raise typer.Exit(2)
+    with one_line_errors():
+        secret = None if token is None else read_token(str(token))
+        tls = None if tls_ca is None else client_tls(str(tls_ca))
     ended: list[signal.Signals] = []
     try:
-        asyncio.run(_be_a_robot(name, host, port, steps, line_limit, ended))
+        asyncio.run(_be_a_robot(name, host, port, steps, line_limit, secret, tls, ended))
     except KeyboardInterrupt:
         ended = [signal.SIGINT]
     stop(said(ended[0]), 128 + ended[0])
 
 
 async def _be_a_robot(  # noqa: PLR0913 - the options
-    name: str, host: str, port: int, script: "tuple[Behavior, ...]", line_limit: int, ended: list[signal.Signals]
+    name: str,
+    host: str,
+    port: int,
+    script: "tuple[Behavior, ...]",
+    line_limit: int,
+    secret: str | None,
+    tls: "SSLContext | None",
+    ended: list[signal.Signals],
 ) -> None:
     """Be a robot until a signal ends it, which is then in `ended`."""
     import asyncio  # noqa: PLC0415
@@ -80,8 +99,8 @@ async def _be_a_robot(  # noqa: PLR0913 - the options
             last[:] = [line]
             log.say(line)
 
-    core = RobotCore(name, script=script)
-    robot = TcpRobot(core, host=host, port=port, line_limit=line_limit, observer=observe, notes=log.say)
+    core = RobotCore(name, script=script, token=secret)
+    robot = TcpRobot(core, host=host, port=port, line_limit=line_limit, tls=tls, observer=observe, notes=log.say)
     work = asyncio.ensure_future(robot.run())
 
     def end(by: signal.Signals) -> None:

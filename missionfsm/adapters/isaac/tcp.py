@@ -12,9 +12,10 @@ import errno
 import os
 import random
 import socket
+import ssl
 import time
 import uuid as uuids
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
 from missionfsm.adapters.isaac.journal import Bookkeeper, Journal, JournalError
@@ -74,7 +75,8 @@ class TcpMissionServer:
     `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are neither
     read nor sent: a mission that needs more is refused. What a `journal` has is restored on start; `resume` says what
     becomes of a mission that was under way, see `RESUME`. A journal that cannot be written ends the server: `failed`
-    then has the reason, nothing more is sent, and every connection is dropped.
+    then has the reason, nothing more is sent, and every connection is dropped. `tokens` are those of
+    :class:`~missionfsm.isaac.runtime.server.MissionServerCore`; with `tls` everything is encrypted.
     """
 
     def __init__(  # noqa: PLR0913 - all by keyword, each with a default
@@ -88,9 +90,11 @@ class TcpMissionServer:
         write_timeout: float = WRITE_TIMEOUT,
         journal: Journal | None = None,
         resume: str = "fail",
+        tokens: Mapping[str, str] | None = None,
+        tls: ssl.SSLContext | None = None,
         observer: Callable[[Effect], None] = _nothing,
     ) -> None:
-        self.core = MissionServerCore(profile, name_channel=name_channel, line_limit=line_limit)
+        self.core = MissionServerCore(profile, name_channel=name_channel, line_limit=line_limit, tokens=tokens)
         self.host = host
         self.port = port
         self._profile = profile
@@ -103,6 +107,7 @@ class TcpMissionServer:
         self._numbers: dict[LineConnection, int] = {}
         self._connections: dict[int, LineConnection] = {}
         self.failed: asyncio.Future[JournalError] = asyncio.get_running_loop().create_future()
+        self._tls = tls
         self._journal = journal
         self._resume = resume
         self._books = None if journal is None else Bookkeeper(self.core, journal)
@@ -120,7 +125,9 @@ class TcpMissionServer:
                 raise self.failed.result()
         sockets = await listening(self.host, self.port)
         loop = asyncio.get_running_loop()
-        self._servers = [await loop.create_server(self._accept, sock=one, backlog=BACKLOG) for one in sockets]
+        self._servers = [
+            await loop.create_server(self._accept, sock=one, backlog=BACKLOG, ssl=self._tls) for one in sockets
+        ]
         self.addresses = tuple(address(one.getsockname()) for one in sockets)
         self.port = sockets[0].getsockname()[1]
 
@@ -280,6 +287,7 @@ class TcpRobot:
         connect_timeout: float = 5.0,
         line_limit: int = MAX_LINE,
         write_timeout: float = WRITE_TIMEOUT,
+        tls: ssl.SSLContext | None = None,
         observer: Callable[[RobotEffect], None] = _nothing,
         notes: Callable[[str], None] = _nothing,
     ) -> None:
@@ -289,6 +297,7 @@ class TcpRobot:
         self._first_delay = first_delay
         self._longest_delay = longest_delay
         self._connect_timeout = connect_timeout
+        self._tls = tls
         self._line_limit = line_limit
         self._write_timeout = write_timeout
         self._observer = observer
@@ -319,7 +328,7 @@ class TcpRobot:
         loop = asyncio.get_running_loop()
         try:
             async with asyncio.timeout(self._connect_timeout):
-                _, connection = await loop.create_connection(self._make, self._host, self._port)
+                _, connection = await loop.create_connection(self._make, self._host, self._port, ssl=self._tls)
         except OSError as error:  # a TimeoutError is one too
             self._notes(f"cannot connect to {address((self._host, self._port))}: {error or type(error).__name__}")
             return False

@@ -13,6 +13,8 @@ from missionfsm.isaac.wire.messages import I64, U64, MissionProto, Uuid, stamp
 DEFAULT_CHANNEL: Final = "mission"
 DEFAULT_STATUS_CHANNEL: Final = "mission_status"
 DEFAULT_START_TIMEOUT: Final = 5.0
+TOKEN_CHANNEL: Final = "token"  # noqa: S105 - a channel
+"""Where a robot says its token before its name, if the server asks for tokens; no channel of the documents."""
 
 
 class Status(enum.Enum):

@@ -59,6 +59,7 @@ class ConnectionRecord:
     id: int
     number: int  # in the order of arrival
     open: bool = True
+    token: str = ""  # what it said last on the token channel
     leaving: bool = False  # its peer sends nothing more, and is sent nothing
     robot: RobotRecord | None = None
     early: list[Message] = attrs.Factory(list)

@@ -15,7 +15,7 @@ from attrs import validators
 
 from missionfsm.isaac.runtime import codelet as machine
 from missionfsm.isaac.runtime.codelet import DEFAULT_PERIOD, Action, Codelet, Report, StartBehavior, StopBehavior
-from missionfsm.isaac.runtime.missions import DEFAULT_CHANNEL, DEFAULT_STATUS_CHANNEL
+from missionfsm.isaac.runtime.missions import DEFAULT_CHANNEL, DEFAULT_STATUS_CHANNEL, TOKEN_CHANNEL
 from missionfsm.isaac.wire.framing import WireError
 from missionfsm.isaac.wire.messages import Message, MissionProto, MissionStatusProto, TextProto, WireStatus
 
@@ -78,10 +78,11 @@ RobotEffect = Transmit | Did
 
 
 class RobotCore:
-    """See the module. `script` says how each mission goes; an empty one leaves that to `behavior_stops`.
+    """See the module.
 
-    A status made while no server is connected cannot be sent: RUNNING is dropped, a final one is kept (the last 16) and
-    sent after the name on the next connection.
+    `script` says how each mission goes; an empty one leaves that to `behavior_stops`. A `token` is said before the name
+    on every connection. A status made while no server is connected cannot be sent: RUNNING is dropped, a final one is
+    kept (the last 16) and sent after the name on the next connection.
     """
 
     def __init__(  # noqa: PLR0913 - all by keyword, each with the documented or shipped default
@@ -94,6 +95,7 @@ class RobotCore:
         channel: str = DEFAULT_CHANNEL,
         status_channel: str = DEFAULT_STATUS_CHANNEL,
         name_period: float = NAME_PERIOD,
+        token: str | None = None,
     ) -> None:
         if not 0 < name_period < math.inf:
             msg = f"name_period is a number of seconds, more than 0, not {name_period}"
@@ -105,6 +107,7 @@ class RobotCore:
         self._channel = channel
         self._status_channel = status_channel
         self._name_period = name_period
+        self._token = token
         self._connected = False
         self._next_name: float | None = None
         self._behavior: Behavior | None = None
@@ -122,6 +125,8 @@ class RobotCore:
         effects = self._pass(now)
         self._connected = True
         self._next_name = now + self._name_period
+        if self._token is not None:
+            effects.append(Transmit(TOKEN_CHANNEL, TextProto(self._token)))
         effects.append(Transmit(self._name_channel, TextProto(self.name)))
         effects += [Transmit(self._status_channel, status) for status in self._kept]
         self._kept.clear()

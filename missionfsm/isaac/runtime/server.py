@@ -12,12 +12,14 @@ what an event really changes is touched (a failure cancels all that depends on i
 Always kept: a mission is not sent before all its upstreams have succeeded, nor twice, save by AI-15 b.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+import hmac
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 from missionfsm.isaac.runtime.again import restore, run_again, runnable_again
 from missionfsm.isaac.runtime.missions import (
     DEFAULT_STATUS_CHANNEL,
+    TOKEN_CHANNEL,
     Close,
     Effect,
     Ignored,
@@ -44,6 +46,7 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
+from missionfsm.isaac.wire.strictjson import shown
 
 _ENDS: Final = {WireStatus.SUCCESS: Status.SUCCESS, WireStatus.FAILURE: Status.FAILED}
 _EARLY: Final = 64  # messages kept of a connection without a name, under AI-18 b
@@ -56,15 +59,23 @@ class MissionServerCore:
         profile: the readings that are followed.
         name_channel: where robots say their names.
         line_limit: bytes of the longest line that a robot reads, without its end; no mission that needs more is taken.
+        tokens: for each name what a connection has to say on `TOKEN_CHANNEL` before it; None lets anybody be anybody.
     """
 
     def __init__(
-        self, profile: Profile = DOCUMENTED, *, name_channel: str = "name", line_limit: int = MAX_LINE
+        self,
+        profile: Profile = DOCUMENTED,
+        *,
+        name_channel: str = "name",
+        line_limit: int = MAX_LINE,
+        tokens: Mapping[str, str] | None = None,
     ) -> None:
         self.profile = profile
         self.name_channel = name_channel
         self._line_limit = line_limit
         self._scheduler = Scheduler(profile, self._close)
+        keys = None if tokens is None else {self._scheduler.key(name): token for name, token in tokens.items()}
+        self._tokens = keys
         self._connections: dict[int, ConnectionRecord] = {}
         self._arrived = 0
 
@@ -296,6 +307,9 @@ class MissionServerCore:
         if bound is not None and self.profile.ai_17 == "a":
             self._ignore(connection, "it has a name already and cannot take another")
             return
+        if self._tokens is not None and not _same(self._tokens.get(key), connection.token):
+            self._close(connection, f"it says the name {shown(text)} without its token")
+            return
         robot = self._scheduler.robot(text)
         other = robot.connection
         if other is not None and self.profile.ai_16 == "d":
@@ -336,6 +350,8 @@ class MissionServerCore:
         elif isinstance(message.payload, TextProto):
             if message.header.channel == self.name_channel:
                 self._name(source, message.payload.text)
+            elif message.header.channel == TOKEN_CHANNEL and self._tokens is not None:
+                source.token = message.payload.text
             else:
                 self._ignore(source, "a text on a channel that is not the name channel")
         elif isinstance(message.payload, MissionProto):
@@ -391,6 +407,11 @@ class MissionServerCore:
             self._scheduler.change(mission, _ENDS[status])
         else:
             self._ignore(source, f"a status of mission {mission.uuid}, which does not run any more")
+
+
+def _same(wanted: str | None, said: str) -> bool:
+    """Whether a token is the wanted one; the time that this takes tells nothing of it."""
+    return wanted is not None and hmac.compare_digest(wanted.encode(), said.encode("utf-8", "replace"))
 
 
 def elapse(core: MissionServerCore, now: float) -> tuple[Effect, ...]:

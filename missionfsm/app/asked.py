@@ -20,6 +20,7 @@ class Asked:
 
     Attributes:
         readings: ambiguity id to the letter of the only reading that is to hold.
+        profile: the name of a choice of readings of the system (`System.profiles`); None for none.
         no_flagged: whether nothing may depart from the letter of the text.
         strict: whether nothing was lost, doubled or made up on the way, whatever the first line says.
         anywhere: whether it begins while the system is in use, whatever the first line says.
@@ -30,6 +31,7 @@ class Asked:
     """
 
     readings: Mapping[str, str] = field(factory=dict)
+    profile: str | None = None
     no_flagged: bool = False
     strict: bool = False
     anywhere: bool = False

@@ -163,7 +163,8 @@ class _Judges:
         self._system = judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others)
         self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
         self.addresses.whose(line)
-        decided = assumed(self._system.spec, asked.readings, no_flagged=asked.no_flagged)
+        readings = self._system.chosen(asked.profile, asked.readings)
+        decided = assumed(self._system.spec, readings, no_flagged=asked.no_flagged)
         self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
         patience = PATIENCE if self._waits else SECOND_PATIENCE

@@ -64,6 +64,14 @@ def choice(readings: list[str] | None) -> dict[str, str]:
     return found
 
 
+def profiled(profile: str | None, readings: Mapping[str, str], chosen: System) -> Mapping[str, str]:
+    """The readings of a profile of a system, but for those that are given; bad input where it has no such profile."""
+    try:
+        return chosen.chosen(profile, readings)
+    except ValueError as error:
+        stop(f"--profile: {error}", BAD_INPUT)
+
+
 def refuse_outputs(outputs: Mapping[str, str | None], inputs: Iterable[str | None] = ()) -> None:
     """Bad input, before any work is done, where something cannot be written or would destroy something else.
 

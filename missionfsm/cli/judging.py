@@ -20,6 +20,7 @@ from missionfsm.cli.common import (
     Troubles,
     choice,
     one_line_errors,
+    profiled,
     readable,
     refuse_outputs,
     say_shown,
@@ -53,6 +54,14 @@ if TYPE_CHECKING:
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
+]
+ProfileName = Annotated[
+    str | None,
+    typer.Option(
+        "--profile",
+        metavar="NAME",
+        help="Readings of Isaac's systems together: documented (nothing departs from the text) or as-shipped.",
+    ),
 ]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
 NoFlagged = Annotated[
@@ -100,6 +109,7 @@ def conform(  # noqa: PLR0913 - options of the command
         typer.Option("--time", metavar="SECONDS", min=0.1, callback=_finite, help="Begin no further step after that."),
     ] = None,
     reading: Readings = None,
+    profile: ProfileName = None,
     no_flagged: NoFlagged = False,
     expect_violations: KnownFile = None,
     distinguish: Annotated[
@@ -151,7 +161,7 @@ def conform(  # noqa: PLR0913 - options of the command
     from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
-    readings = choice(reading)
+    readings = profiled(profile, choice(reading), judged)
     known = _known(expect_violations, judged)
     outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit}
     refuse_outputs(outputs, (expect_violations, missions))
@@ -281,6 +291,7 @@ def check(  # noqa: PLR0913 - options of the command
         list[str], typer.Argument(metavar="FILE…", help="Recorded histories, or folders of them; - is stdin.")
     ],
     reading: Readings = None,
+    profile: ProfileName = None,
     no_flagged: NoFlagged = False,
     transport: Annotated[
         Transport, typer.Option(help="Whether messages may be lost, doubled or made up on the way.")
@@ -316,6 +327,7 @@ def check(  # noqa: PLR0913 - options of the command
     readings = choice(reading)
     how = {
         "no_flagged": no_flagged,
+        "profile": profile,
         "strict": transport is Transport.STRICT,
         "anywhere": begins is Beginning.ANYWHERE,
         "others": others,
@@ -370,6 +382,7 @@ def explore(  # noqa: PLR0913 - options of the command
     goals: Annotated[int, typer.Option(min=1, max=8, help="Goals of a mission, at most.")] = 2,
     batch: Annotated[int, typer.Option(min=1, max=8, help="Missions of a batch, at most.")] = 2,
     reading: Readings = None,
+    profile: ProfileName = None,
     forget_ended: Annotated[
         bool, typer.Option("--forget-ended", help="Only count what has ended: far fewer states, the same steps.")
     ] = False,
@@ -385,8 +398,9 @@ def explore(  # noqa: PLR0913 - options of the command
     from missionfsm.tools.explore.explore import explore as visit  # noqa: PLC0415
 
     explored = the_system(system)
+    readings = profiled(profile, choice(reading), explored)
     try:
-        assumed = constrain(explored.spec.ambiguities, choice(reading))
+        assumed = constrain(explored.spec.ambiguities, readings)
     except ValueError as error:
         stop(str(error), BAD_INPUT)
     refuse_outputs({"--json": json, "--html": html})
@@ -396,7 +410,7 @@ def explore(  # noqa: PLR0913 - options of the command
 
         if html is not None or forget_ended:
             stop("--hazards: it goes with no --html and no --forget-ended", BAD_INPUT)
-        _told(retries(explored, bounds, choice(reading)), json).end(DONE)
+        _told(retries(explored, bounds, readings), json).end(DONE)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     troubles = _told(found, json)
     with troubles.kept():
@@ -432,6 +446,7 @@ def teeth(  # noqa: PLR0913 - options of the command
 def adapter(
     system: Annotated[str, typer.Argument(help="Which system.")],
     reading: Readings = None,
+    profile: ProfileName = None,
 ) -> None:
     """Put the reference model behind the adapter protocol, on stdin and stdout."""
     from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415 - commands load what they need
@@ -440,7 +455,7 @@ def adapter(
     from missionfsm.tools.reference.subject import Reference  # noqa: PLC0415
 
     try:
-        reference = Reference(the_system(system), choice(reading))
+        reference = Reference(the_system(system), profiled(profile, choice(reading), the_system(system)))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
     requests = stdin()

@@ -152,7 +152,10 @@ def choose(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str] | None = 
 
 
 def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> int:
-    """Only what is in `choice` is decided; the rest stays open. Raises ValueError as `choose` does."""
+    """Only what is in `choice` is decided; the rest stays open. Raises ValueError as `choose` does.
+
+    Several letters in one text leave that question open among them.
+    """
     return _constrained(tuple(ambiguities), tuple(choice.items()))
 
 
@@ -167,13 +170,22 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
             known = ", ".join(one.id for one in ambiguities)
             msg = f"there is no ambiguity {name}; there are {known}"
             raise ValueError(msg)
-        fitting = [one for one in named if letter in one.readings]
+        fitting = [one for one in named if one.readings.keys() >= set(letter)]
         if not fitting:
             letters = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
             msg = f"{name} has no reading {letter}: {letters}"
             raise ValueError(msg)
         decided.update(dict.fromkeys(fitting, letter))
-    return meet(ANYTHING, (one[letter] for one, letter in decided.items()))
+    return meet(ANYTHING, (one[tuple(letters)] for one, letters in decided.items()))
+
+
+def to_the_letter(ambiguities: Iterable[Ambiguity]) -> dict[str, str]:
+    """The choice of readings that departs nowhere from the text: what is flagged is ruled out, the rest stays open."""
+    return {
+        one.id: "".join(letter for letter in one.readings if letter not in one.flagged)
+        for one in ambiguities
+        if one.flagged
+    }
 
 
 @functools.cache

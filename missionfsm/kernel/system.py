@@ -53,6 +53,7 @@ class System:
         reaching: id or name of a rule to the readings under which its condition can come about at all.
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
+        profiles: choices of readings by name: ambiguity id to the letters that are left.
     """
 
     name: str
@@ -66,3 +67,14 @@ class System:
     sketches: tuple[Sketch, ...] = ()
     plans: tuple[Plan, ...] = ()
     shapes: Callable[[], Shapes] = Shapes
+    profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
+
+    def chosen(self, profile: str | None, readings: Mapping[str, str]) -> Mapping[str, str]:
+        """The readings of a profile, if one is named, but for those that are given. ValueError for one that is not."""
+        if profile is None:
+            return readings
+        if profile not in self.profiles:
+            there_are = ", ".join(self.profiles) or "none"
+            message = f"{self.name} has no profile {profile}; there are {there_are}"
+            raise ValueError(message)
+        return {**self.profiles[profile], **readings}

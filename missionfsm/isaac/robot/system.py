@@ -9,8 +9,21 @@ from missionfsm.isaac.robot.pictures import SKETCHES
 from missionfsm.isaac.robot.shapes import shapes
 from missionfsm.isaac.robot.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
+from missionfsm.isaac.shared.profiles import AS_SHIPPED, DOCUMENTED, SHIPPED_ROBOT
+from missionfsm.kernel.readings import to_the_letter
 from missionfsm.kernel.system import System
 
+PROFILES = {DOCUMENTED: to_the_letter(SPEC.ambiguities), AS_SHIPPED: SHIPPED_ROBOT}
+
 SYSTEM = System(
-    SPEC.system, SPEC, CODEC, alphabet, NAMING, bends=BENDS, twists=TWISTS, sketches=SKETCHES, shapes=shapes
+    SPEC.system,
+    SPEC,
+    CODEC,
+    alphabet,
+    NAMING,
+    bends=BENDS,
+    twists=TWISTS,
+    sketches=SKETCHES,
+    shapes=shapes,
+    profiles=PROFILES,
 )

@@ -22,9 +22,12 @@ from missionfsm.isaac.server.readings import (
     AI_26,
     AI_37,
     AI_38,
+    AI_39,
 )
 from missionfsm.isaac.server.state import (
+    DROP,
     ENDED,
+    LOOK,
     START,
     UNDER_WAY,
     Link,
@@ -55,11 +58,17 @@ def drops(move: Move, link: Link) -> Moves:
 
 def _succeeded(move: Move, gone: Link) -> Moves:
     """Another connection that said the same name takes over, at once or when it says it again (AI-16.back)."""
+    holder = None if gone.over is None else move.state.link(gone.over)
+    if gone.serves and holder is not None and holder.name == gone.name:
+        # The pass comes only now: it finds the older connection, and never knew of the newer.
+        unnoticed, _ = split(move, AI_39, "b")
+        if unnoticed is not None:
+            yield from _served(unnoticed, holder)
     heirs = [one for one in move.state.links if one.name == gone.name and gone.name is not None]
     if not gone.serves or not heirs:
         yield move
         return
-    at_once, later = split(move, AI_16_BACK, "p")
+    at_once, later = split(move, AI_16_BACK, "p")  # q and r: not before it says it again, or never
     if at_once is not None:
         yield from _served(at_once, heirs[-1])
     if later is not None:
@@ -131,11 +140,17 @@ def _named(move: Move, link: Link, key: str) -> Moves:
             for after in lost(bound, link):
                 for free in _succeeded(after.link(link.slot, name=None, serves=False), link):
                     yield from _claims(free, link, key)
-    elif link.name is None or link.name == key:
+    elif link.name is None:
         yield from _claims(move, link, key)
+    elif link.name == key:
+        again, never = split(move, AI_16_BACK, "pq")
+        if again is not None:
+            yield from _claims(again, link, key)
+        if never is not None:
+            yield never
     else:
         # It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q).
-        keeps, without = split(move, AI_16_BACK, "p")
+        keeps, without = split(move, AI_16_BACK, "pr")
         if without is not None:
             yield from _claims(without, link, key)
         if keeps is not None:
@@ -155,8 +170,10 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
         return
     slots = [one.slot for one in move.state.links]
     newer = slots.index(link.slot) > slots.index(holder.slot)
-    for letter, way in ways(move, AI_16, "a", "b", "d"):
-        if letter == "a" and newer:
+    for letter, way in ways(move, AI_16, "a", "b", "d", "n"):
+        if letter == "n" and "b" in way.state.letters(AI_39):
+            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=LOOK), link, holder)
+        elif letter == "n" or (letter == "a" and newer):
             yield from _takes_over(way, link, holder)
         elif letter == "d":
             yield from closed(way, Link(link.slot))
@@ -171,12 +188,22 @@ def _takes_over(move: Move, link: Link, holder: Link) -> Moves:
     if not under_way and not kept:
         yield from _served(displaced, link)
         return
-    stays, as_lost = split(displaced, AI_16_UNDER_WAY, "k")
-    if stays is not None:
-        yield from _served(stays, link)
-    if as_lost is not None:
-        for after in lost(as_lost, holder):
-            yield from _served(after, link)
+    for letter, way in ways(displaced, AI_16_UNDER_WAY, "k", "l", "m"):
+        if letter == "k":
+            yield from _served(way, link)
+        elif letter == "l":
+            for after in lost(way, holder):
+                yield from _served(after, link)
+        else:
+            yield from _served(_untimed(way, holder), link)
+
+
+def _untimed(move: Move, holder: Link) -> Move:
+    """What was sent on an older connection goes on there without its timeouts (AI-16.under-way m)."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.status in UNDER_WAY and mission.link == holder.slot:
+            move = move.mission(index, start=None, run=None, clocks=())
+    return move
 
 
 def _served(move: Move, link: Link) -> Moves:
@@ -257,7 +284,7 @@ def _current(state: Server, link: Link, report: Report) -> tuple[int, ...]:
 def _may_report(state: Server, link: Link, index: int) -> bool:
     """Whether a connection is listened to about a mission: that of its robot, or the one that it was sent on."""
     mission = state.missions[index]
-    if not mission.sent:
+    if not mission.sent or any(one.kind == DROP for one in mission.clocks):
         return False
     elsewhere = mission.link is not None and mission.link != link.slot and state.link(mission.link) is not None
     if link.serves and mission.robot == link.name:

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.readings import AI_05, AI_06, AI_07, AI_31, AMBIGUITIES
-from missionfsm.isaac.server.state import SILENT, START, Left, Mission, Move, Server
+from missionfsm.isaac.server.readings import AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31, AMBIGUITIES
+from missionfsm.isaac.server.state import DROP, SILENT, START, Left, Mission, Move, Server
 from missionfsm.kernel.readings import Ambiguity, Assumption
 
-_ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_31))
+_ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31))
 
 
 def split(move: Move, question: Ambiguity, letters: str) -> tuple[Move | None, Move | None]:
@@ -44,14 +44,18 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
 
 def _in_time(server: Server, mission: Mission) -> Mission:
     """A mission without the clocks that nobody looks at any more."""
-    clocks = tuple(one for one in mission.clocks if counts(server, one.kind, one.since))
+    clocks = tuple(one for one in mission.clocks if counts(server, one.kind, one.since, whole=one.whole))
     return mission if len(clocks) == len(mission.clocks) else evolve(mission, clocks=clocks)
 
 
-def counts(state: Server, kind: str, since: str) -> bool:
-    """Whether some reading that is left looks at such a clock (AI-05, AI-06, AI-07, AI-31)."""
+def counts(state: Server, kind: str, since: str, *, whole: bool) -> bool:
+    """Whether some reading that is left looks at such a clock (AI-05, AI-06, AI-07, AI-24.whole, AI-31)."""
+    if kind == DROP:
+        return True
     if kind == SILENT:
         return "a" in state.letters(AI_31)
+    if ("w" if whole else "x") not in state.letters(AI_24_WHOLE):
+        return False
     if kind == START:
         return {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[since] in state.letters(AI_05)
     if since == "send":

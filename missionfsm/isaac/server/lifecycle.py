@@ -6,7 +6,7 @@ in its state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from attrs import evolve
 
@@ -14,6 +14,7 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.deciding import counts, split, ways
 from missionfsm.isaac.server.readings import (
     AI_03,
+    AI_03_WHEN,
     AI_05,
     AI_06,
     AI_07,
@@ -22,13 +23,18 @@ from missionfsm.isaac.server.readings import (
     AI_12,
     AI_13,
     AI_15,
+    AI_15_WHEN,
+    AI_16_UNDER_WAY,
     AI_19,
     AI_24,
+    AI_24_WHOLE,
     AI_31,
     AI_36,
     AI_39,
 )
 from missionfsm.isaac.server.state import (
+    DAY,
+    DROP,
     FAILURES,
     LIFECYCLE,
     LOOK,
@@ -45,6 +51,7 @@ from missionfsm.isaac.server.state import (
     Server,
     Status,
 )
+from missionfsm.isaac.shared.line import MICROSECONDS
 
 Moves = Iterator[Move]
 
@@ -57,28 +64,38 @@ def slack(state: Server) -> int:
 def looks(move: Move) -> Move:
     """AI-39 b has been decided: clocks that run may strike later than was thought."""
     missions = tuple(
-        evolve(
-            one, clocks=tuple(evolve(clock, hi=None if clock.hi is None else clock.hi + LOOK) for clock in one.clocks)
-        )
-        if one.clocks
-        else one
+        evolve(one, clocks=tuple(_later(clock) for clock in one.clocks)) if one.clocks else one
         for one in move.state.missions
     )
     return move.to(evolve(move.state, missions=missions))
+
+
+def _later(clock: Clock) -> Clock:
+    """The clock of a server that looks now and then; whole seconds are looked at so anyway."""
+    return clock if clock.hi is None or clock.whole or clock.kind == DROP else evolve(clock, hi=clock.hi + LOOK)
 
 
 def started(move: Move, index: int, kind: str, since: str) -> Move:
     """A clock of a mission starts anew now, if the mission has that timeout and some reading that is left wants it."""
     mission = move.state.missions[index]
     time = {START: mission.start, RUN: mission.run, SILENT: SILENCE}[kind]
-    if time is None or not counts(move.state, kind, since):
+    if time is None:
         return move
-    rest = tuple(one for one in mission.clocks if (one.kind, one.since) != (kind, since))
-    low, high = move.at
-    hi = None if kind == SILENT else time + high + slack(move.state)
-    lo = max(0, time + low - move.state.tolerance)
-    clocks = sorted((*rest, Clock(kind, since, lo, hi)), key=lambda one: (one.kind, one.since))
-    return move.mission(index, clocks=tuple(clocks))
+    (low, high), tolerance = move.at, move.state.tolerance
+    clocks = [one for one in mission.clocks if (one.kind, one.since) != (kind, since)]
+    if counts(move.state, kind, since, whole=False):
+        hi = None if kind == SILENT else time + high + slack(move.state)
+        clocks.append(Clock(kind, since, max(0, time + low - tolerance), hi))
+    seconds = time // MICROSECONDS + 1
+    if kind != SILENT and seconds < DAY and counts(move.state, kind, since, whole=True):
+        whole = seconds * MICROSECONDS
+        clocks.append(Clock(kind, since, max(0, whole + low - tolerance), whole + high + LOOK + tolerance, whole=True))
+    return _ticking(move, index, clocks)
+
+
+def _ticking(move: Move, index: int, clocks: Iterable[Clock]) -> Move:
+    ordered = tuple(sorted(clocks, key=lambda one: (one.kind, one.since, one.whole)))
+    return move if ordered == move.state.missions[index].clocks else move.mission(index, clocks=ordered)
 
 
 def stopped(move: Move, index: int, *kinds: tuple[str, str]) -> Move:
@@ -108,8 +125,9 @@ def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
     for other, mission in enumerate(move.state.missions):
         if index in mission.waits:
             doomed = mission.doomed
-            if status in FAILURES:
-                doomed = tuple(sorted({*doomed, status}, key=lambda one: one.value))
+            if status in FAILURES or index in mission.fated:
+                status_then = status if status in FAILURES else Status.FAILED
+                doomed = tuple(sorted({*doomed, status_then}, key=lambda one: one.value))
             move = move.mission(other, waits=tuple(one for one in mission.waits if one != index), doomed=doomed)
             if move.state.missions[other].ready:
                 move = started(move, other, START, "ready")
@@ -126,15 +144,47 @@ def cancellations(move: Move) -> Moves:
         yes, no = split(move, AI_03, "a" + ("b" if reported else "") + ("c" if direct else ""))
         if yes is not None:
             now, later = split(yes, AI_36, "a") if mission.waits else (yes, None)
-            if now is not None:
-                yield ends(now, index, "cancel", rules.CANCELED.id)
+            at_once, waits = (None, None) if now is None else split(now, AI_03_WHEN, "n")
+            if at_once is not None:
+                yield ends(at_once, index, "cancel", rules.CANCELED.id)
+            if waits is not None and waits is not move:
+                yield waits
             if later is not None and later is not move:
                 yield later
         if no is not None and no is not move:
             yield no
 
 
+def lapses(state: Server, link: Link) -> list[Move]:
+    """AI-03.when p: what becomes of a doomed mission that a scheduling pass finds first in an idle robot's queue."""
+    if state.letters(AI_03_WHEN) != "p":
+        return []
+    own = [index for index, one in enumerate(state.missions) if one.robot == link.name]
+    queue = [index for index in own if state.missions[index].status is Status.QUEUED]
+    if not queue or not state.missions[queue[0]].doomed or busy(state, link):
+        return []
+    head = state.missions[queue[0]]
+    reported = Status.FAILED in head.doomed
+    direct = any(one is not Status.CANCELED for one in head.doomed)
+    move, _ = split(Move(state), AI_03, "a" + ("b" if reported else "") + ("c" if direct else ""))
+    if move is not None and head.waits:
+        move, _ = split(move, AI_36, "a")
+    return [] if move is None else [ends(move, queue[0], "cancel", rules.CANCELED.id)]
+
+
 # What is sent next.
+
+
+def busy(state: Server, link: Link) -> set[str]:
+    """The channels of the missions that keep a connection's robot busy."""
+    apart = state.letters(AI_16_UNDER_WAY) == "m"  # what goes on on an older connection keeps nobody busy
+    return {
+        one.channel
+        for one in state.missions
+        if one.status in UNDER_WAY
+        and one.robot == link.name
+        and not (apart and one.link is not None and one.link != link.slot)
+    }
 
 
 def dispatches(move: Move) -> Moves:
@@ -183,11 +233,11 @@ def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
     queue = [index for index in own if missions[index].status is Status.QUEUED]
     if not any(missions[index].ready for index in queue):
         return
-    busy = {one.channel for one in missions if one.status in UNDER_WAY and one.robot == link.name}
-    if not busy:
+    taken = busy(move.state, link)
+    if not taken:
         yield from _from_free(move, queue)
         return
-    apart = _lanes(missions, [index for index in queue if missions[index].channel not in busy])
+    apart = _lanes(missions, [index for index in queue if missions[index].channel not in taken])
     holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
     held, several = split(move, AI_11, holding)
     if several is not None:
@@ -263,6 +313,7 @@ def sends(move: Move, link: Link, index: int) -> Moves:
         # Nothing can be acknowledged before no time has passed, so a server may as well not set the robot going.
         ours, _ = split(move, AI_05, "a")
         needs = None if ours is None else split(ours, AI_07, "ab")[0]
+        needs = None if needs is None else split(needs, AI_24_WHOLE, "x")[0]
         if needs is not None:
             yield ends(needs, index, "time out", rules.ABORTED.id)
     if mission.robot is None:
@@ -305,6 +356,14 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
         if here is not None:
             aborting.append(here)
 
+    if clock.kind == DROP:
+        return tuple(_noticed(move, index)), ()
+    unlike: Move | None = None
+    if clock.kind != SILENT:
+        alike, unlike = split(move, AI_24_WHOLE, "w" if clock.whole else "x")
+        if alike is None:
+            return (), (move,)
+        move = alike
     if clock.kind == SILENT:
         ask(move, (AI_31, "a"))
     elif clock.kind == START:
@@ -322,8 +381,15 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
     kind = (clock.kind, clock.since)
     return (
         tuple(one for here in aborting for one in aborted(here, index, clock.kind)),
-        tuple(stopped(here, index, kind) for here in meaningless),
+        (*(stopped(here, index, kind) for here in meaningless), *(() if unlike is None else (unlike,))),
     )
+
+
+def _noticed(move: Move, index: int) -> Moves:
+    """A scheduling pass notices that the connection of a mission has dropped (AI-15.when p)."""
+    for letter, way in ways(move, AI_15, "c", "b"):
+        here = stopped(way, index, (DROP, "drop"))
+        yield ends(here, index, "lose") if letter == "c" else _again(here, index)
 
 
 def aborted(move: Move, index: int, kind: str) -> Moves:
@@ -365,15 +431,22 @@ def lost(move: Move, link: Link) -> Moves:
         yield move
         return
     for letter, way in ways(move, AI_15, "c", "a", "b"):
-        here = way
+        here: Move | None = way
+        later: Move | None = None
+        if letter != "a":
+            here, later = split(way, AI_15_WHEN, "n")
         for index in affected:
-            if letter == "a":
+            if later is not None:
+                drop = Clock(DROP, "drop", 0, later.at[1] + LOOK + later.state.tolerance)
+                later = later.mission(index, link=None)
+                later = _ticking(later, index, (*later.state.missions[index].clocks, drop))
+            if here is not None and letter == "a":
                 here = here.mission(index, link=None)
-            elif letter == "c":
+            elif here is not None and letter == "c":
                 here = ends(here.mission(index, link=None), index, "lose")
-            else:
+            elif here is not None:
                 here = _again(here, index)
-        yield here
+        yield from (one for one in (here, later) if one is not None)
 
 
 def _was_on(mission: Mission, link: Link) -> bool:

@@ -36,6 +36,13 @@ AI_03 = Ambiguity(
     default="a",
     flagged=_flags("bc"),
 )
+AI_03_WHEN = Ambiguity(
+    "AI-03.when",
+    "When is a mission cancelled whose upstream has failed?",
+    {"n": "at once", "p": "in a scheduling pass in which it heads the queue of a robot that is there and idle"},
+    default="n",
+    flagged=_flags("p"),
+)
 AI_04 = Ambiguity(
     "AI-04",
     "What is a submitted mission that waits for upstreams?",
@@ -128,22 +135,37 @@ AI_15 = Ambiguity(
     {"a": "nothing: its timeouts decide", "b": "it is sent again", "c": "it has failed"},
     default="c",
 )
+AI_15_WHEN = Ambiguity(
+    "AI-15.when",
+    "When does a mission that was sent fail, or is it sent again, whose robot's connection drops?",
+    {"n": "at once", "p": "in the next scheduling pass"},
+    default="n",
+)
 AI_16 = Ambiguity(
     "AI-16",
     "Which of two connections with one name is the robot?",
-    {"a": "the newer", "b": "the one that had the name first", "d": "that one, and the other is closed"},
+    {
+        "a": "the newer",
+        "b": "the one that had the name first",
+        "d": "that one, and the other is closed",
+        "n": "the one that said the name later",
+    },
     default="a",
 )
 AI_16_UNDER_WAY = Ambiguity(
     "AI-16.under-way",
     "A newer connection becomes the robot: what of the mission that was sent on the older?",
-    {"k": "it goes on there", "l": "as if that connection had dropped"},
+    {
+        "k": "it goes on there, and the robot is busy with it",
+        "l": "as if that connection had dropped",
+        "m": "it goes on there without its timeouts, and the robot is free",
+    },
     default="l",
 )
 AI_16_BACK = Ambiguity(
     "AI-16.back",
     "The connection that is the robot drops, and another has said the same name: is that the robot now?",
-    {"p": "at once", "q": "when it says its name again"},
+    {"p": "at once", "q": "when it says its name again", "r": "never"},
     default="q",
 )
 AI_17 = Ambiguity(
@@ -186,11 +208,25 @@ AI_20_EMPTY = Ambiguity(
 AI_22_STARTED = Ambiguity(
     "AI-22.started",
     "What is an upstream that was sent but not acknowledged when its downstream is submitted?",
-    {"a": "waited for", "i": "as good as failed, as in the shipped software"},
+    {
+        "a": "waited for",
+        "i": "as good as failed, as in the shipped software",
+        "j": "waited for, and then as good as failed, however it ended",
+    },
     default="a",
-    flagged=_flags("i"),
+    flagged=_flags("ij"),
 )
 AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a")
+AI_24_WHOLE = Ambiguity(
+    "AI-24.whole",
+    "When has a timeout elapsed?",
+    {
+        "x": "as soon as that much time has passed",
+        "w": "in the first scheduling pass in which more whole seconds of less than a day have passed",
+    },
+    default="x",
+    flagged=_flags("w"),
+)
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a message understood whose 64-bit integers are numbers instead of strings?",
@@ -255,6 +291,7 @@ AI_39 = Ambiguity(
 AMBIGUITIES = (
     AI_02,
     AI_03,
+    AI_03_WHEN,
     AI_04,
     AI_05,
     AI_06,
@@ -267,6 +304,7 @@ AMBIGUITIES = (
     AI_13,
     AI_14_STATUS,
     AI_15,
+    AI_15_WHEN,
     AI_16,
     AI_16_UNDER_WAY,
     AI_16_BACK,
@@ -279,6 +317,7 @@ AMBIGUITIES = (
     AI_20_EMPTY,
     AI_22_STARTED,
     AI_24,
+    AI_24_WHOLE,
     AI_25_TAKEN,
     AI_25_HEADER,
     AI_26,

@@ -14,7 +14,7 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
 from missionfsm.isaac.server.connections import connects, drops, hears
-from missionfsm.isaac.server.deciding import assumed, merged, split
+from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Heard, Passes, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
@@ -128,7 +128,7 @@ def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> It
             here, _ = split(move, AI_19, "ab")
         if here is None:
             continue
-        for doomed, way in _upstreams(here, upstream):
+        for doomed, fated, way in _upstreams(here, upstream):
             waits = tuple(one for one in upstream if way.state.missions[one].status not in ENDED and one not in doomed)
             failed = {way.state.missions[one].status for one in upstream if way.state.missions[one].status in FAILURES}
             failed |= {Status.FAILED} if doomed else set()
@@ -142,18 +142,19 @@ def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> It
                 waits,
                 tuple(sorted(failed, key=lambda one: one.value)),
                 depends=bool(upstream),
+                fated=fated,
             )
             yield _clocked(way.to(evolve(way.state, missions=(*way.state.missions, mission))))
 
 
-def _upstreams(move: Move, upstream: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], Move]]:
-    """AI-22.started: the upstreams that are as good as failed, where that is so read."""
+def _upstreams(move: Move, upstream: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...], Move]]:
+    """AI-22.started: the upstreams that are as good as failed now, and once they have ended, where that is so read."""
     unheard = tuple(one for one in upstream if move.state.missions[one].status is Status.STARTED)
-    waited, failed = split(move, AI_22_STARTED, "a") if unheard else (move, None)
-    if waited is not None:
-        yield (), waited
-    if failed is not None:
-        yield unheard, failed
+    if not unheard:
+        yield (), (), move
+        return
+    for letter, way in ways(move, AI_22_STARTED, "a", "i", "j"):
+        yield unheard if letter == "i" else (), unheard if letter == "j" else (), way
 
 
 def _clocked(move: Move) -> Move:
@@ -279,10 +280,19 @@ def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
         return (Match(),)
     if not isinstance(allowed, tuple) or not isinstance(came, tuple) or len(came) != len(allowed):
         return Mismatch(OPERATIONS["statuses"].promises[0].id, "not every mission is shown, or too many are")
-    for one, other in zip(allowed, came, strict=True):
-        if one != other and not (one == "lost" and other in ("failed", "aborted")):
-            return Mismatch(OPERATIONS["statuses"].promises[0].id, f"a mission that is {one} is shown as {other}")
-    return (Match(),)
+    wrong = [
+        (one, other)
+        for one, other in zip(allowed, came, strict=True)
+        if one != other and not (one == "lost" and other in ("failed", "aborted"))
+    ]
+    if not wrong:
+        return (Match(),)
+    for one, other in wrong:
+        if other == "canceled":
+            says = f"a mission that is {one} is shown as canceled, though no upstream of it has failed"
+            return Mismatch(rules.CANCELED.id, says)
+    one, other = wrong[0]
+    return Mismatch(OPERATIONS["statuses"].promises[0].id, f"a mission that is {one} is shown as {other}")
 
 
 def _matches(view: Sends, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:

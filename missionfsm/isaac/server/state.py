@@ -23,6 +23,9 @@ SYSTEM = "isaac.server"
 LOOK = MICROSECONDS
 """How long a server that looks now and then may take to look, in microseconds (AI-39 b)."""
 
+DAY = 86_400
+"""Whole seconds are counted within a day where they are (AI-24.whole w)."""
+
 SILENCE = 10 * MICROSECONDS
 """How long RUNNING has to be missing at least before that is a loss (AI-31 a). The tester's choice."""
 
@@ -71,7 +74,7 @@ LIFECYCLE: Chart[Status] = Chart(
 """The lifecycle of one mission; being submitted is its start, and AI-09 b and c are no moves but corrections."""
 
 ENDED = frozenset(LIFECYCLE.final)
-START, RUN, SILENT = "start", "run", "silent"
+START, RUN, SILENT, DROP = "start", "run", "silent", "drop"
 
 
 @value(cache_hash=True)
@@ -79,16 +82,18 @@ class Clock:
     """A clock of a mission that runs.
 
     Attributes:
-        kind: `START`, `RUN` or `SILENT`.
-        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send`` or ``status``.
+        kind: `START`, `RUN`, `SILENT` or `DROP` (until a connection that dropped is noticed).
+        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send``, ``status`` or ``drop``.
         lo: microseconds until it may strike.
         hi: microseconds until it must have struck; None: it never has to.
+        whole: whether it counts whole seconds (AI-24.whole w).
     """
 
     kind: str
     since: str
     lo: int
     hi: int | None
+    whole: bool = False
 
 
 @value(cache_hash=True)
@@ -101,6 +106,7 @@ class Mission:
         start, run: the two timeouts in microseconds; None is infinite.
         waits: the upstreams that have not ended, by their index.
         doomed: how upstreams ended that did not succeed.
+        fated: the upstreams that are as good as failed, however they end (AI-22.started j).
         link: the slot of the connection that it was sent on; None before, and where that is gone.
         sent: whether it was sent.
         depends: whether it has upstreams at all.
@@ -119,6 +125,7 @@ class Mission:
     link: int | None = None
     sent: bool = False
     depends: bool = False
+    fated: tuple[int, ...] = ()
 
     @property
     def ready(self) -> bool:
@@ -148,12 +155,16 @@ class Link:
         name: the robot's name that it said; None before it said one.
         serves: whether the missions of that robot go to it.
         early: statuses that came before the name and are kept (AI-18.early b).
+        over: the slot of the connection that it took over from, as long as no pass need have noticed that (AI-39 b).
+        fresh: microseconds until a pass must have noticed it.
     """
 
     slot: int
     name: str | None = None
     serves: bool = False
     early: tuple[Report, ...] = ()
+    over: int | None = None
+    fresh: int = 0
 
 
 Left = tuple[tuple[str, str], ...]

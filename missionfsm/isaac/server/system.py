@@ -12,9 +12,11 @@ from missionfsm.isaac.server.scripts import SCRIPTS
 from missionfsm.isaac.server.shapes import shapes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
+from missionfsm.isaac.shared.profiles import AS_SHIPPED, DOCUMENTED, SHIPPED_SERVER
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import to_the_letter
 from missionfsm.kernel.system import System
 
 ROBOTS = ("carter-01", "carter-02")
@@ -163,6 +165,8 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
     )
 
 
+PROFILES = {DOCUMENTED: to_the_letter(SPEC.ambiguities), AS_SHIPPED: SHIPPED_SERVER}
+
 SYSTEM = System(
     SPEC.system,
     SPEC,
@@ -174,4 +178,5 @@ SYSTEM = System(
     sketches=SKETCHES,
     plans=PLANS,
     shapes=shapes,
+    profiles=PROFILES,
 )

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.lifecycle import possible, sends, slack, strikes, urgent
+from missionfsm.isaac.server.lifecycle import lapses, possible, sends, strikes, urgent
 from missionfsm.isaac.server.readings import AI_39
-from missionfsm.isaac.server.state import Clock, Move, Server, Status
+from missionfsm.isaac.server.state import LOOK, Clock, Link, Move, Server, Status
 from missionfsm.kernel.values import value
 
 Look = tuple[int, int, int]
@@ -48,7 +48,7 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
         latest = _latest(here)
         later = list(_next(here, min(latest, time)))
         todo += reversed(later)
-        if latest >= time and all(last + slack(here.move.state) > time for _, _, last in here.looks):
+        if latest >= time and all(last + _pass(here) > time for _, _, last in here.looks):
             after = _shifted(here.move, time)
             found.setdefault((after.state, after.sent), after)
     return tuple(sorted(found.values(), key=lambda one: -_done(state, one.state)))
@@ -76,23 +76,26 @@ def _tidy(move: Move) -> Move:
 
 
 def _looking(here: _Here) -> _Here:
-    """AI-39 b: which connections something can be sent on, and since when."""
+    """Which connections a scheduling pass would send something on or cancel something for, and since when."""
     state = here.move.state
-    if state.letters(AI_39) != "b":
-        return here
     known = {slot: (first, last) for slot, first, last in here.looks}
     looks = tuple(
         (link.slot, *known.get(link.slot, here.move.at))
         for link in state.links
-        if link.serves and possible(state, link)
+        if link.serves and ((state.letters(AI_39) == "b" and possible(state, link)) or lapses(state, link))
     )
     return evolve(here, looks=looks)
+
+
+def _pass(here: _Here) -> int:
+    """How long a scheduling pass is in coming at the latest, in microseconds."""
+    return here.move.state.tolerance + LOOK
 
 
 def _latest(here: _Here) -> float:
     """Until when something has to have happened, at the latest."""
     due = [clock.hi for mission in here.move.state.missions for clock in mission.clocks if clock.hi is not None]
-    due += [last + slack(here.move.state) for _, _, last in here.looks]
+    due += [last + _pass(here) for _, _, last in here.looks]
     return min(due, default=math.inf)
 
 
@@ -105,13 +108,17 @@ def _next(here: _Here, until: float) -> Iterator[_Here]:
                 yield from _strike(here, index, clock, until)
     for slot, first, last in here.looks:
         link = here.move.state.link(slot)
-        when = (max(low, first), int(min(last + slack(here.move.state), until)))
+        when = (max(low, first), int(min(last + _pass(here), until)))
         if link is None or when[0] > when[1]:
             continue
-        for index, chosen in possible(here.move.state, link):
-            at = evolve(here.move, at=when)
+        at = evolve(here.move, at=when)
+        rest = tuple(one for one in here.looks if one[0] != slot)
+        for lapsed in lapses(here.move.state, link):
+            ended = Move(lapsed.state, at.sent, at.rules + lapsed.rules, when)
+            yield _Here(_tidy(ended), rest)
+        for index, chosen in possible(here.move.state, link) if here.move.state.letters(AI_39) == "b" else ():
             for after in sends(at.to(chosen.state), link, index):
-                yield _Here(_tidy(after), tuple(one for one in here.looks if one[0] != slot))
+                yield _Here(_tidy(after), rest)
 
 
 def _strike(here: _Here, index: int, clock: Clock, until: float) -> Iterator[_Here]:
@@ -140,7 +147,14 @@ def _shifted(move: Move, time: int) -> Move:
         else one
         for one in move.state.missions
     )
-    return evolve(_tidy(move), state=evolve(move.state, missions=missions), at=(0, 0))
+    links = tuple(_noticed(one, time) if one.fresh else one for one in move.state.links)
+    return evolve(_tidy(move), state=evolve(move.state, missions=missions, links=links), at=(0, 0))
+
+
+def _noticed(link: Link, time: int) -> Link:
+    """A connection that took over from another, so much later: a pass has noticed it after a while."""
+    fresh = max(0, link.fresh - time)
+    return evolve(link, fresh=fresh, over=link.over if fresh else None)
 
 
 def at_any_time(state: Server) -> tuple[Move, ...]:

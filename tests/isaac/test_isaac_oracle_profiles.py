@@ -1,0 +1,123 @@
+"""What the oracle takes for right under each profile, side by side on the same inputs."""
+
+from __future__ import annotations
+
+import pytest
+from commandline import CommandLine
+from server_history import SERVER, History
+
+from missionfsm.systems import names, system
+
+
+def right(begun: History, seconds: float, *ends: tuple[str, ...]) -> dict[str, list[tuple[str, ...]]]:
+    """For each profile: which of some statuses may be shown when so much time has passed."""
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for profile, readings in SERVER.profiles.items():
+        # How a header is written is another matter: the same lines are shown to both.
+        chosen = {**readings, "AI-06": "a", "AI-07": "a", "AI-08": "a", "AI-10": "a", "AI-31": "b", "AI-25.header": "s"}
+        for statuses in ends:
+            history = History()
+            history.lines, history.calls = list(begun.lines), begun.calls
+            judged = history.waits(seconds).settles.shows(*statuses).judged(readings=chosen)
+            found.setdefault(profile, [])
+            if judged.conforms:
+                found[profile].append(statuses)
+    return found
+
+
+def sent(seconds: float = 1.2, **mission: object) -> History:
+    """A mission that was sent in so much time and not acknowledged."""
+    return History().submit(1, **mission).robot(1).waits(seconds).sends(1, 1).settles
+
+
+STARTED, RUNNING, LOST, ABORTED = ("STARTED",), ("RUNNING",), ("FAILED_DISCONNECTED",), ("FAILED_TIMEDOUT",)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "documented", "shipped"),
+    [
+        (3.7, [STARTED], [STARTED]),
+        (4.6, [STARTED, ABORTED], [STARTED]),
+        (6.2, [ABORTED], [STARTED, ABORTED]),
+        (8.1, [ABORTED], [ABORTED]),
+    ],
+)
+def test_a_start_timeout_of_5_s(seconds: float, documented: object, shipped: object) -> None:
+    """As documented it aborts once 5 s have passed; as shipped once 6 whole seconds have, and a pass has come."""
+    assert right(sent(), seconds, STARTED, ABORTED) == {"documented": documented, "as-shipped": shipped}
+
+
+def test_a_start_timeout_of_0() -> None:
+    """As shipped the mission is sent, and aborted a second and a pass later; as documented it may be aborted unsent."""
+    assert right(sent(0.9, start_timeout=0), 0.05, STARTED, ABORTED)["as-shipped"] == [STARTED]
+    assert right(sent(0.9, start_timeout=0), 3.3, STARTED, ABORTED)["as-shipped"] == [ABORTED]
+    unsent = History().submit(1, start_timeout=0).robot(1)
+    assert right(unsent, 3, ("QUEUED",), ABORTED) == {"documented": [ABORTED], "as-shipped": []}
+
+
+def test_a_timeout_of_more_than_a_day() -> None:
+    """As shipped it never comes, since whole seconds are counted within a day."""
+    begun = sent(timeout=90_000).reports(1, 1, "running").settles
+    assert right(begun, 90_100, RUNNING, ABORTED) == {"documented": [ABORTED], "as-shipped": [RUNNING]}
+
+
+@pytest.mark.parametrize(("seconds", "documented", "shipped"), [(0.5, [LOST], [STARTED, LOST]), (1.5, [LOST], [LOST])])
+def test_a_connection_that_drops(seconds: float, documented: object, shipped: object) -> None:
+    """As shipped the next pass notices; as documented (AI-15 c) the mission has failed at once."""
+    begun = sent().drive("disconnect", connection=1).settles
+    found = right(begun, seconds, STARTED, LOST)
+    assert found["as-shipped"] == shipped
+    assert set(documented) <= set(found["documented"])  # type: ignore[call-overload]
+
+
+def test_a_downstream_whose_robot_is_away() -> None:
+    """As shipped it stays QUEUED until its robot is there and idle; as documented it is cancelled."""
+    begun = History().submit(1).submit(2, robot="s", upstream=[1]).robot(1).waits(1.2).sends(1, 1)
+    begun = begun.reports(1, 1, "failure").settles
+    queued, canceled = ("FAILED", "QUEUED"), ("FAILED", "FAILED_UPSTREAM")
+    assert right(begun, 60, queued, canceled)["as-shipped"] == [queued]
+    assert canceled in right(begun, 60, queued, canceled)["documented"]
+    begun.robot(2, "s")
+    assert right(begun, 2.2, queued, canceled)["as-shipped"] == [canceled]
+
+
+def test_the_connection_that_said_the_name_later_is_served() -> None:
+    """As shipped the later name counts, and what goes on on the older connection loses its timeouts."""
+    begun = History().submit(1, timeout=3).submit(2).drive("connect", connection=1).robot(2).waits(1.2).sends(2, 1)
+    begun.reports(2, 1, "running").says(1).waits(1.2)
+    begun = begun.sends(1, 2).settles
+    assert right(begun, 30, ("RUNNING", "FAILED_TIMEDOUT"))["as-shipped"] == [("RUNNING", "FAILED_TIMEDOUT")]
+
+
+def test_the_known_fault_is_named_with_the_upstream_rule() -> None:
+    """A downstream fails whose upstream was STARTED when it was made: as shipped; as documented in a short story."""
+    for late in (False, True):
+        begun = History().submit(1).robot(1).waits(1).sends(1, 1).submit(2, upstream=[1]).settles
+        begun.reports(1, 1, "success")
+        begun = begun.waits(1) if late else begun
+        begun.settles.shows("SUCCESS", "FAILED_UPSTREAM")
+        verdict = begun.judged(readings=SERVER.profiles["documented"])
+        assert verdict.violation is not None
+        assert "isaac.server/dependencies/a-failed-upstream-cancels" in [one.id for one in verdict.violation.rules]
+
+
+def test_profiles_of_systems() -> None:
+    """Isaac's systems have two; a profile is overruled by what is asked for besides, and another one is refused."""
+    assert {name: list(system(name).profiles) for name in names()} == {
+        "bear.mission": [],
+        "bear.status": [],
+        "isaac.server": ["documented", "as-shipped"],
+        "isaac.robot": ["documented", "as-shipped"],
+    }
+    assert SERVER.chosen("as-shipped", {"AI-39": "a"})["AI-39"] == "a"
+    with pytest.raises(ValueError, match=r"^isaac.server has no profile shipped; there are documented, as-shipped$"):
+        SERVER.chosen("shipped", {})
+
+
+def test_a_profile_on_the_command_line(command_line: CommandLine) -> None:
+    """Explore and adapter take a profile; a system that has none says so in one line."""
+    ended = command_line("explore", "bear.mission", "--profile", "as-shipped")
+    assert (ended.status, ended.err) == (
+        2,
+        "missionfsm: --profile: bear.mission has no profile as-shipped; there are none\n",
+    )

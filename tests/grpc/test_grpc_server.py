@@ -373,3 +373,16 @@ def until(last: int, messages: queue.Queue[JSON]) -> Iterator[JSON]:
         yield message
         if number_of(message) == last:
             return
+
+
+def test_a_reading_that_is_about_json_ends_a_stream_in_words() -> None:
+    """What binary protobuf has no form for ends a stream with INTERNAL, and the details say why."""
+    with serve("bear.mission", world={"family": "servi"}, readings={"AM-50.shape": "b"}) as robot:
+        client = Client(robot.target)
+        call, messages = client.subscribe()
+        assert messages.get(timeout=WAIT) is not None
+        delivery = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
+        client.call("CreateMission", delivery)
+        assert messages.get(timeout=WAIT) is None
+        assert call.code() is grpc.StatusCode.INTERNAL
+        assert call.details().startswith("SubscribeMissionStatus: binary protobuf cannot say this: ")

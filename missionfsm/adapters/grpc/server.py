@@ -138,7 +138,7 @@ class _Handlers(grpc.GenericRpcHandler):
         answered = self._live.call(method.name, params, spoilt)
         if answered.error is not None:
             await _refuse(context, answered)
-        return encode(method.response, answered.result)
+        return await _said(context, method, lambda: encode(method.response, answered.result))
 
     def _spoilt(self) -> Spoilt | None:
         if self._dice.unavailable():
@@ -176,7 +176,7 @@ class _Handlers(grpc.GenericRpcHandler):
                     return
                 if outgoing.unsent > MAX_UNSENT_MESSAGES:
                     await context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, "the subscriber does not read")
-                data = self._encoded(method, message)
+                data = await _said(context, method, functools.partial(self._encoded, method, message))
                 copies = self._dice.copies(first=first)
                 for _ in range(copies):
                     yield data
@@ -217,6 +217,15 @@ class _Handlers(grpc.GenericRpcHandler):
     async def _history(self, _: bytes, __: Context) -> AsyncIterator[bytes]:
         for line in self._live.history():
             yield control.pack(line)
+
+
+async def _said(context: Context, method: Method, encoded: Callable[[], bytes]) -> bytes:
+    """The bytes of what the robot says; a reading that is about JSON alone may make it say what has none."""
+    try:
+        return encoded()
+    except NotOnTheWireError as error:
+        await context.abort(grpc.StatusCode.INTERNAL, f"{method.name}: binary protobuf cannot say this: {error}")
+        raise
 
 
 async def _refuse(context: Context, answered: Answered) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import orjson
@@ -12,9 +13,11 @@ from commandline import CommandLine
 from traffic import navigate, readings_at_random, walk
 
 from missionfsm.app.asked import judged_system
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.reference.subject import Reference
 
 
 @cache
@@ -43,6 +46,47 @@ def test_a_conforming_history_that_is_cut_anywhere_is_no_violation(seed: int) ->
     wrong = {}
     for cut in range(len(log.lines)):
         judge = read(first, log.lines[cut:])
+        if not judge.right:
+            wrong[cut] = str(judge.verdict())
+    assert wrong == {}
+
+
+STATUS = judged_system("bear.status", strict=True)
+STATUS_WORLD = STATUS.alphabet({}, Bounds()).worlds[0]
+
+
+def status_log(seed: int, steps: int) -> list[Any]:
+    """A conversation with the reference of `bear.status`: subscriptions, requests and whatever robots report."""
+    random, reference, lines = Random(seed), Reference(STATUS), list[Any]()
+    reference.exchange("reset", {"world": STATUS_WORLD})
+    alphabet = STATUS.alphabet(STATUS_WORLD, Bounds())
+    prompts = [one for one in alphabet.prompts if "$" not in str(one.params)]
+    drives = [one for one in alphabet.drives if one["event"] in ("report", "restart", "fault")]
+    for number in range(1, steps + 1):
+        if random.random() < 0.5:
+            prompt = random.choice(prompts)
+            exchange = reference.exchange(prompt.method, prompt.params)
+            answer = {"error": exchange.error} if exchange.error else {"result": exchange.result}
+            lines += [{"call": number, "method": prompt.method, "params": prompt.params}, {"return": number, **answer}]
+        else:
+            drive = random.choice(drives)
+            exchange = reference.exchange("drive", drive)
+            lines += [{"drive": drive}] * exchange.result["happened"]
+        lines += [one.params for one in exchange.after]
+        lines += [{"settled": True}] * (random.random() < 0.2)
+    return lines
+
+
+@pytest.mark.parametrize("drives", [(), ("report", "restart"), tuple(STATUS.spec.drives)])
+@pytest.mark.parametrize("seed", range(2))
+def test_a_log_of_statuses_that_is_cut_anywhere_is_no_violation(seed: int, drives: tuple[str, ...]) -> None:
+    """However much of a right log of statuses is missing at its beginning, what is left is never a violation."""
+    lines = status_log(seed, 24)
+    first = {"missionfsm": 1, "system": "bear.status", "world": STATUS_WORLD, "drives": list(drives)}
+    first |= {"begins": "anywhere", "transport": "strict"}
+    wrong = {}
+    for cut in range(0, len(lines), 2):
+        judge = read(first, lines[cut:])
         if not judge.right:
             wrong[cut] = str(judge.verdict())
     assert wrong == {}
@@ -175,3 +219,23 @@ def test_a_system_that_cannot_be_judged_so_says_so(
     path.write_bytes(orjson.dumps({"missionfsm": 1, "system": "isaac.robot", "world": {}}) + b"\n")
     ended = command_line("check", path, *option)
     assert (ended.status, ended.err.count("\n"), "isaac.robot: " in ended.err) == (2, 1, True)
+
+
+def battery(number: int, percent: int, stream: int = 1) -> Any:
+    metadata = {"timestamp": "2025-04-01T17:05:00.001Z", "sequenceNumber": number}
+    state = {"chargePercent": percent, "state": "STATE_DISCHARGING", "chargeMethod": "CHARGE_METHOD_NONE"}
+    return {"stream": stream, "message": {"robotId": "r1", "metadata": metadata, "batteryState": state}}
+
+
+def test_streams_of_statuses_from_before_the_log_are_held_to_their_form() -> None:
+    """What comes on a stream that was opened before the log is right if it may come at all; on others all is judged."""
+    world = {"robots": [{"robotId": "r1", "locationId": "L1"}], "locations": [{"locationId": "L1"}]}
+    first = {"missionfsm": 1, "system": "bear.status", "world": world, "transport": "strict"}
+    anywhere = {**first, "begins": "anywhere"}
+    asked = {"selector": {"robotIds": {"ids": ["r1"]}}}
+    opened = call(1, "SubscribeBatteryStatus", asked, {"result": {"stream": 1}})
+    lines = [battery(17, 50, stream=4), battery(18, 49, stream=4)]
+    assert (read(anywhere, lines).right, read(first, lines).right) == (True, False)
+    assert not read(anywhere, [*lines, battery(16, 49, stream=4)]).right
+    assert read(anywhere, [*opened, battery(19, 49)]).right
+    assert not read(anywhere, [*opened, battery(19, 149)]).right

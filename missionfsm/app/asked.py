@@ -55,7 +55,8 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
         UnreadableError: there is no such system, or no log of it can be judged so.
     """
     found = system(name)
-    if (anywhere or others) and found.spec.middle is None:
+    middle = found.spec.middle
+    if (anywhere and middle is None) or (others and (middle is None or middle.glimpses is None)):
         says = "a log of it has to begin with its beginning" if anywhere else "it does not say what others may do"
         message = f"{name}: {says}"
         raise UnreadableError(message)

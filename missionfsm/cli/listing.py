@@ -43,7 +43,7 @@ def readings(system: Which = None, json: AsJson = False) -> None:
         for ambiguity in (
             *one.spec.ambiguities,
             *(TRANSPORT if one.codec.streams else ()),
-            *(MIDDLE if one.spec.middle else ()),
+            *(MIDDLE if one.spec.middle and one.spec.middle.glimpses else ()),
         ):
             found.append(
                 {

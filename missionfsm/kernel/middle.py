@@ -65,6 +65,8 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
     middle, decided, rebuilt, foresees = spec.middle, spec.decided, spec.rebuilt, spec.foresees
     if middle is None or not (anywhere or others):
         return spec
+    if middle.glimpses is None:
+        return evolve(spec, anywhere=anywhere)
 
     def matches(view: View, content: Any) -> tuple[Match, ...] | Mismatch:  # noqa: ANN401 - of any system
         if view is ANY:
@@ -113,8 +115,9 @@ def _known_only(drive: Drive) -> Drive:
 def _answers(spec: Spec, world: Hashable, request: Hashable, names: int) -> tuple[Step, ...]:
     """Every answer that some state allows, without its names."""
     found: dict[Hashable, Step] = {}
-    assert spec.middle is not None, "asked only of systems that can be judged so"  # noqa: S101
-    for state in spec.middle.samples(world):
+    glimpses = spec.middle and spec.middle.glimpses
+    assert glimpses, "asked only of systems that can be judged so"  # noqa: S101
+    for state in glimpses.samples(world):
         places = (None, *((ONCE_HAD,) if spec.recalls else ()), *range(spec.names(state)))
         for refs in itertools.product(places, repeat=names):
             for step in spec.outcomes(state, request, refs):

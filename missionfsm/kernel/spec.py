@@ -279,8 +279,8 @@ class Parting:
 
 
 @frozen
-class Middle:
-    """What lets a system be judged without its beginning.
+class Glimpses:
+    """What messages tell of a system of which nothing else is known.
 
     Attributes:
         world: state to the world that it is in, as `Spec.initial` takes it.
@@ -297,6 +297,21 @@ class Middle:
     samples: Callable[[Any], tuple[State, ...]]
     topic: Callable[[Any], Hashable]
     follows: Callable[[State, tuple[int, ...], State, tuple[int, ...]], bool]
+
+
+@frozen
+class Middle:
+    """What lets a system be judged without its beginning.
+
+    Attributes:
+        glimpses: how its state becomes known from messages; None where nothing that it can be asked changes it, so
+            that what it did unseen is all that is not known.
+        undriven: names of the drives whose events before the log are not known, so that what they do may have happened
+            unseen.
+    """
+
+    glimpses: Glimpses | None = None
+    undriven: frozenset[str] = frozenset()
 
 
 @frozen(eq=False)

@@ -15,7 +15,7 @@ from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
 from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.spec import Match, Mismatch, Spec, View
+from missionfsm.kernel.spec import Glimpses, Match, Mismatch, Spec, View
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,
@@ -39,12 +39,16 @@ def is_unknown(explanation: Explanation) -> bool:
     return type(explanation.state) is Unknown
 
 
+def _glimpses(moves: Moves) -> Glimpses | None:
+    return moves.spec.middle.glimpses if moves.spec.middle else None
+
+
 def plausible(moves: Moves, explanation: Explanation, call: InFlight, answer: Answer) -> Iterator[tuple[Hashable, ...]]:
     """The topics of the channels that such an answer opens, once for each way in which some state allows it."""
-    middle = moves.spec.middle
+    glimpses = _glimpses(moves)
     state = explanation.state
-    if middle is not None and not is_unknown(explanation):
-        state = Unknown(middle.world(state))
+    if glimpses is not None and not is_unknown(explanation):
+        state = Unknown(glimpses.world(state))
     found = dict.fromkeys(
         tuple(one.topic for one in step.opens)
         for step in moves.outcomes(state, call.request, (None,) * len(call.args))
@@ -78,15 +82,15 @@ def shown(  # noqa: PLR0913 - a message, and what is known
     Args:
         then: whether it has to be one that the state before may have become.
     """
-    spec, middle = moves.spec, moves.spec.middle
-    if middle is None:
+    spec, glimpses = moves.spec, _glimpses(moves)
+    if glimpses is None:
         return
     if GONE in names:
         if is_unknown(here):
             yield Sighting(here)  # it shows what was before
         return
-    world = here.state.world if is_unknown(here) else middle.world(here.state)
-    for state, view in middle.shown(world, content):
+    world = here.state.world if is_unknown(here) else glimpses.world(here.state)
+    for state, view in glimpses.shown(world, content):
         matches = spec.matches(view, content)
         if isinstance(matches, Mismatch):
             continue
@@ -94,9 +98,9 @@ def shown(  # noqa: PLR0913 - a message, and what is known
             moves.spend()
             assumed = meet(here.assumed, match.assumes)
             own = _names(spec, here, state, match, names)
-            if assumed and not (then and not middle.follows(here.state, here.names, state, own)):
+            if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
                 looks = spec.looks(view, content)
-                after = _standing(here, state, own, channel, middle.topic(content), view, looks)
+                after = _standing(here, state, own, channel, glimpses.topic(content), view, looks)
                 yield Sighting(tidy(after.but(assumed=assumed)), match.rules)
 
 
@@ -130,12 +134,17 @@ def _standing(  # noqa: PLR0913 - what a message fixes
     return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
 
 
-def joined(moves: Moves, here: Explanation, channel: int, content: Any) -> Explanation:  # noqa: ANN401
-    """The explanation with a channel that was opened before the log began; it may show anything first."""
-    middle, known = moves.spec.middle, {one.name for one in here.channels}
-    if middle is None or isinstance(content, Garbled) or channel in known:
-        return here
-    return here.but(channels=(*here.channels, Channel(channel, middle.topic(content), None, (_FREE,))))
+def joined(moves: Moves, here: Explanation, channel: int, content: Any) -> tuple[Explanation, bool]:  # noqa: ANN401
+    """The explanation with a channel that was opened before the log began, and whether its message is no more judged.
+
+    Such a channel may show anything first; where nobody can tell what it is to show, it is not followed.
+    """
+    if isinstance(content, Garbled) or channel in {one.name for one in here.channels}:
+        return here, False
+    glimpses = _glimpses(moves)
+    if glimpses is None:
+        return here, True
+    return here.but(channels=(*here.channels, Channel(channel, glimpses.topic(content), None, (_FREE,)))), False
 
 
 def unforeseen(
@@ -151,6 +160,8 @@ def unforeseen(
         assumed: what is assumed where the numbers of a message compare so with those before.
     """
     spec = moves.spec
+    if _glimpses(moves) is None:
+        return
     acted = LOG_02["b"] if spec.others else LOG_01["b"]
     for one in explanations:
         agreed = meet(one.assumed, (acted, *assumed))
@@ -180,13 +191,14 @@ def _late(here: Explanation, name: int, content: Any) -> Iterator[Sighting]:  # 
 
 def _lost_sight(moves: Moves, here: Explanation) -> Explanation:
     """The explanation in which nothing is known of the state any more."""
-    assert moves.spec.middle is not None, "asked only of systems that can be judged so"  # noqa: S101
+    glimpses = _glimpses(moves)
+    assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
     channels = tuple(Channel(one.name, one.topic, Owed(ANY, ()), (_FREE,)) for one in here.channels)
     calls = tuple(
         one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
         for one in here.calls
     )
-    unknown = Unknown(moves.spec.middle.world(here.state))
+    unknown = Unknown(glimpses.world(here.state))
     return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
 
 

@@ -70,7 +70,7 @@ class Moves:
 
     def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
         self.spec = spec.decided(assumed) if spec.decided and assumed != ANYTHING else spec
-        self.driven = frozenset(driven)
+        self.driven = frozenset(driven) - (spec.middle.undriven if spec.middle and spec.anywhere else frozenset())
         self.assumed = assumed
         self.budget = budget
         self.groups = by_bit(spec.ambiguities)

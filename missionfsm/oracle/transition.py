@@ -249,7 +249,10 @@ class Oracle:
                 yield from middle.shown(self.moves, start.explanation, channel, content, names)
                 continue
             if self.spec.anywhere:
-                start = Sighting(middle.joined(self.moves, start.explanation, channel, content))
+                joined, unjudged = middle.joined(self.moves, start.explanation, channel, content)
+                start = Sighting(joined)
+                if unjudged:
+                    yield start
             if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
                 yield from self._showings(start, channel, None, content, names, echo=True)
             if not ("equal" in relations and echoes):

@@ -28,7 +28,7 @@ from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, 
 from missionfsm.bear.wire.messages import Goal, MissionState, MissionType, State
 from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
-from missionfsm.kernel.spec import Middle
+from missionfsm.kernel.spec import Glimpses, Middle
 
 MOST = 16
 """How many robots are imagined behind one message at most."""
@@ -152,7 +152,9 @@ def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tu
     )
 
 
-MIDDLE = Middle(world=lambda robot: robot.world, shown=shown, samples=samples, topic=lambda _: TOPIC, follows=follows)
+MIDDLE = Middle(
+    Glimpses(world=lambda robot: robot.world, shown=shown, samples=samples, topic=lambda _: TOPIC, follows=follows)
+)
 
 
 __all__ = ["MIDDLE"]

@@ -41,7 +41,7 @@ from missionfsm.bear.status.values import faults
 from missionfsm.kernel.history import Called, Driven, Event, Received
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation, Waiver
-from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Mismatch, Parting, Spec
+from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Middle, Mismatch, Parting, Spec
 
 
 def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
@@ -252,6 +252,8 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         abstraction=Abstraction(shape=_shape),
         parting=Parting(_parts, _alone, _whose),
         rebuilt=specification,
+        # No call changes a fleet. What robots reported before a log, and a fault that waits, nobody has seen.
+        middle=Middle(undriven=frozenset({"report", "fault"})),
         unopened=(UPDATES.id,),
     )
 

@@ -157,9 +157,9 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         return tester.conform(
             judged,
             subject,
-            examples=tester.DEFAULT_EXAMPLES if examples is None else examples,
-            steps=tester.DEFAULT_STEPS if steps is None else steps,
-            tours=tester.DEFAULT_TOURS if tours is None else tours,
+            examples=tester.EXAMPLES if examples is None else examples,
+            steps=tester.STEPS if steps is None else steps,
+            tours=tester.TOURS if tours is None else tours,
             seed=seed,
             readings=readings,
             no_flagged=no_flagged,

@@ -10,9 +10,10 @@ from attrs import frozen
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
-from missionfsm.tools.conform.conversation import introduce
 from missionfsm.tools.conform.guide import Guide
+from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import play, tour
 from missionfsm.tools.reference.subject import Reference
 
 BOUNDS = Bounds(4, goals=3)
@@ -30,7 +31,7 @@ class Bench:
     def of(cls, system: System) -> Bench:
         """A bench for a system."""
         drives = tuple(system.spec.drives)
-        guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS, drives)
+        guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS)
         return cls(system, Automaton(system.spec, drives), guide)
 
 
@@ -44,12 +45,12 @@ def wrong(bench: Bench, choice: Mapping[str, str], seed: int, examples: int, ste
     """What is wrong with the judgement of a reference that follows a combination of readings; empty if nothing is."""
     system = bench.system
     subject = Reference(system, choice)
-    run = Run(system, subject, introduce(system, subject), bench.automaton, BOUNDS, guide=bench.guide.fresh())
-    if not (run.play() and run.tour(random.Random(seed), examples, steps)):
+    run = Run.with_guide(system, subject, handshake(system, subject), bench.automaton, bench.guide.fresh())
+    if not (play(run) and tour(run, random.Random(seed), examples, steps)):
         if run.found is None:
-            return f"no reading of {run.contradiction} is left"
+            return f"no reading of {run.ledger.contradiction} is left"
         if run.found.judge.exhausted:
             return f"too many explanations after {len(run.found.actions)} actions"
         return f"false alarm: {run.found.judge.verdict()}"
-    missing = [f"{name}={choice[name]}" for name, letters in run.readings.items() if choice[name] not in letters]
+    missing = [f"{name}={choice[name]}" for name, letters in run.ledger.readings.items() if choice[name] not in letters]
     return f"ruled out though followed: {', '.join(missing)}" if missing else ""

@@ -45,7 +45,7 @@ GUESTS = {name: ticked(row[3]) for name, row in LAYERS.items()}
 
 PURE = {name for name, row in LAYERS.items() if row[4] != "no"}
 SEEDED = {name for name, row in LAYERS.items() if row[4] == "seeded"}
-PARTICULAR = {"transitions": {"kernel.chart", "tools.draw.machines"}, "hypothesis": {"tools.conform.conform"}}
+PARTICULAR = {"transitions": {"kernel.chart", "tools.draw.machines"}, "hypothesis": {"tools.conform.drawn"}}
 """Libraries that one module of a layer has to itself."""
 
 SAME = {"attr": "attrs", "grpc": "grpcio", "grpc_reflection": "grpcio-reflection", "google": "protobuf"}

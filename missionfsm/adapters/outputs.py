@@ -33,7 +33,7 @@ def write_whole(path: str, data: bytes) -> None:
         with to_stdout():
             sys.stdout.buffer.write(data)
         return
-    with _named(path):
+    with naming(path):
         found = _found(path)
         if found is None or stat.S_ISREG(found.st_mode):
             _replace(Path(os.path.realpath(path)), data, found)
@@ -47,7 +47,7 @@ def refuse_unwritable(path: str) -> None:
         if sys.stdout is None:
             raise UnreadableError(_NO_STDOUT)
         return
-    with _named(path):
+    with naming(path):
         found = _found(path)
         target = path
         if found is None or stat.S_ISREG(found.st_mode):  # it is the folder that is written to
@@ -135,7 +135,7 @@ def _replace(target: Path, data: bytes, found: os.stat_result | None) -> None:
 
 
 @contextlib.contextmanager
-def _named(path: str) -> Iterator[None]:
+def naming(path: str) -> Iterator[None]:
     """Says of which file it is that something is wrong."""
     try:
         yield

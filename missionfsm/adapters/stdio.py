@@ -12,17 +12,18 @@ import selectors
 import subprocess
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import IO, Any
 
 import orjson
 
 from missionfsm.adapters.jsonlines import TooDeepError, loads
 from missionfsm.adapters.processes import end_group
+from missionfsm.adapters.stderrlog import Log
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
-from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
-from missionfsm.kernel.text import brief, printable
+from missionfsm.kernel.subject import Exchange, MissingMethodError, Notification, Subject, SubjectError
+from missionfsm.kernel.text import brief
 
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes in one line before a child counts as flooding."""
@@ -30,16 +31,22 @@ LONGEST_LINE = 64 * 1024 * 1024
 MOST_NOTIFICATIONS = 100_000
 """Notifications between two answers before a child counts as flooding."""
 
-LOG_KEPT = 2000
-"""How many of the bytes that a child wrote to stderr last are kept."""
-
 MOST_READS = 100
 """How many times what is left in a pipe is asked for before somebody counts as writing without end."""
 
 MOMENT = 0.05
 """Seconds after which a child that says nothing is looked at whether it is still there."""
 
-PARSE_ERROR, INVALID_REQUEST, INVALID_PARAMS = -32700, -32600, -32602
+ASKED = 160
+"""Characters of what a child was sent that an error message shows."""
+
+GRACE = 1.0
+"""Seconds that an answer may still take once a run was stopped."""
+
+PARSE_ERROR, INVALID_REQUEST, NO_METHOD, INVALID_PARAMS = -32700, -32600, -32601, -32602
+
+Trace = Callable[[str, bytes], None]
+"""Told of every line: ``>`` for one that was sent, ``<`` for one that came, and the line."""
 
 
 # The reference as a server.
@@ -100,14 +107,26 @@ class Child:
     Args:
         command: the program and its arguments.
         timeout: seconds that an answer may take.
+        stopped: asked while an answer is waited for: whether the run was stopped, so that it is not waited for long.
+        trace: told of every line in both directions.
 
     Raises:
         SubjectError: the program cannot be started.
     """
 
-    def __init__(self, command: Sequence[str], timeout: float = 10.0) -> None:
+    def __init__(
+        self,
+        command: Sequence[str],
+        timeout: float = 10.0,
+        *,
+        stopped: Callable[[], bool] = lambda: False,
+        trace: Trace = lambda _, __: None,
+    ) -> None:
         self.command = tuple(command)
         self.timeout = timeout
+        self._stopped = stopped
+        self._trace = trace
+        self._asked = ""
         pipe = subprocess.PIPE
         try:
             self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
@@ -120,20 +139,20 @@ class Child:
         assert self._process.stdout is not None  # noqa: S101
         assert self._process.stderr is not None  # noqa: S101
         self._in, self._out = self._process.stdin.fileno(), self._process.stdout.fileno()
-        self._log, self._err = self._process.stderr, self._process.stderr.fileno()
+        self._errors, self._err = self._process.stderr, self._process.stderr.fileno()
         self._selector = selectors.DefaultSelector()
         for end in (self._in, self._out, self._err):
             os.set_blocking(end, False)
         for end in (self._out, self._err):
             self._selector.register(end, selectors.EVENT_READ)
-        self._logged = bytearray()
+        self._log = Log()
         self._partial = bytearray()
         self._lines: deque[bytes] = deque()
         self._serial = 0
 
     def close(self) -> None:
         """End its input, give it a moment, then end it and whatever it has started."""
-        if self._log.closed:
+        if self._errors.closed:
             return
         self._selector.close()
         try:
@@ -145,14 +164,17 @@ class Child:
                 self._process.wait(0.5)
         finally:
             end_group(self._process)
-            self._log.close()
+            self._errors.close()
 
     def exchange(self, method: str, params: JSON) -> Exchange:
         """Send a request and wait for its answer."""
         self._serial += 1
         request = {"jsonrpc": "2.0", "id": self._serial, "method": method, "params": params}
         deadline = time.monotonic() + self.timeout
-        self._write(orjson.dumps(request) + b"\n", deadline, method)
+        line = orjson.dumps(request)
+        self._asked = f"{method} {orjson.dumps(params).decode()}"
+        self._trace(">", line)
+        self._write(line + b"\n", deadline, method)
         before: list[Notification] = []
         while True:
             message = self._parse(self._line(deadline, method))
@@ -177,6 +199,9 @@ class Child:
         code = error.get("code") if isinstance(error, dict) else None
         if isinstance(code, bool) or not isinstance(code, int):
             raise self._failed(f"answered {method} with an error without a code: {brief(error)}")
+        if code == NO_METHOD:
+            says = f"answered {method} with JSON-RPC error {code}: it does not have it"
+            raise MissingMethodError(self._failed(says).args[0])
         if code < 0:
             raise self._failed(f"answered {method} with JSON-RPC error {code}: {brief(error.get('message', ''))}")
         data = error.get("data")
@@ -237,10 +262,14 @@ class Child:
                 raise self._exited(method) from None
 
     def _line(self, deadline: float, method: str) -> bytes:
+        told = False
         while not self._lines:
+            if not told and self._stopped():
+                told, deadline = True, min(deadline, time.monotonic() + GRACE)
             left = deadline - time.monotonic()
             if left <= 0:
-                raise self._failed(f"did not answer {method} within {self.timeout:g} s")
+                when = "when the run was stopped" if told else f"within {self.timeout:g} s"
+                raise self._failed(f"did not answer {method} {when}")
             ready = {key.fd for key, _ in self._selector.select(min(left, MOMENT))}
             if self._err in ready:
                 self._read_log()
@@ -266,6 +295,7 @@ class Child:
             *whole, rest = data.split(b"\n")
             for part in whole:
                 self._lines.append(bytes(self._partial) + part if self._partial else part)
+                self._trace("<", self._lines[-1])
                 self._partial.clear()
             self._partial += rest
             if len(self._partial) > LONGEST_LINE:
@@ -284,8 +314,7 @@ class Child:
         if not data:
             with contextlib.suppress(KeyError):
                 self._selector.unregister(self._err)
-        self._logged += data
-        del self._logged[:-LOG_KEPT]
+        self._log.add(data)
         return bool(data)
 
     def _exited(self, method: str) -> SubjectError:
@@ -298,13 +327,8 @@ class Child:
         return self._failed(f"{ended} before answering {method}{half}")
 
     def _failed(self, says: str) -> SubjectError:
-        return SubjectError(f"the adapter {says}{self._complaint()}")
-
-    def _complaint(self) -> str:
-        """The last line that it wrote to stderr, since that usually says what is wrong."""
         for _ in range(MOST_READS):  # one that floods has always more
             if not self._read_log():
                 break
-        lines = self._logged.decode(errors="replace").strip().splitlines()
-        telling = next((line for line in reversed(lines) if line.strip()), "")
-        return f" (stderr: {printable(telling.strip()[:200])})" if telling else ""
+        asked = f"; it was sent {self._asked[:ASKED]}{'…' * (len(self._asked) > ASKED)}" if self._asked else ""
+        return SubjectError(f"the adapter {says}{self._log.complaint()}{asked}")

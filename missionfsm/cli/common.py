@@ -19,6 +19,8 @@ from missionfsm.kernel.text import shown
 from missionfsm.systems import system
 
 DONE, FAILED, BAD_INPUT, ADAPTER_FAILED = 0, 1, 2, 3
+INTERRUPTED = 130
+"""As a shell says it of what ended by Ctrl-C."""
 
 
 def complain(says: str) -> None:
@@ -91,6 +93,13 @@ def refuse_outputs(outputs: Mapping[str, str | None], inputs: Iterable[str | Non
     for (option, path), source in itertools.product(wanted.items(), inputs):
         if source and same_file(path, source):
             stop(f"{option}: {path} is read, and would be overwritten", BAD_INPUT)
+
+
+def refuse_options(options: Mapping[str, object], where: str) -> None:
+    """Bad input where an option is given that has no effect there."""
+    for option, value in options.items():
+        if value:
+            stop(f"{option}: it has no effect {where}", BAD_INPUT)
 
 
 class Troubles:

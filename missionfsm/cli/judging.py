@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import enum
 import math
 import re
@@ -12,16 +13,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import define
 
 from missionfsm.cli.common import (
     BAD_INPUT,
     DONE,
     FAILED,
+    INTERRUPTED,
     Troubles,
     choice,
     one_line_errors,
     profiled,
     readable,
+    refuse_options,
     refuse_outputs,
     say_shown,
     stop,
@@ -87,6 +91,26 @@ DAY = 24 * 60 * 60.0
 """Seconds that anything may be waited for."""
 
 
+@define
+class TimeLimit:
+    """The seconds that a run may take, from when its adapter is there: what is slow to start does not use them up."""
+
+    seconds: float | None
+    began: float | None = None
+
+    def reached(self) -> bool:
+        """Whether they have passed; the first time that it is asked, they begin."""
+        if self.began is None:
+            self.began = time.monotonic()
+        return self.over
+
+    @property
+    def over(self) -> bool:
+        """Whether they have begun and passed."""
+        began, seconds = self.began, self.seconds
+        return began is not None and seconds is not None and time.monotonic() > began + seconds
+
+
 def _finite(seconds: float | None) -> float | None:
     if seconds is not None and not math.isfinite(seconds):
         message = f"{seconds:g} is no number of seconds"
@@ -94,13 +118,13 @@ def _finite(seconds: float | None) -> float | None:
     return seconds
 
 
-def conform(  # noqa: PLR0913 - options of the command
+def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
     system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
     command: Annotated[
         list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")
     ] = None,
     examples: Annotated[
-        int | None, typer.Option(min=1, help="Conversations, each from a reset on: 100, or 5 in real time.")
+        int | None, typer.Option(min=1, help="Conversations in all, each from a reset on: some 300, or 5 in real time.")
     ] = None,
     steps: Annotated[int, typer.Option(min=1, help="Calls and drives in a conversation, at most.")] = 40,
     seed: Annotated[int | None, typer.Option(help="The same seed asks the same.")] = None,
@@ -112,6 +136,12 @@ def conform(  # noqa: PLR0913 - options of the command
     profile: ProfileName = None,
     no_flagged: NoFlagged = False,
     expect_violations: KnownFile = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="CALL", help="Make this call and no others; repeat it, or use commas.")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(metavar="CALL", help="Leave this call or drive out; repeat it, or use commas.")
+    ] = None,
     distinguish: Annotated[
         bool, typer.Option("--distinguish", help="Try at the end to tell readings apart that are still open.")
     ] = False,
@@ -144,6 +174,10 @@ def conform(  # noqa: PLR0913 - options of the command
     tolerance: Annotated[
         float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
     ] = 0.2,
+    trace: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write every line that is sent and that comes, with its time; - is stdout."),
+    ] = None,
     record: Annotated[
         str | None,
         typer.Option(
@@ -156,26 +190,37 @@ def conform(  # noqa: PLR0913 - options of the command
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.tracefile import tracing  # noqa: PLC0415
     from missionfsm.app.bridged import Sockets, bridged  # noqa: PLC0415
-    from missionfsm.tools.conform.conform import DEFAULT_EXAMPLES, planned  # noqa: PLC0415
+    from missionfsm.cli.signals import interruptible  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415
     from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
     readings = profiled(profile, choice(reading), judged)
+    calls: dict[str, Any] = {
+        option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))
+    }
     known = _known(expect_violations, judged)
-    outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit}
+    outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit, "--trace": trace}
     refuse_outputs(outputs, (expect_violations, missions))
-    deadline = None if seconds is None else time.monotonic() + seconds
+    limit = TimeLimit(seconds)
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
     if grpc is None and any((world, settle, force, token, tls)):
         stop("--world, --settle, --force, --token, --tls: they belong to --grpc", BAD_INPUT)
-    if grpc is not None and (sockets.wanted or command):
-        stop(
-            "--grpc: it is a server that is judged; it goes with no --tcp, --tcp-listen, --missions or command",
-            BAD_INPUT,
+    if grpc is not None:
+        refuse_options(
+            {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
+            "where --grpc says which server is judged",
         )
-    with one_line_errors():
+    if sockets.wanted:
+        refuse_options({"--only": only, "--without": without, "--trace": trace}, "over TCP")
+    with one_line_errors(), interruptible() as interruption, tracing(trace) as traced:
+
+        def enough() -> bool:
+            return interruption.asked or limit.reached()
+
         try:
             bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
         except ValueError as error:
@@ -185,23 +230,25 @@ def conform(  # noqa: PLR0913 - options of the command
                 system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
             )
             judged, examples = in_binary(judged), examples or GRPC_EXAMPLES
+        elif bridge:
+            child = bridge.subject
         else:
-            child = bridge.subject if bridge else Child(command or own, timeout)
-        examples = examples or DEFAULT_EXAMPLES
+            child = Child(command or own, timeout, stopped=lambda: interruption.asked or limit.over, trace=traced)
+        plan = Plan(steps=steps) if examples is None else Plan.sharing(examples, steps)
         try:
-            with Bar("conversations", bridge.conversations if bridge else planned(judged, examples)) as bar:
+            with Bar("conversations", bridge.conversations if bridge else plan.conversations(judged)) as bar:
                 asked: dict[str, Any] = {
                     "seed": secrets.randbits(32) if seed is None else seed,
                     "readings": readings,
                     "no_flagged": no_flagged,
                     "expected": known,
-                    "enough": lambda: deadline is not None and time.monotonic() > deadline,
+                    "enough": enough,
                     "progress": bar.conversation,
                 }
                 if bridge:
                     verdict = bridge.judge(steps, **asked)
                 else:
-                    verdict = judge(judged, child, examples=examples, steps=steps, distinguish=distinguish, **asked)
+                    verdict = judge(judged, child, plan=plan, distinguish=distinguish, **calls, **asked)
         except ValueError as error:
             stop(str(error), BAD_INPUT)
         finally:
@@ -213,7 +260,23 @@ def conform(  # noqa: PLR0913 - options of the command
         _write_junit(junit, [(verdict.implementation or system, verdict)])
     with troubles.kept():
         _record(record, judged, verdict)
-    troubles.end(DONE if verdict.conforms else FAILED)
+    troubles.end(FAILED if verdict.violation else INTERRUPTED if interruption.asked else _status(verdict))
+
+
+def _status(verdict: Verdict) -> int:
+    return DONE if verdict.conforms else FAILED
+
+
+def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, ...]:
+    """The calls, or with --without the calls and drives, that an option names; bad input if there is no such one."""
+    named = tuple(name.strip() for one in given or () for name in one.split(",") if name.strip())
+    known = (*judged.codec.methods, *(judged.spec.drives if option == "without" else ()))
+    for name in named:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            meant = f"; is {near[0]} meant?" if near else f"; there are {', '.join(known)}"
+            stop(f"--{option} {name}: {judged.name} has no such call{meant}", BAD_INPUT)
+    return named
 
 
 def _told(found: Verdict | Exploration | Teeth | Hazards, json: str | None) -> Troubles:

@@ -51,6 +51,6 @@ class Bar:
         """A run has had one more conversation; now and then its coverage is told with it."""
         self.one_more()
         if self._bar is not None and time.monotonic() - self._looked > EVERY:
-            rules = f"{len(run.exercised())} of {len(run.system.spec.all_rules)} rules"
+            rules = f"{len(run.narrowing.exercised())} of {len(run.system.spec.all_rules)} rules"
             self._bar.update(self._task, description=f"{self.what}, {rules}")
             self._looked = time.monotonic()

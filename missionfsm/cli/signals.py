@@ -1,4 +1,4 @@
-"""Being told to end by others than the keyboard: what was started is ended first, as with Ctrl-C."""
+"""Being told to end, from the keyboard or by others."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import contextlib
 import signal
 import threading
 from collections.abc import Iterator
+from types import FrameType
+
+from attrs import define
 
 _TOLD = tuple(one for one in ("SIGTERM", "SIGHUP") if hasattr(signal, one))
 
@@ -25,3 +28,38 @@ def ended_like_ctrl_c() -> Iterator[None]:
     finally:
         for number in taken:
             signal.signal(number, signal.SIG_DFL)
+
+
+@define
+class Interruption:
+    """Whether somebody has asked for an end."""
+
+    asked: bool = False
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Take the first signal for a request, the second one for an order."""
+        if self.asked:
+            signal.default_int_handler(number, frame)
+        self.asked = True
+
+
+@contextlib.contextmanager
+def interruptible() -> Iterator[Interruption]:
+    """Within it whoever is told to end once only notes it, so that what was found until then can be told.
+
+    It is for what looks at the note often; told a second time, it ends like anything else.
+    """
+    noted = Interruption()
+    if threading.current_thread() is not threading.main_thread():
+        yield noted
+        return
+    numbers = [getattr(signal, one) for one in ("SIGINT", *_TOLD)]
+    before = {one: signal.getsignal(one) for one in numbers}
+    taken = [one for one, handler in before.items() if handler not in (signal.SIG_IGN, None)]
+    for number in taken:
+        signal.signal(number, noted)
+    try:
+        yield noted
+    finally:
+        for number in taken:
+            signal.signal(number, before[number])

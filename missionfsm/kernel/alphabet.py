@@ -36,8 +36,8 @@ def as_text(value: JSON) -> JSON:
     return {"$text": value}
 
 
-def _as_it_is(name: Any) -> JSON:  # noqa: ANN401 - a name
-    return name
+def _plainly(name: Any) -> JSON:  # noqa: ANN401 - a name
+    return name[1] if isinstance(name, tuple) else name
 
 
 @frozen
@@ -49,7 +49,7 @@ class Naming:
     where it is not said what it is a name of.
     """
 
-    write: Callable[[Any], JSON] = _as_it_is
+    write: Callable[[Any], JSON] = _plainly
     make: Callable[[str, int], Any] = lambda kind, serial: (kind, serial)
     shown: Callable[[int], Any] = lambda serial: f"n{serial}"
     given: Callable[[int], Any] = lambda serial: f"name-{serial}"
@@ -122,3 +122,19 @@ class Alphabet:
     wrong_names: tuple[str, ...] = ()
     look: Prompt | None = None
     scripts: tuple[tuple[Line, ...], ...] = ()
+
+
+@frozen
+class Reach:
+    """What a run should have tried: every operation with a valid request, and every drive, in every situation.
+
+    Together they span a matrix; a cell of it is reachable where some conversation comes to such a situation.
+
+    Attributes:
+        situation: state to the situation that it is in, in words, such as ``paused, with a queue``.
+        operation: (state, request or event, positions of its names) to what is tried, in words, such as ``UpdateMission
+            resume of a waiting mission``; empty for a request that is malformed and for what is not worth a row.
+    """
+
+    situation: Callable[[Any], str]
+    operation: Callable[[Any, Any, tuple[int | None, ...]], str]

@@ -64,6 +64,8 @@ class Codec:
             those that only the environment could give.
         measured: fields of a drive that its result may give anew: in real time never exactly as much passes as was
             wanted.
+        carries: (method, params) to whether binary protobuf can carry such a request: no two members of a oneof, no
+            unknown names, no wrong types.
         skim: the text of a message that is one part, as nearly all are written, to what `strip` finds; None for any
             other text. Two texts of which the same is left have the same content.
         robot_in_params: whether the system is about one robot, so that params that name a robot only say which.
@@ -90,3 +92,4 @@ class Codec:
     measured: tuple[str, ...] = ()
     skim: Callable[[bytes], Skimmed | None] = lambda _text: None
     robot_in_params: bool = False
+    carries: Callable[[str, JSON], bool] = lambda _method, _params: True

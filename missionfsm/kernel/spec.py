@@ -190,6 +190,7 @@ class Drive:
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
         ends: what arrived while it was being done, arrived before it (it ends a channel).
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
+        waits: whether one that was driven before still waits in a state; the tester drives none while one does.
     """
 
     name: str
@@ -199,6 +200,7 @@ class Drive:
     renumbers: Callable[[Any], tuple[Hashable, ...]] | None = None
     ends: bool = False
     impossible: tuple[str, ...] = ()
+    waits: Callable[[State], bool] = lambda _: False
 
 
 @frozen
@@ -322,6 +324,7 @@ class Spec:
         system: its name on the command line.
         title: what it is, in a few words.
         initial: the state in a world (the parameters that `reset` is given, as a value of the system).
+        used: the same where what was before the reset lives on, but for what is there; None where that is no other.
         operations: what callers may ask, by name.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
             are the positions of the request's names among those of the state, None for one that the state has not, or
@@ -405,6 +408,7 @@ class Spec:
     middle: Middle | None = None
     anywhere: bool = False
     others: bool = False
+    used: Callable[[Any], State] | None = None
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

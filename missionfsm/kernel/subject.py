@@ -17,6 +17,10 @@ class GibberishError(SubjectError):
     """What the adapter said is of the protocol, but cannot be read."""
 
 
+class MissingMethodError(SubjectError):
+    """The adapter does not have the method that it was asked for."""
+
+
 @frozen
 class Notification:
     """Something that the implementation sent unasked: a ``message``, ``closed`` or a ``line``.

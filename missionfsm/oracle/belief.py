@@ -109,9 +109,9 @@ class Automaton:
         self._rules: dict[tuple[str, ...], int] = {}
         self.tally: Tally = defaultdict(int)
 
-    def start(self, world: object) -> Node:
-        """The node in which a fresh instance in this world is."""
-        state = self.spec.initial(world)
+    def start(self, world: object, *, used: bool = False) -> Node:
+        """The node in which an instance in this world is that is fresh, or that was used and then cleared."""
+        state = (self.spec.used if used and self.spec.used else self.spec.initial)(world)
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)
 
@@ -206,6 +206,7 @@ class Belief:
         automaton: the automaton that it walks.
         world: where it begins.
         tally: counts what is exercised; the automaton's own if none.
+        past: the names of what was there before, where the instance was used; None for a fresh one.
     """
 
     __slots__ = (
@@ -225,16 +226,18 @@ class Belief:
         "unfollowed",
     )
 
-    def __init__(self, automaton: Automaton, world: object, tally: Tally | None = None) -> None:
+    def __init__(
+        self, automaton: Automaton, world: object, tally: Tally | None = None, past: Iterable[Name] | None = None
+    ) -> None:
         self.automaton = automaton
         self._tally = automaton.tally if tally is None else tally
-        self.node = automaton.start(world)
+        self.node = automaton.start(world, used=past is not None)
         self.broken = False
         self.touched = 0
         self.unfollowed = 0
         self._names: list[Name] = []
         self._numbers: dict[Name, int] = {}
-        self._retired: dict[Name, None] = {}
+        self._retired: dict[Name, None] = dict.fromkeys(past or ())
         self._given_up: dict[Name, None] = {}
         self._lasting: dict[Name, tuple[tuple[str, Hashable], ...]] = {}
         self._latest: dict[Name, Received] = {}

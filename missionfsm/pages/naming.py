@@ -15,7 +15,7 @@ from typing import Any
 from missionfsm.kernel.alphabet import ANY_NAME, Naming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
-from missionfsm.tools.conform.conversation import filled
+from missionfsm.tools.conform.actions import filled
 from missionfsm.tools.placeholders import fill
 
 PLACES = 900_000_000

@@ -10,9 +10,12 @@ from missionfsm.kernel.alphabet import ANY_NAME, Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import system
+from missionfsm.tools.conform.actions import Action
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.conform.conversation import Action, Conversation, introduce
+from missionfsm.tools.conform.conversation import Conversation, Partner
+from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import play
 from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
@@ -35,7 +38,7 @@ CONVERSATIONS, STEPS = 4, 25
 def talk(reference: Reference, world: object, chance: random.Random) -> Conversation:
     """A conversation of calls and drives by chance, watched from its start, settled now and then."""
     alphabet = MISSION.alphabet(world, BOUNDS)
-    conversation = Conversation(MISSION, reference, introduce(MISSION, reference), world, AUTOMATON)
+    conversation = Conversation(Partner(MISSION, reference, handshake(MISSION, reference)), world, AUTOMATON)
     conversation.perform(Action(1, "SubscribeMissionStatus", {}))
     for serial in range(2, STEPS):
         if chance.random() < 0.3:
@@ -120,5 +123,5 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
 def test_the_written_down_conversations_tell_how_goals_are_chosen(name: str, letter: str) -> None:
     """Which goal a NavigateAuto mission takes, and when, shows only where goals are taken away at the right moment."""
     run = Run.of(MISSION, Reference(MISSION, {name: letter}))
-    assert run.play()
-    assert run.readings[name] == (letter,)
+    assert play(run)
+    assert run.ledger.readings[name] == (letter,)

@@ -17,17 +17,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from combinations import BOUNDS, Bench, combination, wrong
+from combinations import Bench, combination, wrong
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import names, system
-from missionfsm.tools.conform.conform import DEFAULT_EXAMPLES, DEFAULT_STEPS, DEFAULT_TOURS, conform, search
-from missionfsm.tools.conform.conversation import introduce
+from missionfsm.tools.conform.actions import length
+from missionfsm.tools.conform.conform import Plan, conform, search
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.shortest import everything, length
+from missionfsm.tools.conform.shortening import shorten
+from missionfsm.tools.conform.shortest import everything
+from missionfsm.tools.conform.tour import tour
 from missionfsm.tools.reference.subject import Reference
 
 MISSION = system("bear.mission")
@@ -62,7 +64,7 @@ def _recording(exchanges: list[Exchange]) -> Any:
 
 
 def _run(subject: Any, automaton: Automaton) -> Run:
-    return Run(MISSION, subject, introduce(MISSION, subject), automaton, BOUNDS)
+    return Run.of(MISSION, subject, automaton=automaton)
 
 
 def _seconds(work: Callable[[], object]) -> float:
@@ -74,7 +76,9 @@ def _seconds(work: Callable[[], object]) -> float:
 def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
     """Steps a second with the reference in process; the same actions had again show what Hypothesis is of it."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
-    search(_run(Reference(MISSION, {}), automaton), TIMES, 30, 0, 1)  # the automaton knows the way from here on
+    search(
+        _run(Reference(MISSION, {}), automaton), Plan(TIMES, 0, TIMES, 30), 1
+    )  # the automaton knows the way from here on
     had: list[tuple[Any, tuple[Any, ...]]] = []
 
     def note(run: Run) -> None:
@@ -83,19 +87,20 @@ def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
 
     run = _run(Reference(MISSION, {}), automaton)
     run.progress = note
-    whole = benchmark.pedantic(lambda: _seconds(lambda: search(run, TIMES, 30, 0, 1)), rounds=1)
+    whole = benchmark.pedantic(lambda: _seconds(lambda: search(run, Plan(TIMES, 0, TIMES, 30), 1)), rounds=1)
     again = _run(Reference(MISSION, {}), automaton)
-    alone = _seconds(lambda: [again.attempt(world, actions) for world, actions in had])
+    alone = _seconds(lambda: [again.replay(world, actions) for world, actions in had])
     exchanges: list[Exchange] = []
     recorder = _run(_recording(exchanges), automaton)
     exchanges.clear()
     for world, actions in had:
-        recorder.attempt(world, actions)
+        recorder.replay(world, actions)
     player = _run(Reference(MISSION, {}), automaton)
-    player.subject = _Recorded(exchanges)
-    judging = _seconds(lambda: [player.attempt(world, actions) for world, actions in had])
+    player.partner.subject = _Recorded(exchanges)
+    judging = _seconds(lambda: [player.replay(world, actions) for world, actions in had])
     print(
-        f"\n{run.steps / whole:,.0f} steps a second with Hypothesis and the guide, {run.steps / alone:,.0f} without;"
+        f"\n{run.ledger.steps / whole:,.0f} steps a second with Hypothesis and the guide,"
+        f" {run.ledger.steps / alone:,.0f} without;"
         f" Hypothesis and the guide are {1 - alone / whole:.0%}, the reference {(alone - judging) / whole:.0%},"
         f" the oracle {judging / whole:.0%}"
     )
@@ -105,8 +110,8 @@ def test_bench_conform_tours(benchmark: Any) -> None:
     """Steps a second of systematic conversations, which need no Hypothesis."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
     run = _run(Reference(MISSION, {}), automaton)
-    took = benchmark.pedantic(lambda: _seconds(lambda: run.tour(random.Random(1), TIMES, 30)), rounds=1)
-    print(f"\n{run.steps / took:,.0f} steps a second")
+    took = benchmark.pedantic(lambda: _seconds(lambda: tour(run, random.Random(1), TIMES, 30)), rounds=1)
+    print(f"\n{run.ledger.steps / took:,.0f} steps a second")
 
 
 @pytest.mark.skipif(NODE is None, reason="the subject is written for Node.js, which is not installed")
@@ -134,11 +139,11 @@ def test_bench_conform_time_to_the_first_violation(benchmark: Any) -> None:
     def look(name: str) -> None:
         child = Child([str(NODE), str(SUBJECTS / "bear_mission.mjs"), "--break", name])
         run = Run.of(MISSION, child)
-        search(run, DEFAULT_EXAMPLES, DEFAULT_STEPS, DEFAULT_TOURS, 1)
-        run.shorten()
+        search(run, Plan(), 1)
+        shorten(run)
         if run.found is not None:
-            lengths[name] = length(run.found)
-            attempt = functools.partial(run.attempt, run.found.world)
+            lengths[name] = length(run.found.actions)
+            attempt = functools.partial(run.replay, run.found.world)
             alphabet = run.system.alphabet(run.found.world, run.bounds)
             assert everything(attempt, alphabet, lengths[name] - 1) is None, name
         child.close()
@@ -157,7 +162,7 @@ def test_bench_conform_time_to_the_first_violation(benchmark: Any) -> None:
 
 
 def _mark(run: Run, last: list[float]) -> None:
-    if run.last is not None and (run.found is not None or run.contradiction is None):
+    if run.last is not None and (run.found is not None or run.ledger.contradiction is None):
         last[0] = time.perf_counter()
 
 

@@ -13,12 +13,11 @@ from pathlib import Path
 import pytest
 
 from missionfsm.adapters.stdio import Child
-from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.subject import Subject
 from missionfsm.oracle.belief import Automaton
 from missionfsm.systems import system
-from missionfsm.tools.conform.conversation import introduce
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import play, tour
 
 SUBJECTS = Path(__file__).parent.parent / "subjects"
 NODE = shutil.which("node")
@@ -27,14 +26,12 @@ needs_node = pytest.mark.skipif(NODE is None, reason="no Node.js to run the inde
 
 def run_of(name: str, subject: Subject, automaton: Automaton | None = None) -> Run:
     """A run against a subject that has not begun."""
-    one = system(name)
-    about = introduce(one, subject)
-    return Run(one, subject, about, automaton or Automaton(one.spec, about.drives), Bounds(4, goals=3))
+    return Run.of(system(name), subject, automaton=automaton)
 
 
 def explained(run: Run, tours: int, steps: int, seed: int = 1) -> bool:
     """Whether the scripts, and then so many systematic conversations, can all be explained by one set of readings."""
-    return run.play() and run.tour(random.Random(seed), tours, steps)
+    return play(run) and tour(run, random.Random(seed), tours, steps)
 
 
 @contextmanager

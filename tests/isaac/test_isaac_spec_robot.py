@@ -144,7 +144,7 @@ def test_the_robot_that_ships_conforms() -> None:
 def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
     """The reference under a single other reading conforms, and is found to follow it."""
     run = run_of("isaac.robot", Reference(ROBOT, {entry: letter}))
-    assert (explained(run, 12, 30), run.readings[entry]) == (True, (letter,))
+    assert (explained(run, 12, 30), run.ledger.readings[entry]) == (True, (letter,))
 
 
 @needs_node

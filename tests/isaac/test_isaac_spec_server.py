@@ -200,7 +200,7 @@ PROFILES = [
 def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
     """The server under any single other reading conforms; only names in any case are nobody's reading (AI-37 c)."""
     run = run_of("isaac.server", ServerSubject(profile), AUTOMATON)
-    assert explained(run, 1, 20), run.contradiction or (run.found and run.found.judge.violation)
+    assert explained(run, 1, 20), run.ledger.contradiction or (run.found and run.found.judge.violation)
 
 
 @pytest.mark.slow
@@ -210,7 +210,7 @@ def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
 def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
     """The reference under a single other reading conforms, and that reading is not ruled out."""
     run = run_of("isaac.server", Reference(SERVER, {entry: letter}), AUTOMATON)
-    assert (explained(run, 1, 20), letter in run.readings.get(entry, (letter,))) == (True, True)
+    assert (explained(run, 1, 20), letter in run.ledger.readings.get(entry, (letter,))) == (True, True)
 
 
 @needs_node

@@ -88,7 +88,7 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     """Those and no others; each with a reason that the model gives."""
     runs: list[Run] = []
     verdict = conform(MISSION, Reference(MISSION, {}), examples=2, tours=10, steps=20, seed=1, progress=runs.append)
-    steps = runs[-1].steps
+    steps = runs[-1].ledger.steps
     seldom = {rule.id for rule in MISSION.spec.all_rules if verdict.exercised.get(rule.id, 0) * PER < RATE * steps}
     assert set(verdict.rare) == seldom
     assert all(verdict.rare.values())
@@ -138,7 +138,7 @@ def test_a_run_ends_once_it_is_enough() -> None:
             enough=lambda asked=asked, limit=limit: next(asked) >= limit,
         )
         assert verdict.examples < 2 * (20 + 3)
-        assert verdict.notes == (f"it was stopped after {verdict.examples} conversations",)
+        assert verdict.notes == (f"it was stopped after {verdict.examples} of 46 conversations",)
 
 
 def test_time_bounds_a_run(command_line: CommandLine) -> None:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import functools
 
 import pytest
-from combinations import BOUNDS, Bench
+from combinations import Bench
 
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.conform.conversation import introduce
 from missionfsm.tools.conform.distinguish import Lab, Trial
+from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.reference.subject import Reference
 
@@ -32,7 +32,7 @@ def bench() -> Bench:
 def trials(name: str) -> tuple[Trial, ...]:
     """The experiments on an ambiguity before anything else has been decided."""
     ambiguity = next(one for one in MISSION.spec.ambiguities if one.id == name)
-    lab = Lab(bench().guide, introduce(MISSION, Reference(MISSION, {})), bench().automaton, {}, 4_000)
+    lab = Lab(bench().guide, handshake(MISSION, Reference(MISSION, {})), bench().automaton, {}, 4_000)
     return lab.trials(ambiguity, tuple(ambiguity.readings))
 
 
@@ -53,7 +53,7 @@ def test_an_experiment_tells_what_it_says(name: str) -> None:
 def test_nothing_can_be_left_out_of_an_experiment() -> None:
     """Without any one of its actions it tells less."""
     (trial,) = [one for one in trials("AM-09") if one.follows == "b"]
-    lab = Lab(bench().guide, introduce(MISSION, Reference(MISSION, {})), bench().automaton, {})
+    lab = Lab(bench().guide, handshake(MISSION, Reference(MISSION, {})), bench().automaton, {})
     for at in range(len(trial.actions)):
         actions = (*trial.actions[:at], *trial.actions[at + 1 :])
         shorter = lab.play(("AM-09", "b"), trial.world, actions)
@@ -82,14 +82,14 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     told = {other for trial in trials(name) if trial.follows == letter for other in trial.against}
     subject = Reference(MISSION, {name: letter})
     automaton = Automaton(MISSION.spec, bench().automaton.moves.driven)
-    run = Run(MISSION, subject, introduce(MISSION, subject), automaton, BOUNDS, guide=bench().guide.fresh())
+    run = Run.with_guide(MISSION, subject, handshake(MISSION, subject), automaton, bench().guide.fresh())
     ambiguity = next(one for one in MISSION.spec.ambiguities if one.id == name)
-    run.readings[name] = tuple(ambiguity.readings)
+    run.ledger.readings[name] = tuple(ambiguity.readings)
     for trial in trials(name):
-        if trial.follows in run.readings[name] and set(trial.against) & set(run.readings[name]):
+        if trial.follows in run.ledger.readings[name] and set(trial.against) & set(run.ledger.readings[name]):
             assert run.have(trial.world, trial.actions), str(run.found and run.found.judge.verdict())
-    assert letter in run.readings[name]
-    assert told & set(run.readings[name]) == set()
+    assert letter in run.ledger.readings[name]
+    assert told & set(run.ledger.readings[name]) == set()
 
 
 @pytest.mark.slow

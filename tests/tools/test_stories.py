@@ -19,10 +19,12 @@ from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
 from missionfsm.tools.check.suspects import suspects
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.conform.conform import conform, search
+from missionfsm.tools.conform.actions import length
+from missionfsm.tools.conform.conform import Plan, conform, search
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.shortest import everything, length
+from missionfsm.tools.conform.shortening import shorten
+from missionfsm.tools.conform.shortest import everything
 from missionfsm.tools.mutate.teeth import mutants
 from missionfsm.tools.reference.subject import Reference
 
@@ -71,11 +73,11 @@ def test_no_story_is_longer_than_the_shortest() -> None:
     told = []
     for mutant in itertools.islice(mutants(MISSION), 0, None, 32):
         run = Run.of(MISSION, mutant.subject(MISSION))
-        search(run, 20, 20, 60, 1)
-        run.shorten()
+        search(run, Plan(20, 60, 80, 20), 1)
+        shorten(run)
         if run.found is None:  # it does what some reading allows, or contradicts itself across conversations
             continue
-        told.append(length(run.found))
+        told.append(length(run.found.actions))
         assert _shortest(run, run.found, told[-1] - 1) is None, mutant.name
         if told[-1] < 3:
             assert _shortest(run, run.found, told[-1]) is not None, mutant.name
@@ -86,7 +88,7 @@ def test_no_story_is_longer_than_the_shortest() -> None:
 def _shortest(run: Run, found: Conversation, depth: int) -> Conversation | None:
     """The shortest that is found by having all conversations in the same world, whatever they are of."""
     alphabet = run.system.alphabet(found.world, run.bounds)
-    return everything(functools.partial(run.attempt, found.world), alphabet, depth)
+    return everything(functools.partial(run.replay, found.world), alphabet, depth)
 
 
 def _had(first: JSON, done: list[JSON], subject: object) -> Verdict:

@@ -365,7 +365,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
                 *(Drive(name, _drive, (Happening(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
                 # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
                 Drive("world", _drive),
-                Drive("fault", _drive),
+                Drive("fault", _drive, waits=lambda robot: robot.fault is not None),
             )
         },
         urgent=_urgent,
@@ -394,6 +394,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
             forget_ended=forget_ended,
             shortcut=Shortcut,
         ),
+        used=lambda world: Robot(world, fresh=False),
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
         restarted=_restarted,

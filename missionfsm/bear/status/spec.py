@@ -230,7 +230,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
                 Drive("restart", restarted, renumbers=_renumbered, impossible=(SELECTED.id,)),
                 Drive("move", moved, impossible=(SELECTED.id,)),
                 # Failures that nobody arms are outcomes of their own.
-                Drive("fault", armed),
+                Drive("fault", armed, waits=lambda fleet: fleet.fault),
             )
         },
         urgent=lambda _: (),

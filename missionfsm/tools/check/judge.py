@@ -51,6 +51,7 @@ class Judge:
         waits: whether an event that is too dear to explain at once may wait for those that follow; nobody who drives
             an implementation can wait.
         settled_after: how many seconds (of `at`) after its cause something is late; None: never.
+        past: the names of what was there before, where a reset does not make a fresh instance; None where it does.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
@@ -75,6 +76,7 @@ class Judge:
         apart: bool = False,
         waits: bool = True,
         settled_after: float | None = None,
+        past: Iterable[Name] | None = None,
     ) -> None:
         self.system = system
         self.head = head
@@ -87,7 +89,7 @@ class Judge:
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
         world = system.codec.world(head.world)
-        self.belief: Belief | Parted = Belief(self.automaton, world, self._tally)
+        self.belief: Belief | Parted = Belief(self.automaton, world, self._tally, past)
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, BUDGET)

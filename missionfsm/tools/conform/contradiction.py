@@ -15,13 +15,13 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     """The violation of an implementation of which no reading of an ambiguity is left.
 
     Args:
-        evidence: each of the ambiguity's letters to the judge of a conversation that ruled it out.
+        evidence: those of the ambiguity's letters that conversations ruled out, each to the judge of one.
     """
     expected, notes, rules = [], [], list[str]()
     last: Judge | None = None
     for letter, answer in ambiguity.readings.items():
-        judge = evidence[letter]
-        ruling = judge.rulings.found.get((ambiguity.id, letter))
+        judge = evidence.get(letter)
+        ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
         if ruling is None:
             notes.append(f"{letter} is ruled out: another reading had to be followed")

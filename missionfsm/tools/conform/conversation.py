@@ -1,143 +1,143 @@
-"""One conversation with a live implementation, judged as it goes, in a form that can be had again.
+"""One conversation with a live implementation, judged as it goes.
 
-What is done is a list of `Action`s. Names are not in it: an action refers to a name by the action that gave it, so that
-the same list makes sense with a fresh instance, and with some of its actions left out.
+What is done is a list of `Action`s. What the protocol does not allow at the moment is not done, and is not in the list.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
+import copy
+from collections.abc import Callable, Iterable
+from typing import Self, TypeVar
 
-from attrs import frozen
+from attrs import define, field
 
-from missionfsm.kernel.alphabet import ANY_NAME
 from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.subject import Exchange, GibberishError, Notification, Subject, SubjectError
+from missionfsm.kernel.subject import (
+    Exchange,
+    GibberishError,
+    MissingMethodError,
+    Notification,
+    Subject,
+    SubjectError,
+)
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.transcript import STREAM_KEYS, Head
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.conform.actions import SETTLE, WRONG_NAME, Action, NameRef, filled
+from missionfsm.tools.conform.handshake import AdapterInfo
 from missionfsm.tools.placeholders import fill, is_template
 
-PROTOCOL = 1
-WRONG_NAME = "no-such-name"
 _Read = TypeVar("_Read")
 
 
-@frozen
-class Introduced:
-    """What an adapter said of itself."""
-
-    name: str
-    drives: tuple[str, ...]
-
-
-def introduce(system: System, subject: Subject) -> Introduced:
-    """Initialize an adapter. Raises SubjectError if what it says is not of the protocol."""
-    exchange = subject.exchange("initialize", {"protocolVersion": PROTOCOL, "system": system.name})
-    result = exchange.result if isinstance(exchange.result, dict) else {}
-    about = result.get("implementation")
-    drives = result.get("drives", [])
-    if not isinstance(about, dict) or not isinstance(about.get("name"), str):
-        message = f"the adapter answered initialize without an implementation name: {brief(exchange.result)}"
-        raise SubjectError(message)
-    if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
-        message = f"the adapter answered initialize with drives {brief(drives)}"
-        raise SubjectError(message)
-    known = tuple(one for one in drives if one in system.spec.drives)
-    version = about.get("version")
-    return Introduced(about["name"] + (f" {version}" if isinstance(version, str) else ""), known)
-
-
-@frozen
-class Given:
-    """A name, as the position-th that the action with a serial number was answered with."""
-
-    by: int
-    position: int
-
-
-Picks = tuple[tuple[int, Given], ...]
-"""For slots of a template the names that are meant."""
-
-
-@frozen
-class Action:
-    """Something that a tester does.
+@define(eq=False)
+class Partner:
+    """An implementation, as one converses with it.
 
     Attributes:
-        serial: tells it from the others of its conversation.
-        method: a documented call, or ``drive``, ``settle``, ``cancel``.
-        params: its JSON, with `ANY_NAME` where `name` goes.
-        name: the name that is meant: one that was given, or a text that nothing is called.
-        picks: for each slot of the params (see `missionfsm.kernel.alphabet.pick`) the name that was given; a slot that
-            is not here gets a name that is never anything's.
+        system: what of the system it has.
+        absent: the calls that turned out not to be there; they are not asked again.
+        names: what it has named so far, where that lives on over a reset; None where a reset forgets it.
     """
 
-    serial: int
-    method: str
-    params: JSON = None
-    name: Given | str | None = None
-    picks: Picks = ()
+    system: System
+    subject: Subject
+    info: AdapterInfo
+    absent: dict[str, None] = field(factory=dict)
+    names: dict[Name, None] | None = None
 
-
-def filled(params: JSON, name: object) -> JSON:
-    """Params with a name in place of every `ANY_NAME`."""
-    if params == ANY_NAME:
-        return name
-    if isinstance(params, dict):
-        return {key: filled(value, name) for key, value in params.items()}
-    return [filled(value, name) for value in params] if isinstance(params, list) else params
+    def remember(self, names: Iterable[Name]) -> None:
+        """Note names that live on."""
+        if self.names is not None:
+            self.names.update(dict.fromkeys(names))
 
 
 class Conversation:
-    """One conversation with a subject, from a reset on.
+    """One conversation with an implementation, from a reset on.
+
+    Attributes:
+        heard: every line of the history, also those after the one that cannot be explained.
 
     Raises:
         SubjectError: the adapter failed; so does everything that it is asked.
     """
 
-    def __init__(self, system: System, subject: Subject, about: Introduced, world: JSON, automaton: Automaton) -> None:
-        self.system = system
-        self.subject = subject
+    def __init__(self, partner: Partner, world: JSON, automaton: Automaton) -> None:
+        self.partner = partner
+        self.system = partner.system
         self.world = world
-        first = Head(system.name, world, about.drives, strict=True)
-        self.judge = Judge(system, first, automaton, keep=1_000_000, waits=False)
+        self.past = None if partner.names is None else tuple(partner.names)
+        self.judge = self._judged(automaton)
+        self.heard: list[JSON] = []
         self.actions: list[Action] = []
-        self.given: dict[Given, object] = {}
+        self.given: dict[NameRef, object] = {}
         self._acting = self._learnt = 0
         self._asked = ""
         self.succeeded = 0
         # What was still under way before a reset belongs to nobody.
         self._notifications(self._result("reset", {"world": world}).after)
 
+    def _judged(self, automaton: Automaton) -> Judge:
+        head = Head(self.system.name, self.world, self.partner.info.drives, strict=True)
+        return Judge(self.system, head, automaton, keep=1_000_000, waits=False, past=self.past)
+
     @property
     def right(self) -> bool:
         """Whether everything so far is explained."""
         return self.judge.right
 
+    def under(self, automaton: Automaton) -> Self:
+        """The same conversation, what was heard judged by another automaton; nothing is asked again."""
+        other = copy.copy(self)
+        other.judge = self._judged(automaton)
+        other.heard, other.actions, other.given = list(self.heard), list(self.actions), dict(self.given)
+        for line in self.heard:
+            if not other.judge.feed(line):
+                break
+        return other
+
+    def may(self, action: Action) -> bool:
+        """Whether the protocol allows it now: what turned out not to be there, and a second fault, are not asked."""
+        if action.method in self.partner.absent:
+            return False
+        if action.method != "drive":
+            return True
+        waits = self.system.spec.drives[action.params["event"]].waits
+        return not any(waits(one.state) for one in self.judge.belief.node.explanations)
+
     def perform(self, action: Action) -> bool:
-        """Do something; False once the conversation cannot be explained any more."""
+        """Do something, if it may be done; False once the conversation cannot be explained any more."""
+        if not self.may(action):
+            return self.right
         self.actions.append(action)
-        name = self.given.get(action.name, WRONG_NAME) if isinstance(action.name, Given) else action.name
+        name = self.given.get(action.name, WRONG_NAME) if isinstance(action.name, NameRef) else action.name
         params = action.params if action.name is None else filled(action.params, name)
         if is_template(params):
             picked = {slot: self.given[given] for slot, given in action.picks if given in self.given}
             params = fill(params, picked, self.system.naming, action.serial, self.given.values())
         self._acting, self._learnt = action.serial, 0
-        if action.method == "settle":
+        if action.method == SETTLE:
             self._settle()
         elif action.method == "drive":
             self._drive(params)
         else:
-            self._call(action.serial, action.method, params)
+            self._call(action, params)
         return self.right
 
-    def _call(self, number: int, method: str, params: JSON) -> None:
-        exchange = self.subject.exchange(method, params)
+    def _call(self, action: Action, params: JSON) -> None:
+        number, method = action.serial, action.method
+        try:
+            exchange = self.partner.subject.exchange(method, params)
+        except MissingMethodError:
+            if self.partner.info.methods is not None or method not in self.system.codec.methods:
+                raise
+            self.partner.absent[method] = None
+            self.actions.remove(action)
+            return
         self._notifications(exchange.earlier)
         self._note({"call": number, "method": method, "params": params})
         self._notifications(exchange.before)
@@ -150,15 +150,16 @@ class Conversation:
         self._notifications(exchange.after)
 
     def _learn(self, method: str, result: JSON) -> None:
-        answer, names = _heard(self.system.codec.answer, method, result)
-        self._know(names)
+        answer, names = _read(self.system.codec.answer, method, result)
+        self._bind(names)
         if answer.code == OK and method not in self.system.codec.streams:
             self.succeeded += 1
 
-    def _know(self, names: tuple[object, ...]) -> None:
+    def _bind(self, names: tuple[Name, ...]) -> None:
+        self.partner.remember(names)
         for name in names:
             if name not in self.given.values():
-                self.given[Given(self._acting, self._learnt)] = name
+                self.given[NameRef(self._acting, self._learnt)] = name
             self._learnt += 1
 
     def _drive(self, event: JSON) -> None:
@@ -179,19 +180,19 @@ class Conversation:
                 message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
                 raise SubjectError(message)
             self._hear({"drive": told})
-            self._know(_heard(self.system.codec.happened, told)[1])
+            self._bind(_read(self.system.codec.happened, told)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(exchange.after if first else exchange.before + exchange.after)
 
     def _settle(self) -> None:
-        exchange = self._result("settle", {})
+        exchange = self._result(SETTLE, {})
         self._notifications(exchange.earlier)
         self._notifications(exchange.before)
         self._note({"settled": True})
         self._notifications(exchange.after)
 
     def _result(self, method: str, params: JSON) -> Exchange:
-        exchange = self.subject.exchange(method, params)
+        exchange = self.partner.subject.exchange(method, params)
         if exchange.error is not None:
             message = f"the adapter answered {method} with {exchange.error.get('status')}"
             raise SubjectError(message)
@@ -210,20 +211,21 @@ class Conversation:
             else:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
                 self._hear(line)
-                self._know((("connection", line["connection"]),))
-                for names, _, _ in _heard(self.system.codec.strip, line["line"]):
-                    self._know(names)
+                self._bind((("connection", line["connection"]),))
+                for names, _, _ in _read(self.system.codec.strip, line["line"]):
+                    self._bind(names)
 
     def _note(self, line: JSON) -> None:
+        self.heard.append(line)
         if self.right:
             self.judge.feed(line)
 
     def _hear(self, line: JSON) -> None:
         """Note what came from the adapter."""
-        _heard(self._note, line)
+        _read(self._note, line)
 
 
-def _heard(read: Callable[..., _Read], *sent: JSON) -> _Read:
+def _read(read: Callable[..., _Read], *sent: JSON) -> _Read:
     """What an adapter sent, as it is read; where that cannot be done, nobody but the adapter is to blame."""
     try:
         return read(*sent)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import evolve, frozen
@@ -23,8 +23,10 @@ from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.verdict import Experiment
-from missionfsm.tools.conform.conversation import WRONG_NAME, Action, Conversation, Given, Introduced, Picks
+from missionfsm.tools.conform.actions import WRONG_NAME, Action, Bindings, NameRef
+from missionfsm.tools.conform.conversation import Conversation, Partner
 from missionfsm.tools.conform.guide import Guide, Template
+from missionfsm.tools.conform.handshake import AdapterInfo
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shrink import shrink
 from missionfsm.tools.placeholders import fill, ways
@@ -47,7 +49,7 @@ ROUNDS = 2
 """How often experiments are looked for anew with what others have decided meanwhile."""
 
 
-Naming = list[tuple[tuple[Name, ...], Given | str | None]]
+Naming = list[tuple[tuple[Name, ...], NameRef | str | None]]
 """Names that a call may be about, and how an action refers to them."""
 
 _NAMELESS: Naming = [((), None)]
@@ -77,7 +79,7 @@ class _Node:
     world: int
     here: tuple[Snapshot, ...]
     actions: tuple[Action, ...]
-    given: Mapping[Name, Given]
+    given: Mapping[Name, NameRef]
 
     @property
     def agreed(self) -> bool:
@@ -100,27 +102,30 @@ class Lab:
 
     Args:
         guide: what is worth trying.
-        about: what the adapter said of itself.
+        info: what the adapter said of itself.
         automaton: judges the conversations; it assumes what has been decided.
         readings: ambiguity id to the letters that are still possible, as far as any were ruled out.
         effort: how many steps of references one search may take.
+        enough: whether no more should be done.
 
     Attributes:
         spent: how many the last one took.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - the last two have a default
         self,
         guide: Guide,
-        about: Introduced,
+        info: AdapterInfo,
         automaton: Automaton,
         readings: Mapping[str, tuple[str, ...]],
         effort: int = EFFORT,
+        enough: Callable[[], bool] = lambda: False,
     ) -> None:
         self.effort = effort
+        self.enough = enough
         self.spent = 0
         self.guide = guide
-        self.about = about
+        self.info = info
         self.automaton = automaton
         self.readings = readings
         spec, moves = guide.system.spec, automaton.moves
@@ -145,9 +150,9 @@ class Lab:
     def play(self, letter: tuple[str, str], world: JSON, actions: Iterable[Action]) -> Conversation:
         """The conversation with the reference that follows a reading besides what has been decided."""
         subject = Reference(self.guide.system, {**self.choice, letter[0]: letter[1]})
-        conversation = Conversation(self.guide.system, subject, self.about, world, self.automaton)
+        conversation = Conversation(Partner(self.guide.system, subject, self.info), world, self.automaton)
         for action in actions:
-            if not conversation.perform(action):
+            if self.enough() or not conversation.perform(action):
                 break
         return conversation
 
@@ -188,7 +193,7 @@ class _Search:
         while todo:
             far, _, node = heapq.heappop(todo)
             for move in self._moves(node):
-                if not self.wanted or self.effort <= 0:
+                if not self.wanted or self.effort <= 0 or self.lab.enough():
                     return
                 found = self._step(node, move)
                 if found is None:
@@ -231,6 +236,8 @@ class _Search:
                     action = Action(serial, call.prompt.method, call.prompt.params, given)
                     yield _Move(call.request, name, action, driven=False, plain=id(call.prompt) in plain)
         for drive, event in itertools.chain.from_iterable(guide.events[world].values()):
+            if any(self.system.spec.drives[event.name].waits(one.state) for one in node.here):
+                continue
             yield _Move(event, (), Action(serial, "drive", drive), driven=True, plain=id(drive) in plain)
         for template in itertools.chain.from_iterable(guide.templates[world].values()):
             if everything or id(template.params) in plain:
@@ -239,7 +246,7 @@ class _Search:
                     driven = template.method == "drive"
                     yield _Move(template.what, names, action, driven=driven, plain=id(template.params) in plain)
 
-    def _fillings(self, node: _Node, template: Template) -> Iterator[tuple[tuple[Name, ...], Picks]]:
+    def _fillings(self, node: _Node, template: Template) -> Iterator[tuple[tuple[Name, ...], Bindings]]:
         for picked in ways(template.wants, node.given, self.system.naming):
             names = tuple(picked.get(-1 if slot is None else slot) for slot in template.slots)
             if None in template.slots:  # a name is new: it is made up as a conversation would make it up
@@ -263,7 +270,7 @@ class _Search:
         seen = {self._seen_of(model, reply) for model, (_, reply) in zip(self.models, taken, strict=True)}
         given = dict(node.given)
         for position, name in enumerate(_learnt(taken[0][1])):
-            given.setdefault(name, Given(move.action.serial, position))
+            given.setdefault(name, NameRef(move.action.serial, position))
         settle = Action(move.action.serial + 1, "settle")
         here = tuple(after for after, _ in taken)
         return _Node(node.world, here, (*node.actions, move.action, settle), given), len(seen) > 1
@@ -342,7 +349,7 @@ class _Search:
         def shows(tried: Conversation) -> bool:
             return against <= self._rules_out(tried)
 
-        found = shrink(attempt(world, actions), attempt, lambda _, __: (), world, shows)
+        found = shrink(attempt(world, actions), attempt, lambda _, __: (), world, shows, enough=lab.enough)
         told = tuple(one for one in self.letters if one in self._rules_out(found))
         return Trial(self.ambiguity, letter, told, found.world, tuple(found.actions), found.judge.history)
 
@@ -370,24 +377,26 @@ def _learnt(reply: Reply) -> Iterator[Name]:
 
 def open_questions(run: Run) -> list[tuple[Ambiguity, tuple[str, ...]]]:
     """The ambiguities that a run has touched and not decided, with the readings that are left."""
-    found = ((one, run.readings.get(one.id, ())) for one in run.system.spec.ambiguities)
+    found = ((one, run.ledger.readings.get(one.id, ())) for one in run.system.spec.ambiguities)
     return [(one, letters) for one, letters in found if len(letters) > 1]
 
 
 def lab_of(run: Run, effort: int = EFFORT) -> Lab:
     """A lab that takes what a run has found out as decided."""
-    decided = (one[run.readings[one.id]] for one in run.system.spec.ambiguities if run.readings.get(one.id))
-    assumed = meet(run.automaton.assumed, decided)
-    current = run.narrowed or run.automaton
-    automaton = current if current.assumed == assumed else Automaton(run.system.spec, run.about.drives, assumed)
-    return Lab(run.guide, run.about, automaton, run.readings, effort)
+    decided = (
+        one[run.ledger.readings[one.id]] for one in run.system.spec.ambiguities if run.ledger.readings.get(one.id)
+    )
+    assumed = meet(run.narrowing.wide.assumed, decided)
+    current = run.narrowing.current
+    automaton = current if current.assumed == assumed else Automaton(run.system.spec, run.partner.info.drives, assumed)
+    return Lab(run.guide, run.partner.info, automaton, run.ledger.readings, effort, run.enough)
 
 
 def proposed(run: Run) -> tuple[Trial, ...]:
     """For every reading that a run has left open, the experiments that would tell it from others."""
     questions = open_questions(run)
     lab = lab_of(run)
-    left, found = max(LEAST, THOUGHT * run.steps), list[Trial]()
+    left, found = max(LEAST, THOUGHT * run.ledger.steps), list[Trial]()
     for position, (ambiguity, letters) in enumerate(questions):
         # What one search does not need is there for those after it.
         lab.effort = left // (len(questions) - position)
@@ -403,19 +412,19 @@ def distinguish(run: Run, only: str | None = None) -> bool:
         only: the id of the one ambiguity to decide; all that are open by default.
     """
     for _ in range(ROUNDS):
-        before, lab = dict(run.readings), lab_of(run)
+        before, lab = dict(run.ledger.readings), lab_of(run)
         for ambiguity, _ in open_questions(run):
             if only in (None, ambiguity.id) and not _decide(run, lab, ambiguity):
                 return False
-        if run.readings == before or run.enough():
+        if run.ledger.readings == before or run.enough():
             break
     return True
 
 
 def _decide(run: Run, lab: Lab, ambiguity: Ambiguity) -> bool:
     """Try the experiments on one ambiguity, each only as long as it may still tell something."""
-    for trial in lab.trials(ambiguity, run.readings[ambiguity.id]):
-        left = run.readings.get(ambiguity.id, ())
+    for trial in lab.trials(ambiguity, run.ledger.readings[ambiguity.id]):
+        left = run.ledger.readings.get(ambiguity.id, ())
         if trial.follows not in left or not set(trial.against) & set(left):
             continue
         if run.enough():

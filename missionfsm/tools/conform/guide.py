@@ -21,8 +21,9 @@ from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.successors import Moves
-from missionfsm.tools.conform.conversation import Conversation, Given, Picks
-from missionfsm.tools.placeholders import fill, is_template, slots, ways
+from missionfsm.tools.conform.actions import CANCEL, Bindings, NameRef
+from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.placeholders import fill, is_template, kind_of, slots, ways
 
 Edge = tuple[Hashable, ...]
 
@@ -42,11 +43,11 @@ class Proposal:
 
     method: str
     params: JSON
-    name: Given | str | None
+    name: NameRef | str | None
     edge: Edge
     leads_to: Hashable
     phase: Hashable = None
-    picks: Picks = ()
+    picks: Bindings = ()
 
 
 @frozen(eq=False)
@@ -76,24 +77,25 @@ class Guide:
         system: the system.
         worlds: the worlds that conversations start in.
         bounds: for the alphabet; longer queues than `bounds.size` are not sought.
-        drives: the drives that the adapter has.
 
     Attributes:
         alphabets: what is worth trying in each world.
+        drives: the names of all drives in them.
         calls, events, templates: the same, prepared, by operation or drive.
     """
 
-    def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds, drives: tuple[str, ...]) -> None:
+    def __init__(self, system: System, worlds: tuple[JSON, ...], bounds: Bounds) -> None:
         self.system = system
         self.abstraction = system.spec.abstraction
         self.bounds = bounds
         self.worlds = worlds
         self.alphabets = [system.alphabet(world, bounds) for world in worlds]
+        self.drives = tuple(dict.fromkeys(one["event"] for each in self.alphabets for one in each.drives))
         self.calls = [self._prepared(alphabet) for alphabet in self.alphabets]
-        self.events = [self._prepared_events(alphabet, drives) for alphabet in self.alphabets]
-        self.templates = [_prepared_templates(system, alphabet, drives) for alphabet in self.alphabets]
+        self.events = [self._prepared_events(alphabet) for alphabet in self.alphabets]
+        self.templates = [_prepared_templates(system, alphabet) for alphabet in self.alphabets]
         self._labels = [
-            list(dict.fromkeys((*calls, *events, *templates)))
+            list(dict.fromkeys((*calls, *events, *templates, *((CANCEL.method,) if system.codec.streams else ()))))
             for calls, events, templates in zip(self.calls, self.events, self.templates, strict=True)
         ]
         self.walked: Counter[Edge] = Counter()
@@ -115,10 +117,10 @@ class Guide:
             found.setdefault(prompt.method, {}).setdefault(request, Call(prompt, request, bool(names)))
         return {method: list(calls.values()) for method, calls in found.items()}
 
-    def _prepared_events(self, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[tuple[JSON, Any]]]:
+    def _prepared_events(self, alphabet: Alphabet) -> dict[str, list[tuple[JSON, Any]]]:
         found: dict[str, list[tuple[JSON, Any]]] = {}
         for drive in alphabet.drives:
-            if drive["event"] in drives and not is_template(drive):
+            if not is_template(drive):
                 found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
         return found
 
@@ -132,19 +134,22 @@ class Guide:
             rare: look at all of them, and put first what the rules have said least often in the whole run.
         """
         belief = conversation.judge.belief
-        here = _rested(conversation.judge.automaton.moves, belief.node.explanations[0])
+        here = rested(conversation.judge.automaton.moves, belief.node.explanations[0])
         shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
         known = {name: given for given, name in conversation.given.items()}
         wrong = self.alphabets[world].wrong_names[:1]
-        nameless: list[tuple[int | None, Given | str | None]] = [(None, None)]
-        names: list[tuple[int | None, Given | str | None]] = [(None, one) for one in wrong]
+        nameless: list[tuple[int | None, NameRef | str | None]] = [(None, None)]
+        names: list[tuple[int | None, NameRef | str | None]] = [(None, one) for one in wrong]
         for position, number in enumerate(here.names):
             seen = belief.name(number)
             if seen in known:
                 names.append((position, known[seen]))
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
+        absent, waiting = conversation.partner.absent, self._waiting(conversation)
         for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
+            if label in absent or label in waiting:
+                continue
             for call in self.calls[world].get(label, ()):
                 for where, name in names if call.named else nameless:
                     refs = (where,) if call.named else ()
@@ -153,9 +158,10 @@ class Guide:
                         found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
             for drive, event in self.events[world].get(label, ()):
                 edge = self._drive_edge(here, shape, event)
-                if edge:
-                    found.append(Proposal("drive", drive, None, *edge, phase))
+                found.append(Proposal("drive", drive, None, *edge, phase))
             found += self._filled(conversation, here, shape, self.templates[world].get(label, ()))
+            if label == CANCEL.method:
+                found += _cancellations(conversation, shape, phase)
             enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
             if enough and not rare:
                 break
@@ -176,6 +182,7 @@ class Guide:
         for template in templates:
             for picked in ways(template.wants, given, self.system.naming):
                 refs = tuple(positions.get(picked.get(-1 if slot is None else slot)) for slot in template.slots)
+                edge: tuple[Edge, Hashable] | None
                 if template.method == "drive":
                     edge = self._drive_edge(here, shape, template.what, refs, exact=True)
                 else:
@@ -183,6 +190,12 @@ class Guide:
                 if edge:
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
                     yield Proposal(template.method, template.params, None, *edge, phase, picks)
+
+    def _waiting(self, conversation: Conversation) -> set[str]:
+        """The drives of which one waits already, under some explanation: none may be driven now."""
+        explanations = conversation.judge.belief.node.explanations
+        drives = self.system.spec.drives.values()
+        return {one.name for one in drives if any(one.waits(each.state) for each in explanations)}
 
     def fresh(self) -> Guide:
         """A guide to the same system that has not been anywhere yet."""
@@ -237,7 +250,8 @@ class Guide:
         refs: tuple[int | None, ...] = (),
         *,
         exact: bool = False,
-    ) -> tuple[Edge, Hashable] | None:
+    ) -> tuple[Edge, Hashable]:
+        """The edge of a drive: where the model says that it cannot happen, the edge stays where it is."""
         key = (here.state if exact else shape, "drive", event, self._places(here, refs))
         if key not in self._edges:
             steps = [
@@ -248,9 +262,11 @@ class Guide:
             says: Hashable = event
             if exact or self.abstraction.idle_shape is not None:
                 says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
+            if not steps:
+                says = (event.name, "does not happen")
             where = self._where(here, shape, steps)
-            self._edges[key] = ((where, says), self.abstraction.shape(steps[0].after)) if steps else None
-        return self._edges[key]
+            self._edges[key] = ((where, says), self.abstraction.shape(steps[0].after) if steps else shape)
+        return self._edges[key]  # type: ignore[return-value]  # a drive always has one
 
     def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:
         """Where an edge begins; where nothing changes that may be said more coarsely."""
@@ -258,7 +274,15 @@ class Guide:
         return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
 
 
-def _rested(moves: Moves, here: Explanation) -> Explanation:
+def _cancellations(conversation: Conversation, shape: Hashable, phase: Hashable) -> Iterator[Proposal]:
+    """To give up each of the streams that were opened, also those that have ended."""
+    streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
+    for position, ref in enumerate(streams):
+        edge = (shape, (CANCEL.method, position, len(streams)))
+        yield Proposal(CANCEL.method, CANCEL.params, None, edge, shape, phase, ((0, ref),))
+
+
+def rested(moves: Moves, here: Explanation) -> Explanation:
     """Where an explanation comes to rest."""
     while step := next((one for one in moves.urgent(here.state) if meet(here.assumed, one.assumes)), None):
         taken = moves.advance(here, step)
@@ -268,10 +292,10 @@ def _rested(moves: Moves, here: Explanation) -> Explanation:
     return here
 
 
-def _prepared_templates(system: System, alphabet: Alphabet, drives: tuple[str, ...]) -> dict[str, list[Template]]:
+def _prepared_templates(system: System, alphabet: Alphabet) -> dict[str, list[Template]]:
     """The prompts and drives with stand-ins, by the name of the operation or the drive."""
     asked = {repr(one.params): (one.method, one.params) for one in alphabet.prompts if is_template(one.params)}
-    driven = {repr(one): ("drive", one) for one in alphabet.drives if one["event"] in drives and is_template(one)}
+    driven = {repr(one): ("drive", one) for one in alphabet.drives if is_template(one)}
     found: dict[str, list[Template]] = {}
     for method, params in (*asked.values(), *driven.values()):
         wants = slots(params)

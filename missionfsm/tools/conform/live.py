@@ -8,8 +8,6 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Mapping
 
-from attrs import define
-
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected
@@ -17,17 +15,7 @@ from missionfsm.tools.check.scope import held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import verdict_of
 from missionfsm.tools.conform.run import Run
-
-
-@define(eq=False)
-class _LiveRun(Run):
-    """A run in which nothing is had twice only to make it shorter."""
-
-    def shorten(self) -> None:
-        """Leave what was found as it is."""
-
-    def shorten_evidence(self) -> None:
-        """Leave the evidence as it is."""
+from missionfsm.tools.conform.tour import play, tour
 
 
 def live(  # noqa: PLR0913 - every one but the first four has a default
@@ -58,8 +46,9 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Expected(expected)
-    run = _LiveRun.of(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
-    if run.play():
-        run.tour(random.Random(seed), conversations - run.examples, steps)  # noqa: S311 - no secret
-    verdict = verdict_of(run, seed, known, notes)
+    run = Run.of(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
+    run.ledger.notes += notes
+    if play(run):
+        tour(run, random.Random(seed), conversations - run.ledger.examples, steps)  # noqa: S311 - no secret
+    verdict = verdict_of(run, seed, known, asks_again=False)
     return held_to_the_text(verdict) if no_flagged else verdict

@@ -12,24 +12,23 @@ from attrs import define, evolve, field
 
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Prompt
 from missionfsm.oracle.belief import Node
-from missionfsm.tools.conform.conversation import WRONG_NAME, Action, Conversation, Given
-from missionfsm.tools.placeholders import is_template, slots, ways
+from missionfsm.tools.conform.actions import CANCEL, SETTLE, WRONG_NAME, Action, NameRef
+from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.conform.shrink import unexplained
+from missionfsm.tools.placeholders import is_template, kind_of, slots, ways
 
 MOST = 3_000
 """How many things are done at most."""
 
 
-def length(conversation: Conversation) -> int:
-    """How many things are done in a conversation; to wait is none."""
-    return sum(action.method != "settle" for action in conversation.actions)
-
-
-def shortest(
+def shortest(  # noqa: PLR0913 - the last two have a default
     found: Conversation,
     attempt: Callable[[tuple[Action, ...]], Conversation],
     alphabet: Alphabet,
     depth: int,
-    most: int = MOST,
+    *,
+    shows: Callable[[Conversation], bool] = unexplained,
+    enough: Callable[[], bool] = lambda: False,
 ) -> Conversation | None:
     """A conversation that cannot be explained, of few calls and drives of the kinds in one that was found.
 
@@ -38,13 +37,14 @@ def shortest(
         attempt: has one anew in the same world.
         alphabet: what is worth trying there.
         depth: how many calls and drives it has at most.
-        most: how many things are done in all.
+        shows: whether a conversation is one that is looked for.
+        enough: whether no more should be done.
 
     Returns:
         the shortest; none where nothing was found within these bounds.
     """
     kinds = {action.method for action in found.actions}
-    own = tuple(Prompt(one.method, one.params) for one in found.actions if one.method not in ("settle", "drive"))
+    own = tuple(Prompt(one.method, one.params) for one in found.actions if one.method not in (SETTLE, "drive"))
     events = tuple(one.params for one in found.actions if one.method == "drive")
     like = evolve(
         alphabet,
@@ -53,21 +53,28 @@ def shortest(
         drives=events,
         plain_drives=tuple(one for one in alphabet.plain_drives if one in events),
     )
-    return everything(attempt, like, depth, most)
+    return everything(attempt, like, depth, shows=shows, enough=enough)
 
 
 def everything(
-    attempt: Callable[[tuple[Action, ...]], Conversation], alphabet: Alphabet, depth: int, most: int = MOST
+    attempt: Callable[[tuple[Action, ...]], Conversation],
+    alphabet: Alphabet,
+    depth: int,
+    *,
+    shows: Callable[[Conversation], bool] = unexplained,
+    enough: Callable[[], bool] = lambda: False,
 ) -> Conversation | None:
     """The same of anything in an alphabet: anything at the end, and on the way there what brings the system on."""
-    return _Search(attempt, alphabet, most).run(depth)
+    return _Search(attempt, alphabet, shows, enough).run(depth)
 
 
 @define(eq=False)
 class _Search:
     attempt: Callable[[tuple[Action, ...]], Conversation]
     alphabet: Alphabet
-    left: int
+    shows: Callable[[Conversation], bool]
+    enough: Callable[[], bool]
+    left: int = MOST
     seen: set[Node] = field(factory=set)
     serials: Iterator[int] = field(factory=lambda: itertools.count(1))
 
@@ -77,20 +84,23 @@ class _Search:
             onward: list[tuple[Action, ...]] = []
             for begun in way:
                 found = self._from(begun, onward)
-                if found is not None or self.left <= 0:
+                if found is not None or self._is_over():
                     return found
             way = onward
         return None
+
+    def _is_over(self) -> bool:
+        return self.left <= 0 or self.enough()
 
     def _from(self, begun: tuple[Action, ...], onward: list[tuple[Action, ...]]) -> Conversation | None:
         """Try everything after what was begun; `onward` gets what leads somewhere new."""
         here = self.attempt(begun)
         for one, leads_on in list(self._actions(here)):
-            if self.left <= 0:
+            if self._is_over():
                 return None
             self.left -= 1
             before = here.judge.belief.node
-            action, settled = evolve(one, serial=next(self.serials)), Action(next(self.serials), "settle")
+            action, settled = evolve(one, serial=next(self.serials)), Action(next(self.serials), SETTLE)
             if not (here.perform(action) and here.perform(settled)):
                 found = self._confirmed((*begun, action), settled)
                 if found is not None:
@@ -108,14 +118,14 @@ class _Search:
         """A conversation of these actions alone, if it cannot be explained; perhaps one has to wait at the end."""
         for done in (actions, (*actions, settled)):
             found = self.attempt(done)
-            if not found.right and not found.judge.exhausted:
+            if self.shows(found):
                 return found
         return None
 
     def _actions(self, here: Conversation) -> Iterator[tuple[Action, bool]]:
         """Everything worth doing here, and whether it brings the system on."""
         plain = (*self.alphabet.plain, *(Prompt("drive", one) for one in self.alphabet.plain_drives))
-        others = (*self.alphabet.prompts, *(Prompt("drive", one) for one in self.alphabet.drives))
+        others = (*self.alphabet.prompts, CANCEL, *(Prompt("drive", one) for one in self.alphabet.drives))
         for prompt in {repr(one): one for one in (*plain, *others)}.values():
             for action in _named(here, prompt, self.alphabet.wrong_names):
                 yield action, prompt in plain
@@ -126,11 +136,13 @@ def _named(here: Conversation, prompt: Prompt, wrong: tuple[str, ...]) -> Iterat
     if is_template(prompt.params):
         wanted = slots(prompt.params)
         given = {name: by for by, name in here.given.items()}
+        if prompt is CANCEL and not any(kind_of(name) == "stream" for name in given):
+            return
         for picked in ways(wanted, given, here.system.naming):
             picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
             yield Action(0, prompt.method, prompt.params, None, picks)
         return
-    names: tuple[Given | str | None, ...] = (None,)
+    names: tuple[NameRef | str | None, ...] = (None,)
     if ANY_NAME in repr(prompt.params):
         names = (*here.given, *(wrong[:1] or (WRONG_NAME,)))
     for name in names:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from attrs import evolve
+from attrs import define, evolve
 
 from missionfsm.kernel.alphabet import Prompt
 from missionfsm.kernel.codec import JSON
-from missionfsm.tools.conform.conversation import Action, Conversation
+from missionfsm.tools.conform.actions import Action
+from missionfsm.tools.conform.conversation import Conversation
 
 Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 """Has a conversation anew: in a world, with some actions, until it cannot be explained any more."""
@@ -23,12 +24,15 @@ def unexplained(conversation: Conversation) -> bool:
     return not conversation.right and not conversation.judge.exhausted
 
 
-def shrink(
+def shrink(  # noqa: PLR0913 - the last three have a default
     found: Conversation,
     attempt: Attempt,
     simpler: Callable[[JSON, str], tuple[Prompt, ...]],
     usual: JSON,
     shows: Callable[[Conversation], bool] = unexplained,
+    *,
+    keep: Callable[[Conversation], None] = lambda _: None,
+    enough: Callable[[], bool] = lambda: False,
 ) -> Conversation:
     """A conversation that shows the same, from which nothing can be left out.
 
@@ -38,30 +42,30 @@ def shrink(
         simpler: (world, method) to prompts that may stand in for a call of that method.
         usual: the world to have it in, if that will do.
         shows: what is to be shown; that it cannot be explained, usually.
+        keep: told of every conversation that is shorter than all before.
+        enough: whether no more should be tried.
     """
-    return _Shrinker(found, attempt, simpler, usual, shows).run()
+    return _Shrinker(found, attempt, simpler, usual, shows, keep, enough).run()
 
 
+@define(eq=False)
 class _Shrinker:
-    def __init__(
-        self,
-        found: Conversation,
-        attempt: Attempt,
-        simpler: Callable[[JSON, str], tuple[Prompt, ...]],
-        usual: JSON,
-        shows: Callable[[Conversation], bool],
-    ) -> None:
-        self.best = found
-        self.attempt = attempt
-        self.simpler = simpler
-        self.usual = usual
-        self.shows = shows
-        self.left = MOST_ATTEMPTS
+    best: Conversation
+    attempt: Attempt
+    simpler: Callable[[JSON, str], tuple[Prompt, ...]]
+    usual: JSON
+    shows: Callable[[Conversation], bool]
+    keep: Callable[[Conversation], None]
+    enough: Callable[[], bool]
+    left: int = MOST_ATTEMPTS
 
     def run(self) -> Conversation:
-        while self.left and (self._leave_out() or self._say_simply()):
+        while self._may_try() and (self._leave_out() or self._say_simply()):
             pass
         return self.best
+
+    def _may_try(self) -> bool:
+        return self.left > 0 and not self.enough()
 
     @property
     def actions(self) -> tuple[Action, ...]:
@@ -69,20 +73,21 @@ class _Shrinker:
 
     def _try(self, world: JSON, actions: tuple[Action, ...]) -> bool:
         """Keep this instead if it shows the same and is no longer."""
-        if not self.left:
+        if not self._may_try():
             return False
         self.left -= 1
         tried = self.attempt(world, actions)
         if not self.shows(tried) or len(tried.actions) > len(self.best.actions):
             return False
         self.best = tried
+        self.keep(tried)
         return True
 
     def _leave_out(self) -> bool:
         """Leave out runs of actions, long ones first, until none can go; whether any went."""
         before = len(self.actions)
         size = max(1, before // 2)
-        while size > 0:  # without anything done there is nothing to leave out
+        while size > 0 and self._may_try():
             few = len(self.actions) <= FEW
             at = 0
             while at < len(self.actions):

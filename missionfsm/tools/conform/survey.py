@@ -12,8 +12,9 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Verdict, Violation
-from missionfsm.tools.conform.conform import search, verdict_of
+from missionfsm.tools.conform.conform import Plan, search, verdict_of
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.shortening import shortened
 
 
 @frozen
@@ -70,7 +71,8 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
     """Have all conversations, whatever is found; of each kind of violation the first is made short and kept.
 
     Args:
-        examples, steps, tours, seed, readings: as for `missionfsm.tools.conform.conform.conform`.
+        examples: conversations that are drawn; `tours` those that walk where the run has been least; `steps` of each.
+        seed, readings: as for `missionfsm.tools.conform.conform.conform`.
 
     Raises:
         SubjectError: the adapter failed.
@@ -86,12 +88,12 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
         return True
 
     run.expects = keep
-    search(run, examples, steps, tours, seed)
+    search(run, Plan(examples, tours, examples + tours, steps), seed)
     return Survey(verdict_of(run, seed, advice=False), tuple(findings.values()))
 
 
 def _finding(run: Run, violation: Violation, about: frozenset[str]) -> Finding:
-    if run.contradiction is not None or run.last is None:
+    if run.ledger.contradiction is not None or run.last is None:
         return Finding(violation, story(run.system, violation.history), about)
-    shown = run.shortened(run.last).judge.violation or violation
+    shown = shortened(run, run.last, known=lambda _: False).judge.violation or violation
     return Finding(with_suspects(run.system, shown), story(run.system, shown.history), about)

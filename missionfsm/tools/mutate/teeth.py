@@ -31,9 +31,10 @@ from missionfsm.kernel.spec import Spec, Step
 from missionfsm.kernel.subject import Exchange, GibberishError
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
-from missionfsm.tools.conform.conversation import introduce
 from missionfsm.tools.conform.guide import Guide
+from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
+from missionfsm.tools.conform.tour import play, tour
 from missionfsm.tools.mutate.equivalent import Honest, excuse
 from missionfsm.tools.mutate.equivalent import straight as as_it_is
 from missionfsm.tools.reference.model import Model, Twist, straight
@@ -159,7 +160,7 @@ def teeth(
         progress: told of every mutant when it has been judged.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
-    guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS, tuple(system.spec.drives))
+    guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS)
     bites, tested = [], set()
     which, parts = part
     for number, mutant in enumerate(mutants(system)):
@@ -193,13 +194,13 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     broken = mutant.subject(system)
     because = ""
     for fresh, conversations in enumerate((FIRST, *ROUNDS)):
-        about = introduce(system, broken)
-        run = Run(system, broken, about, automaton, BOUNDS, guide=guide.fresh())
+        info = handshake(system, broken)
+        run = Run.with_guide(offered(system, info), broken, info, automaton, guide.fresh())
         try:
             # Every round is a run of its own: what was walked least in the last one has been walked by now.
             draw = random.Random(seed + fresh)  # noqa: S311 - no secret
-            tour = functools.partial(run.tour, draw, conversations, STEPS, mutant.favour)
-            right = tour() if fresh else _at_first(system, run, tour)
+            toured = functools.partial(tour, run, draw, conversations, STEPS, mutant.favour)
+            right = toured() if fresh else _at_first(system, run, toured)
         except GibberishError:  # it does not even speak the protocol any more
             return Bite(mutant.name, mutant.rule, killed=True)
         if not right:
@@ -212,9 +213,9 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
     return Bite(mutant.name, mutant.rule, killed=False, because=because)
 
 
-def _at_first(system: System, run: Run, tour: Callable[[], bool]) -> bool:
+def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
     """Both the first tour and what is written down, the cheaper one first: with clocks, tours are dear."""
-    return run.play() and tour() if system.spec.abstraction.outline else tour() and run.play()
+    return play(run) and toured() if system.spec.abstraction.outline else toured() and play(run)
 
 
 @functools.lru_cache(maxsize=2)

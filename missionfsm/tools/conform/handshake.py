@@ -1,0 +1,144 @@
+"""What an adapter says that it has, and a system with no more in it than that.
+
+A tester asks for nothing that an adapter has not declared. Everything that it does is drawn from the alphabet of a
+system, so it is the alphabet that is made smaller here, once, for whoever draws from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+from attrs import evolve, frozen
+
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Line
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.subject import Subject, SubjectError
+from missionfsm.kernel.system import System
+from missionfsm.kernel.text import brief
+
+PROTOCOL = 1
+
+
+@frozen
+class AdapterInfo:
+    """What an adapter said of itself.
+
+    Attributes:
+        name: the implementation's, with its version.
+        drives: those of the system that it has.
+        methods: the documented calls that it has; None where it has not said, which means all.
+        world: the one world that it has; None where it takes any.
+        soft_reset: whether ids, numbers and what was before live on over a reset.
+        binary: whether requests travel as binary protobuf.
+        unknown: what it declared that the system does not have, each as ``drive 'goalreached'``.
+    """
+
+    name: str
+    drives: tuple[str, ...]
+    methods: tuple[str, ...] | None = None
+    world: JSON = None
+    soft_reset: bool = False
+    binary: bool = False
+    unknown: tuple[str, ...] = ()
+
+
+def handshake(system: System, subject: Subject) -> AdapterInfo:
+    """Initialize an adapter. Raises SubjectError if what it says is not of the protocol."""
+    exchange = subject.exchange("initialize", {"protocolVersion": PROTOCOL, "system": system.name})
+    result = exchange.result if isinstance(exchange.result, dict) else {}
+    about = result.get("implementation")
+    if not isinstance(about, dict) or not isinstance(about.get("name"), str):
+        message = f"the adapter answered initialize without an implementation name: {brief(exchange.result)}"
+        raise SubjectError(message)
+    version = about.get("version")
+    drives, methods = _names(result, "drives"), _names(result, "methods")
+    world = _declared(result, "worlds", "fixed")
+    if world and "world" not in result:
+        message = 'the adapter answered initialize with "worlds": "fixed" and without the world that it has'
+        raise SubjectError(message)
+    if world:
+        try:
+            system.codec.world(result["world"])
+        except UnreadableError as error:
+            message = f"the adapter answered initialize with a world that cannot be read: {error}"
+            raise SubjectError(message) from None
+    return AdapterInfo(
+        about["name"] + (f" {version}" if isinstance(version, str) else ""),
+        tuple(one for one in drives or () if one in system.spec.drives),
+        None if methods is None else tuple(one for one in system.codec.methods if one in methods),
+        result["world"] if world else None,
+        _declared(result, "reset", "soft"),
+        _declared(result, "requests", "binary"),
+        (
+            *(f"drive {brief(one)}" for one in drives or () if one not in system.spec.drives),
+            *(f"method {brief(one)}" for one in methods or () if one not in system.codec.methods),
+        ),
+    )
+
+
+def _names(result: dict[str, Any], member: str) -> list[str] | None:
+    names = result.get(member)
+    if names is not None and (not isinstance(names, list) or not all(isinstance(one, str) for one in names)):
+        message = f"the adapter answered initialize with {member} {brief(names)}, not with a list of names"
+        raise SubjectError(message)
+    return names
+
+
+def _declared(result: dict[str, Any], member: str, value: str) -> bool:
+    if result.get(member) not in (None, value):
+        message = f'the adapter answered initialize with {member} {brief(result[member])}; there is only "{value}"'
+        raise SubjectError(message)
+    return result.get(member) == value
+
+
+def offered(system: System, info: AdapterInfo, only: Collection[str] = (), without: Collection[str] = ()) -> System:
+    """The system with no more in its alphabet than an adapter has.
+
+    Args:
+        only: calls that are to be made, and no others; all by default.
+        without: calls and drives that are to be left out.
+    """
+    methods = tuple(
+        one
+        for one in system.codec.methods
+        if (info.methods is None or one in info.methods) and (not only or one in only) and one not in without
+    )
+    drives = tuple(one for one in info.drives if one not in without)
+
+    def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
+        whole = system.alphabet(world, bounds)
+        worlds = whole.worlds if info.world is None else (info.world,)
+
+        def has(method: str, params: JSON) -> bool:
+            if method not in methods or not isinstance(params, dict):
+                return False
+            return not info.binary or system.codec.carries(method, params)
+
+        return evolve(
+            whole,
+            prompts=tuple(one for one in whole.prompts if has(one.method, one.params)),
+            plain=tuple(one for one in whole.plain if has(one.method, one.params)),
+            drives=tuple(one for one in whole.drives if one["event"] in drives),
+            plain_drives=tuple(one for one in whole.plain_drives if one["event"] in drives),
+            worlds=worlds,
+            look=whole.look if whole.look and whole.look.method in methods else None,
+            scripts=tuple(script for one in whole.scripts if (script := _possible(one, drives, has))),
+        )
+
+    streams = tuple(one for one in system.codec.streams if one in methods)
+    return evolve(system, alphabet=alphabet, codec=evolve(system.codec, methods=methods, streams=streams))
+
+
+def _possible(script: tuple[Line, ...], drives: tuple[str, ...], has: Any) -> tuple[Line, ...]:  # noqa: ANN401 - a function
+    """A script up to the first thing that an adapter does not have."""
+    done = []
+    for line in script:
+        if line.method == "drive":
+            possible = line.params["event"] in drives
+        else:
+            possible = line.method in ("settle", "cancel") or has(line.method, line.params)
+        if not possible:
+            break
+        done.append(line)
+    return tuple(done)

@@ -1,0 +1,75 @@
+"""The belief automata that a run walks: one that assumes nothing, and one of what the run has found out so far."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from attrs import define
+
+from missionfsm.kernel.readings import meet
+from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.conform.conversation import Conversation
+
+WIDE = 48
+"""How many explanations of a conversation are so many that the next one assumes what is known."""
+
+
+@define(eq=False)
+class Narrowing:
+    """Which automaton judges.
+
+    Where the explanations of a conversation become many, the ones after it are judged by an automaton that assumes what
+    has been found out. What cannot be explained there may still be explained by itself.
+
+    Attributes:
+        wide: the automaton that assumes no more than was asked for; `narrow` the other, once there is one.
+        widest: the most explanations that a conversation has had since the automaton was chosen.
+    """
+
+    wide: Automaton
+    narrow: Automaton | None = None
+    widest: int = 0
+    _before: dict[str, int] | None = None
+
+    @property
+    def current(self) -> Automaton:
+        """The one that judges now."""
+        return self.narrow or self.wide
+
+    def look(self, conversation: Conversation) -> None:
+        """Take into account how many explanations a conversation has."""
+        self.widest = max(self.widest, len(conversation.judge.belief.node.explanations))
+
+    def choose(self, readings: Mapping[str, tuple[str, ...]], *, at_once: bool = False) -> Automaton:
+        """The automaton for the next conversation.
+
+        Args:
+            readings: those that are left.
+            at_once: assume them, however few explanations there are.
+        """
+        if self.widest > WIDE or at_once:
+            self.widest = 0
+            ambiguities = self.wide.spec.ambiguities
+            assumed = meet(self.wide.assumed, (one[readings[one.id]] for one in ambiguities if readings.get(one.id)))
+            if assumed and assumed != self.current.assumed:
+                self.drop()
+                self.narrow = Automaton(self.wide.spec, self.wide.moves.driven, assumed)
+        return self.current
+
+    def drop(self) -> None:
+        """Assume nothing any more of what was found out; what was exercised still counts."""
+        if self.narrow is not None:
+            self._before = _added(self._before or {}, self.narrow.exercised())
+            self.narrow = None
+
+    def exercised(self) -> dict[str, int]:
+        """How often each rule was exercised, in all automata that were walked."""
+        found = _added(self._before or {}, self.wide.exercised())
+        return _added(found, self.narrow.exercised()) if self.narrow is not None else found
+
+
+def _added(times: Mapping[str, int], others: Mapping[str, int]) -> dict[str, int]:
+    found = dict(times)
+    for rule, count in others.items():
+        found[rule] = found.get(rule, 0) + count
+    return found

@@ -1,0 +1,153 @@
+"""The systematic conversations of a run: those that are written down, and those that walk where it has been least."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from attrs import define
+
+from missionfsm.kernel.alphabet import Line
+from missionfsm.tools.conform.actions import WRONG_NAME, NameRef
+from missionfsm.tools.conform.guide import Proposal
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.placeholders import kind_of, slots
+
+Scripts = tuple[tuple[Line, ...], ...]
+
+SETTLED = 0.6
+"""How often a tour waits for everything to settle after a step."""
+
+RARE, RAREST = 0.4, 3
+"""How often a tour turns to what the rules have said least in the whole run, and among how many things it draws."""
+
+FAVOURED = 0.5
+"""How often a tour that has a favourite turns to it."""
+
+
+def some(scripts: Scripts, most: int | None) -> Scripts:
+    """All, or at most so many from everywhere among them."""
+    if most is None:
+        return scripts
+    return scripts[:: max(1, -(-len(scripts) // most))] if most else ()
+
+
+def play(run: Run, most: int | None = None) -> bool:
+    """Have the conversations that the system's alphabet has written down; whether all could be explained.
+
+    Args:
+        most: how many of them, from everywhere among them; all by default.
+    """
+    for script in some(run.guide.alphabets[0].scripts, most):
+        if run.enough():
+            break
+        run.start(run.guide.worlds[0])
+        for line in script:
+            if run.enough():
+                break
+            if not _follow(run, line):
+                return False
+        if not run.settle() or not run.gather():
+            return False
+    return True
+
+
+def _follow(run: Run, line: Line) -> bool:
+    wanted = slots(line.params)
+    picks = tuple(_named(run, wanted, line.picks))
+    # A name without a kind goes where `ANY_NAME` stands, not into a slot.
+    name = None if wanted or not line.picks else picks[0][1] if picks else WRONG_NAME
+    return run.act(line.method, line.params, name, picks if wanted else ())
+
+
+def _named(run: Run, wanted: dict[int, str], picks: tuple[tuple[int, int], ...]) -> Iterator[tuple[int, NameRef]]:
+    for slot, position in picks:
+        known = [given for given, name in run.conversation.given.items() if kind_of(name) == wanted.get(slot)]
+        if position < len(known):
+            yield slot, known[position]
+
+
+def look(run: Run, world: int) -> bool:
+    """Wait for everything to settle and see where things stand."""
+    asked = run.guide.alphabets[world].look
+    return run.settle() and (asked is None or run.act(asked.method, asked.params))
+
+
+def tour(  # noqa: PLR0913 - the last two have a default
+    run: Run,
+    draw: random.Random,
+    conversations: int,
+    steps: int,
+    favour: str | None = None,
+    again: float = 0.0,
+) -> bool:
+    """Systematic conversations: every step walks the edge that was walked least, mostly with a stream watched.
+
+    Args:
+        favour: an operation or drive to turn to again and again.
+        again: how often what the surroundings just did happens once more at once, where it leads elsewhere.
+
+    Returns:
+        whether everything could be explained.
+    """
+    return _Tour(run, draw, steps, favour, again).run_all(conversations)
+
+
+@define(eq=False)
+class _Tour:
+    run: Run
+    draw: random.Random
+    steps: int
+    favour: str | None
+    again: float
+
+    def run_all(self, conversations: int) -> bool:
+        return all(self._conversation(number) for number in range(conversations) if not self.run.enough())
+
+    def _conversation(self, number: int) -> bool:
+        run, world = self.run, number % len(self.run.guide.worlds)
+        streams = run.system.codec.streams
+        run.start(run.guide.worlds[world])
+        if len(streams) == 1 and number % 4 != 3 and not run.act(streams[0], {}):
+            return False
+        left = iter(range(self.steps))
+        for _ in left:
+            proposal = self._next(world, self.favour if number % 2 else None)
+            if proposal is None or run.over or run.enough():
+                break
+            if not run.follow(proposal):
+                return False
+            if self.draw.random() < SETTLED and not look(run, world):
+                return False
+            while self.again and self.draw.random() < self.again and not run.over:
+                more = self._once_more(proposal, world)
+                if more is None or run.enough() or next(left, None) is None:
+                    break
+                if not (run.follow(more) and run.settle()):
+                    return False
+        return run.settle() and run.gather()
+
+    def _once_more(self, done: Proposal, world: int) -> Proposal | None:
+        """The same drive again, if it leads elsewhere: some of what can go wrong is many goals away."""
+        if done.method != "drive":
+            return None
+        found = self.run.guide.proposals(self.run.conversation, world, done.params["event"])
+        same = (one for one in found if one.params == done.params and one.leads_to != one.edge[0])
+        return next(same, None)
+
+    def _next(self, world: int, favour: str | None) -> Proposal | None:
+        guide, conversation, draw = self.run.guide, self.run.conversation, self.draw
+        if draw.random() < RARE:
+            proposals = guide.proposals(conversation, world, rare=True)[:RAREST]
+            return proposals[draw.randrange(len(proposals))] if proposals else None
+        wanted = favour if favour and draw.random() < FAVOURED else None
+        proposals = guide.proposals(conversation, world, wanted) or guide.proposals(conversation, world)
+        if not proposals:
+            return None
+        least = guide.walked[proposals[0].edge]
+        equal = [one for one in proposals if guide.walked[one.edge] == least]
+        if guide.system.spec.abstraction.idle_shape is not None and draw.random() < FAVOURED:
+            # Where most of what can be said has no effect, what leads elsewhere comes first.
+            rare = guide.visited[equal[0].leads_to]
+            equal = [one for one in equal if guide.visited[one.leads_to] == rare]
+        return equal[draw.randrange(len(equal))]

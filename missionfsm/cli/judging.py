@@ -39,7 +39,6 @@ from missionfsm.cli.overgrpc import (
     TlsFile,
     TokenFile,
     WorldFile,
-    in_binary,
     over_grpc,
 )
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
@@ -229,7 +228,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             child: Subject = over_grpc(
                 system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
             )
-            judged, examples = in_binary(judged), examples or GRPC_EXAMPLES
+            examples = examples or GRPC_EXAMPLES
         elif bridge:
             child = bridge.subject
         else:

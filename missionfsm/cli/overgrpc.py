@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from attrs import evolve
 
 from missionfsm.cli.common import BAD_INPUT, complain, stop
-from missionfsm.kernel.alphabet import Alphabet, Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import Subject
-from missionfsm.kernel.system import System
 
 TokenFile = Annotated[
     str | None, typer.Option("--token", metavar="FILE", help="A file that holds the token callers have to send.")
@@ -101,32 +98,3 @@ def over_grpc(  # noqa: PLR0913 - options of the command
     if settle is None and subject.driven:
         subject.settle_within(DRIVEN_SETTLE_SECONDS)
     return subject
-
-
-def in_binary(judged: System) -> System:
-    """The system with what is worth trying on it, but for what binary protobuf cannot say."""
-    from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, encode, methods  # noqa: PLC0415 - an extra
-
-    called = methods(judged.name)
-
-    def sayable(method: str, params: JSON) -> bool:
-        if method not in called:
-            return True
-        try:
-            encode(called[method].request, params)
-        except NotOnTheWireError:
-            return False
-        return True
-
-    def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
-        whole = judged.alphabet(world, bounds)
-        return evolve(
-            whole,
-            prompts=tuple(one for one in whole.prompts if sayable(one.method, one.params)),
-            plain=tuple(one for one in whole.plain if sayable(one.method, one.params)),
-            scripts=tuple(
-                script for script in whole.scripts if all(sayable(line.method, line.params) for line in script)
-            ),
-        )
-
-    return evolve(judged, alphabet=alphabet)

@@ -21,6 +21,8 @@ from missionfsm.adapters.grpc.descriptors import (
 from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.fields import ENUMS, MESSAGES, METHODS, PACKAGE
 from missionfsm.bear.wire.protojson import MalformedError, read, write
+from missionfsm.systems import system
+from missionfsm.tools.conform.run import BOUNDS
 
 KINDS: dict[str, type] = {
     "services.robot.CreateMissionRequest": wire.MissionRequest,
@@ -178,3 +180,21 @@ def test_descriptors_are_files_that_any_tool_reads() -> None:
     message.DESCRIPTOR.file.CopyToProto(file)
     assert file.syntax == "proto3"
     assert [one.name for one in file.message_type] == ["MissionState"]
+
+
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
+def test_what_binary_can_carry_is_known_without_its_library(name: str) -> None:
+    """Of everything that the tester tries, in every world: what is said to be carried is what can be encoded."""
+    tried = system(name)
+    worlds = tried.alphabet({}, BOUNDS).worlds
+    told, right = {}, {}
+    for prompt in (one for world in worlds for one in tried.alphabet(world, BOUNDS).prompts):
+        said = repr(prompt)
+        told[said] = tried.codec.carries(prompt.method, prompt.params)
+        try:
+            encode(methods(name)[prompt.method].request, prompt.params)
+            right[said] = True
+        except NotOnTheWireError:
+            right[said] = False
+    assert set(told.values()) == {True, False}
+    assert told == right

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import sys
 from pathlib import Path
 
@@ -68,21 +67,28 @@ def test_nothing_can_be_left_out_of_a_story(code: str, rule: str) -> None:
     assert _had(first, done, answering(code, rule)).violation is not None
 
 
+HARMED = (
+    "SubscribeMissionStatus/INVALID_ARGUMENT/a-field-is-unknown is answered FAILED_PRECONDITION",
+    "UpdateMission/FAILED_PRECONDITION/a-paused-mission-cannot-be-finished holds always",
+    "SubscribeMissionStatus/the-goals-are-those-requested reverses the goals",
+    "lifecycle/fail is not shown",
+)
+
+
 def test_no_story_is_longer_than_the_shortest() -> None:
-    """Whatever rule is broken: no shorter conversation, of anything worth trying, shows anything."""
+    """Whatever is broken, a rule, a move, a message, an effect: no shorter conversation of anything shows anything."""
     told = []
-    for mutant in itertools.islice(mutants(MISSION), 0, None, 32):
+    named = {mutant.name.removeprefix("bear.mission/"): mutant for mutant in mutants(MISSION)}
+    for mutant in (named[name] for name in HARMED):
         run = Run.of(MISSION, mutant.subject(MISSION))
         search(run, Plan(20, 60, 80, 20), 1)
         shorten(run)
-        if run.found is None:  # it does what some reading allows, or contradicts itself across conversations
-            continue
+        assert run.found is not None, mutant.name
         told.append(length(run.found.actions))
         assert _shortest(run, run.found, told[-1] - 1) is None, mutant.name
         if told[-1] < 3:
             assert _shortest(run, run.found, told[-1]) is not None, mutant.name
-    assert len(told) > 8
-    assert max(told) >= 3
+    assert told == [1, 2, 2, 3]
 
 
 def _shortest(run: Run, found: Conversation, depth: int) -> Conversation | None:
@@ -227,7 +233,7 @@ def test_a_violation_is_recorded_in_the_form_that_is_asked_for(tmp_path: Path, c
     """A history that `check` reads, a pytest function, a sequence diagram: by the name of the file."""
     for name in ("found.jsonl", "test_found.py", "found.mmd"):
         ended = command_line(
-            *("conform", "bear.mission", "--seed", 1, "--examples", 1, "--record", tmp_path / name, "--json", "-"),
+            *("conform", "bear.mission", "--seed", 1, "--examples", 40, "--record", tmp_path / name, "--json", "-"),
             *("--", sys.executable, Path(__file__).parent / "wrong_adapter.py"),
         )
         assert (ended.status, orjson.loads(ended.out)["story"][-1].endswith("→ NOT_FOUND")) == (1, True)

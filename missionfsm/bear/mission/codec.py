@@ -19,6 +19,7 @@ from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Family, Fault, Kind, World
 from missionfsm.bear.mission.stream import MORE, Listing, Seen, without_ids
 from missionfsm.bear.wire import messages as wire
+from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import Command, Goal, MissionStates
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel, key_of, read, unknown_fields, write
 from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
@@ -499,6 +500,7 @@ CODEC = Codec(
     write_world=write_world,
     write_drive=write_drive,
     skim=skim,
+    carries=carries,
     robot_in_params=True,
 )
 __all__ = ["CODEC", "REQUESTS", "RESULTS", "STREAMS"]

@@ -29,6 +29,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import Promised, Seen, View, canonical, canonical_state, show
 from missionfsm.bear.status.values import clamped, single
+from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import EventMetadata, MissionState, Pose
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, unknown_fields, write
 from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
@@ -493,5 +494,6 @@ CODEC = Codec(
     write_message=write_message,
     write_world=write_world,
     write_drive=write_drive,
+    carries=carries,
 )
 __all__ = ["CODEC"]

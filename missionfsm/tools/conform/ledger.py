@@ -60,8 +60,9 @@ class Ledger:
     def enter(self, done: Conversation) -> list[str]:
         """Enter the readings of a conversation that is explained; the ambiguities of which none is left by now."""
         contradicted = []
+        left = done.judge.belief.readings
         for ambiguity in self.system.spec.ambiguities:
-            letters = done.judge.belief.readings.get(ambiguity.id)
+            letters = left.get(ambiguity.id)
             if letters is None or ambiguity.id in self.aside:
                 continue
             possible = self.readings.get(ambiguity.id) or tuple(ambiguity.readings)

@@ -254,7 +254,8 @@ def test_no_terminal_obeys_what_an_adapter_complains_of(command_line: CommandLin
     """The last line of its stderr is quoted in the one line that there is."""
     script = r"import sys; sys.exit('bo\x1b[31mom')"
     ended = command_line("conform", "bear.mission", "--", sys.executable, "-c", script)
-    says = r"the adapter exited with status 1 before answering initialize (stderr: bo\x1b[31mom)"
+    sent = 'it was sent initialize {"protocolVersion":1,"system":"bear.mission"}'
+    says = rf"the adapter exited with status 1 before answering initialize (stderr: bo\x1b[31mom); {sent}"
     assert (ended.status, ended.err) == (3, f"missionfsm: {says}\n")
     child = Child([sys.executable, "-c", script])
     with pytest.raises(SubjectError, match=r"bo\\x1b"):

@@ -122,19 +122,3 @@ class Alphabet:
     wrong_names: tuple[str, ...] = ()
     look: Prompt | None = None
     scripts: tuple[tuple[Line, ...], ...] = ()
-
-
-@frozen
-class Reach:
-    """What a run should have tried: every operation with a valid request, and every drive, in every situation.
-
-    Together they span a matrix; a cell of it is reachable where some conversation comes to such a situation.
-
-    Attributes:
-        situation: state to the situation that it is in, in words, such as ``paused, with a queue``.
-        operation: (state, request or event, positions of its names) to what is tried, in words, such as ``UpdateMission
-            resume of a waiting mission``; empty for a request that is malformed and for what is not worth a row.
-    """
-
-    situation: Callable[[Any], str]
-    operation: Callable[[Any, Any, tuple[int | None, ...]], str]

@@ -7,7 +7,7 @@ from typing import Any
 
 from attrs import field, frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming, Reach
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.picture import Plan, Sketch
 from missionfsm.kernel.rules import Rule
@@ -54,7 +54,6 @@ class System:
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
         profiles: choices of readings by name: ambiguity id to the letters that are left.
-        reach: what a run should have tried of it; None where nobody has said.
     """
 
     name: str
@@ -69,7 +68,6 @@ class System:
     plans: tuple[Plan, ...] = ()
     shapes: Callable[[], Shapes] = Shapes
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
-    reach: Reach | None = None
 
     def chosen(self, profile: str | None, readings: Mapping[str, str]) -> Mapping[str, str]:
         """The readings of a profile, if one is named, but for those that are given. ValueError for one that is not."""

@@ -34,6 +34,7 @@ for _command in (
     listing.rules,
     listing.readings,
     listing.schema,
+    listing.new,
     diagram.diagram,
     judging.adapter,
     isaac.dispatch,

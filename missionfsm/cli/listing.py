@@ -1,13 +1,14 @@
-"""The commands that list: rules, readings, the schemas of the two formats."""
+"""The commands that list: rules, readings, the schemas of the two formats; and a system to start from."""
 
 from __future__ import annotations
 
 import enum
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from missionfsm.cli.common import say, the_system, write_json
+from missionfsm.cli.common import one_line_errors, say, the_system, write_json
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.middle import MIDDLE
 from missionfsm.kernel.system import System
@@ -80,3 +81,13 @@ def schema(
     from missionfsm.tools.schema import schema as made  # noqa: PLC0415 - commands load what they need
 
     write_json("-", made(which.value, the_system(system) if system is not None else None))
+
+
+def new(name: Annotated[str, typer.Argument(help="The name of the package, and of its system.")]) -> None:
+    """Write a package with a small system of its own, to start from."""
+    from missionfsm.app.newsystem import new_system  # noqa: PLC0415 - commands load what they need
+
+    with one_line_errors():
+        written = new_system(name, Path())
+    say("\n".join(map(str, written)))
+    say(f"try it: pip install -e ./{name} && missionfsm explore {name} && missionfsm conform {name}")

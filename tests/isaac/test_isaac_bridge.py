@@ -162,7 +162,7 @@ def test_the_server_that_ships_with_its_file(command_line: CommandLine, diamond:
     """`missionfsm dispatch` conforms, started anew with its file for every conversation."""
     server = (*MISSIONFSM, "dispatch", diamond, "--host", "127.0.0.1", "--port", port)
     options = ("--tcp", f"127.0.0.1:{port}", "--missions", diamond, "--tolerance", TOLERANCE)
-    ended = command_line("conform", "isaac.server", *options, "--examples", 2, "--steps", 8, "--seed", 1, "--", *server)
+    ended = command_line("conform", "isaac.server", *options, "--examples", 2, "--steps", 5, "--seed", 1, "--", *server)
     assert (ended.status, ended.err) == (0, "")
     assert "in 2 examples" in ended.out
     assert f"a tolerance of {TOLERANCE} s" in ended.out
@@ -191,7 +191,7 @@ def test_a_server_with_an_adapter(
 ) -> None:
     """Missions are submitted through an adapter, and robots talk over TCP; one that does not wait is found out."""
     server = (sys.executable, SERVER, port, *broken)
-    options = ("--tcp", f"127.0.0.1:{port}", "--tolerance", TOLERANCE, "--examples", 1, "--seed", 1)
+    options = ("--tcp", f"127.0.0.1:{port}", "--tolerance", TOLERANCE, "--examples", 1, "--steps", 16, "--seed", 1)
     ended = command_line("conform", "isaac.server", *options, "--", *server)
     assert (ended.status, ended.err) == (status, "")
 

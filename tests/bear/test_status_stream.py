@@ -592,3 +592,16 @@ def test_a_refusal_leaves_the_streams_alone() -> None:
     """Another subscription's refusal changes nothing for those that are open."""
     lines = [*SUBSCRIBED, *refused(BATTERY, by_ids("x1"), "PERMISSION_DENIED"), report("r1", "battery", battery(50))]
     assert conforms(*lines, battery_message(1, "r1", 6, battery(50)), SETTLED)
+
+
+def test_a_subscription_may_break_down_at_once() -> None:
+    """INTERNAL is listed for every subscription: a history of nothing else conforms, whoever drives what."""
+    lines = refused(BATTERY, by_ids("r1"), "INTERNAL")
+    assert conforms(*lines)
+    assert conforms(*lines, drives=())
+
+
+def test_a_request_that_always_breaks_down_exercises_nothing() -> None:
+    """GetRobotStatus that answers INTERNAL again and again tells nothing about the robot."""
+    lines = refused("GetRobotStatus", {"robotId": "r1"}, "INTERNAL")
+    assert judge(lines, drives=()).verdict().outcome is Outcome.INCONCLUSIVE

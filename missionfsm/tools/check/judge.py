@@ -228,6 +228,16 @@ class Judge:
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 
+    def _broke_down(self) -> bool:
+        """Whether a subscription was answered with a failure that its table lists: it may be whatever the state is."""
+        operations = self.system.spec.operations
+        return any(
+            operations[name].streaming and code in operations[name].failures
+            for name, codes in self.answers.items()
+            for code in codes
+            if name in operations
+        )
+
     @property
     def history(self) -> tuple[JSON, ...]:
         """The lines that were read, the first line before them; of a long history only the last ones."""
@@ -244,7 +254,7 @@ class Judge:
             said = event_words(self.system.spec, self._undecided)
             because = f"event {self.events} ({said}) has too many explanations to decide; what follows was not judged"
             outcome = Outcome.INCONCLUSIVE
-        elif not exercised:
+        elif not exercised and not self._broke_down():
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
         spec, readings = self.system.spec, self.belief.readings
         left_out = uncovered(spec, exercised, readings)

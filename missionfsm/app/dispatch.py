@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+import collections
 import contextlib
+import importlib.resources
 import logging
 import signal
 import ssl
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import attrs
+import orjson
 
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
+from missionfsm.adapters.isaac.statuspage import StatusPage
 from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
 from missionfsm.app.ending import told_to_end
 from missionfsm.isaac.runtime.graph import topological_order
@@ -22,6 +27,7 @@ from missionfsm.isaac.runtime.missions import INCOMPLETE, Effect, Snapshot, Stat
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.wire.framing import MAX_LINE
 from missionfsm.isaac.wire.messages import Uuid
+from missionfsm.kernel.codec import UnreadableError
 
 _LOOPBACK = ("127.", "localhost:", "[::1]:")
 
@@ -39,6 +45,7 @@ class Settings:
     resume: str = "fail"
     tokens: Mapping[str, str] | None = attrs.field(default=None, repr=False)
     tls: ssl.SSLContext | None = None
+    http: int | None = None
 
 
 class JournalMismatchError(Exception):
@@ -108,8 +115,13 @@ class Dispatch:
         self.narrator.peer = server.peer
         await server.start()
         try:
-            with told_to_end(self._end), self._warnings():
+            with told_to_end(self._end), self._warnings(), contextlib.ExitStack() as cleanup:
                 self._say_where(server)
+                if settings.http is not None:
+                    page = self._page(server, settings.http)
+                    cleanup.callback(page.close)
+                    address = f"http://{LOOPBACK}:{page.port}/"
+                    self._tell(Entry("status-page", f"status page at {address}", Level.INFO, {"address": address}))
                 refused = None if kept else server.submit_file(self.file, uuids)
                 if refused is not None:  # the file was read with this profile, so this does not happen
                     raise RuntimeError(str(refused))
@@ -155,6 +167,46 @@ class Dispatch:
         elif self._settings.tokens is None:
             says = "whoever can connect can say any robot's name; --token FILE asks for a token"
             self._tell(Entry("open", says, Level.WARNING))
+
+    def _page(self, server: TcpMissionServer, port: int) -> StatusPage:
+        try:
+            return StatusPage(port, self._answers(server))
+        except OSError as error:
+            raise UnreadableError(f"--http: cannot listen on {LOOPBACK}:{port}: {error.strerror or error}") from None
+
+    def _answers(self, server: TcpMissionServer) -> dict[str, tuple[str, Callable[[], bytes]]]:
+        template = importlib.resources.files("missionfsm.pages").joinpath("templates", "dispatch.html").read_bytes()
+
+        def status() -> bytes:
+            return orjson.dumps(self.status(server))
+
+        def metrics() -> bytes:
+            now = self.status(server)
+            lines = ["# HELP missionfsm_missions Missions of the file, by status.", "# TYPE missionfsm_missions gauge"]
+            lines += [f'missionfsm_missions{{status="{one}"}} {count}' for one, count in now["counts"].items()]
+            lines += ["# HELP missionfsm_robots_connected Robots that are connected."]
+            lines += ["# TYPE missionfsm_robots_connected gauge"]
+            lines += [f"missionfsm_robots_connected {sum(one['peer'] is not None for one in now['robots'])}", ""]
+            return "\n".join(lines).encode()
+
+        return {
+            "/": ("text/html; charset=utf-8", lambda: template),
+            "/status.json": ("application/json", status),
+            "/metrics": ("text/plain; version=0.0.4; charset=utf-8", metrics),
+        }
+
+    def status(self, server: TcpMissionServer) -> dict[str, Any]:
+        """Where everything stands, as JSON: missions in the order of the file, robots, how many have which status."""
+        counts = collections.Counter(self.statuses)
+        missions = [
+            {"mission": number, "robot": entry.robot, "status": status.value, "upstream": list(entry.upstream)}
+            for number, (entry, status) in enumerate(zip(self.file.missions, self.statuses, strict=True))
+        ]
+        robots = [
+            {"robot": robot.robot, "peer": None if robot.connection is None else server.peer(robot.connection)}
+            for robot in server.core.robots()
+        ]
+        return {"counts": {one.value: counts[one] for one in Status}, "robots": robots, "missions": missions}
 
     def _observe(self, effect: Effect) -> None:
         if isinstance(effect, StatusChanged):

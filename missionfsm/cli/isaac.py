@@ -66,6 +66,9 @@ def dispatch(  # noqa: PLR0913 - the options
     ] = None,
     tls_cert: Annotated[Path | None, typer.Option(help="The server's certificate, PEM; with --tls-key.")] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
+    http: Annotated[
+        int | None, typer.Option(min=0, max=65535, help="Show where all stands on this port of loopback, read only.")
+    ] = None,
     log: Annotated[
         LogName | None, typer.Option(help="Lines with time and level, instead of the table or of plain lines.")
     ] = None,
@@ -104,7 +107,7 @@ def dispatch(  # noqa: PLR0913 - the options
     if not isinstance(missions, MissionFile):
         raise typer.Exit(BAD_INPUT)
     kept = None if journal is None else str(journal)
-    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value, names, tls)
+    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value, names, tls, http)
     work = Dispatch(missions, settings)
     style = None if log is None else LogFormat(log.value)
     try:

@@ -11,15 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from attrs import evolve
 
 from missionfsm import conform
-from missionfsm.adapters.stdio import Child
-from missionfsm.bear.mission.inputs import Defect
-from missionfsm.kernel.alphabet import Alphabet, Bounds
-from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import System
-from missionfsm.systems import system
 
 STARTERS = Path(__file__).parent.parent / "examples" / "adapters"
 GSON = Path("/usr/share/java/gson.jar")
@@ -66,35 +59,6 @@ LANGUAGES: dict[str, tuple[Callable[[Path], list[str]], str, Path | None]] = {
 }
 
 
-def declared(command: list[str]) -> dict[str, Any]:
-    """What a starter says of itself."""
-    child = Child(command)
-    try:
-        return dict(child.exchange("initialize", {"protocolVersion": 1, "system": "bear.mission"}).result)  # type: ignore[arg-type]
-    finally:
-        child.close()
-
-
-def as_declared(judged: System, has: dict[str, Any]) -> System:
-    """The system with no more to try than a starter declares."""
-
-    def sayable(method: str, params: JSON) -> bool:
-        wrong = judged.codec.request(method, params).defects if method in judged.codec.methods else ()
-        return method in (*has["methods"], "settle", "cancel") and not {Defect.FORMAT, Defect.FIELD} & set(wrong)
-
-    def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
-        whole = judged.alphabet(world, bounds)
-        return evolve(
-            whole,
-            prompts=tuple(one for one in whole.prompts if sayable(one.method, one.params)),
-            plain=tuple(one for one in whole.plain if sayable(one.method, one.params)),
-            worlds=(has["world"],),
-            scripts=(),
-        )
-
-    return evolve(judged, alphabet=alphabet)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_starter_conforms(language: str, tmp_path: Path) -> None:
@@ -103,7 +67,7 @@ def test_a_starter_conforms(language: str, tmp_path: Path) -> None:
     if shutil.which(program) is None or (library is not None and not library.exists()):
         pytest.skip(f"{program} or its JSON library is not installed")
     starts = command(tmp_path)
-    verdict = conform(as_declared(system("bear.mission"), declared(starts)), starts, examples=2, tours=3, seed=1)
+    verdict = conform("bear.mission", starts, examples=2, tours=3, seed=1)
     assert (verdict.conforms, verdict.flagged) == (True, ())
     assert verdict.events > 50
 

@@ -29,6 +29,7 @@ app = typer.Typer(
 for _command in (
     judging.conform,
     judging.check,
+    judging.smoke,
     judging.explore,
     judging.teeth,
     listing.rules,

@@ -16,6 +16,7 @@ import typer
 from attrs import define
 
 from missionfsm.cli.common import (
+    ADAPTER_FAILED,
     BAD_INPUT,
     DONE,
     FAILED,
@@ -51,6 +52,7 @@ from missionfsm.tools.check.verdict import Verdict
 
 if TYPE_CHECKING:
     from missionfsm.kernel.subject import Subject
+    from missionfsm.tools.conform.smoke import Smoke
     from missionfsm.tools.explore.explore import Exploration
     from missionfsm.tools.explore.hazards import Hazards
     from missionfsm.tools.mutate.teeth import Teeth
@@ -262,6 +264,27 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     troubles.end(FAILED if verdict.violation else INTERRUPTED if interruption.asked else _status(verdict))
 
 
+def smoke(
+    system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
+    command: Annotated[list[str], typer.Argument(help="The adapter to look at, after --.")],
+    timeout: Annotated[
+        float, typer.Option(min=0.01, max=DAY, callback=_finite, help="Seconds that an answer may take.")
+    ] = 3.0,
+    json: JsonFile = None,
+) -> None:
+    """Ask an adapter for each method once, and say what is not of the protocol and how to mend it.
+
+    Exit status: 0 for an adapter, 3 for something that is none yet.
+    """
+    from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.conform.smoke import smoke as looked_at  # noqa: PLC0415
+
+    refuse_outputs({"--json": json})
+    found = looked_at(the_system(system), lambda: Child(command, timeout))
+    troubles = _told(found, json)
+    troubles.end(DONE if found.is_adapter else ADAPTER_FAILED)
+
+
 def _status(verdict: Verdict) -> int:
     return DONE if verdict.conforms else FAILED
 
@@ -278,7 +301,7 @@ def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, 
     return named
 
 
-def _told(found: Verdict | Exploration | Teeth | Hazards, json: str | None) -> Troubles:
+def _told(found: Verdict | Exploration | Teeth | Hazards | Smoke, json: str | None) -> Troubles:
     """Tell what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():

@@ -81,7 +81,10 @@ def _against_answer(nearest: Nearest, event: Returned) -> Found:
     lightest = _lightest(candidates)
     if not lightest or lightest[0].weight < CODE:
         rules = [rule for one in lightest for problem in one.problems for rule in problem.rules or one.rules]
-        return candidates, rules, [problem.says for one in lightest[:1] for problem in one.problems]
+        notes = [problem.says for one in lightest[:1] for problem in one.problems]
+        if len(set(event.names)) < len(event.names):
+            notes.append("each thing has a name of its own, and one is given twice")
+        return candidates, rules or [rule for one in lightest for rule in one.rules], notes
     rules, notes = _wrong_code(nearest, event, _lightest([one for one in candidates if one.allowed] or candidates))
     return candidates, rules, notes
 

@@ -6,7 +6,8 @@ system, so it is the alphabet that is made smaller here, once, for whoever draws
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import difflib
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 from attrs import evolve, frozen
@@ -31,7 +32,7 @@ class AdapterInfo:
         world: the one world that it has; None where it takes any.
         soft_reset: whether ids, numbers and what was before live on over a reset.
         binary: whether requests travel as binary protobuf.
-        unknown: what it declared that the system does not have, each as ``drive 'goalreached'``.
+        unknown: what it declared that the system does not have, each in words, with what may be meant.
     """
 
     name: str
@@ -71,8 +72,8 @@ def handshake(system: System, subject: Subject) -> AdapterInfo:
         _declared(result, "reset", "soft"),
         _declared(result, "requests", "binary"),
         (
-            *(f"drive {brief(one)}" for one in drives or () if one not in system.spec.drives),
-            *(f"method {brief(one)}" for one in methods or () if one not in system.codec.methods),
+            *_unknown("drive", drives, system.spec.drives),
+            *_unknown("method", methods, system.codec.methods),
         ),
     )
 
@@ -83,6 +84,15 @@ def _names(result: dict[str, Any], member: str) -> list[str] | None:
         message = f"the adapter answered initialize with {member} {brief(names)}, not with a list of names"
         raise SubjectError(message)
     return names
+
+
+def _unknown(kind: str, given: Iterable[str] | None, known: Iterable[str]) -> Iterator[str]:
+    """What is not known, with what may be meant."""
+    there = {one.lower(): one for one in known}
+    for one in given or ():
+        if one not in there.values():
+            near = difflib.get_close_matches(one.lower(), there, 1)
+            yield f"{kind} {brief(one)}" + (f" ({there[near[0]]} may be meant)" if near else "")
 
 
 def _declared(result: dict[str, Any], member: str, value: str) -> bool:

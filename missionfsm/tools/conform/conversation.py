@@ -119,6 +119,10 @@ class Conversation:
         if is_template(params):
             picked = {slot: self.given[given] for slot, given in action.picks if given in self.given}
             params = fill(params, picked, self.system.naming, action.serial, self.given.values())
+        codec = self.system.codec
+        if self.partner.info.binary and action.method in codec.methods and not codec.carries(action.method, params):
+            self.actions.pop()  # a name of another kind may have come into it
+            return self.right
         self._acting, self._learnt = action.serial, 0
         if action.method == SETTLE:
             self._settle()

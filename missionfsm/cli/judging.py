@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import define
+from attrs import define, evolve
 
 from missionfsm.cli.common import (
     ADAPTER_FAILED,
@@ -47,6 +47,7 @@ from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import printable
+from missionfsm.kernel.transport import over_transport
 from missionfsm.systems import names
 from missionfsm.tools.check.verdict import Verdict
 
@@ -119,6 +120,13 @@ def _finite(seconds: float | None) -> float | None:
     return seconds
 
 
+class Transport(enum.Enum):
+    """What lies between an implementation and its log."""
+
+    IMPERFECT = "imperfect"
+    STRICT = "strict"
+
+
 def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
     system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
     command: Annotated[
@@ -172,6 +180,10 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     force: Force = False,
     token: TokenFile = None,
     tls: TlsFile = None,
+    transport: Annotated[
+        Transport | None,
+        typer.Option(help="With --grpc: whether messages may be lost, doubled or made up on the way."),
+    ] = None,
     tolerance: Annotated[
         float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
     ] = 0.2,
@@ -208,8 +220,8 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     limit = TimeLimit(seconds)
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
-    if grpc is None and any((world, settle, force, token, tls)):
-        stop("--world, --settle, --force, --token, --tls: they belong to --grpc", BAD_INPUT)
+    if grpc is None and any((world, settle, force, token, tls, transport)):
+        stop("--world, --settle, --force, --token, --tls, --transport: they belong to --grpc", BAD_INPUT)
     if grpc is not None:
         refuse_options(
             {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
@@ -231,6 +243,8 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
                 system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
             )
             examples = examples or GRPC_EXAMPLES
+            if transport is not Transport.STRICT:
+                judged = evolve(judged, spec=over_transport(judged.spec))
         elif bridge:
             child = bridge.subject
         else:
@@ -355,13 +369,6 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
         stop(f"{path}:{line}: byte 0x{data[error.start]:02x} is not UTF-8", BAD_INPUT)
     except ValueError as error:
         stop(f"{path}:{error}", BAD_INPUT)
-
-
-class Transport(enum.Enum):
-    """What lies between an implementation and its log."""
-
-    IMPERFECT = "imperfect"
-    STRICT = "strict"
 
 
 class Beginning(enum.Enum):

@@ -11,13 +11,15 @@ from typing import Any
 
 import grpc
 import pytest
+from attrs import evolve
+from commandline import CommandLine
 
 from missionfsm.adapters.grpc.client import GrpcSubject, Target
 from missionfsm.adapters.grpc.descriptors import encode, methods, path
 from missionfsm.app.serve import serve
-from missionfsm.cli.overgrpc import in_binary
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError
+from missionfsm.kernel.transport import over_transport
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
@@ -39,7 +41,7 @@ def subject(name: str, address: str, **options: Any) -> Iterator[GrpcSubject]:
 def judged(name: str, address: str, seed: int, **options: Any) -> Verdict:
     """The verdict of a short run."""
     with subject(name, address, **options) as server:
-        return conform(in_binary(system(name)), server, examples=2, tours=1, steps=15, seed=seed, advice=False)
+        return conform(system(name), server, examples=2, tours=1, steps=15, seed=seed, advice=False)
 
 
 @pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
@@ -133,3 +135,20 @@ def test_a_stream_that_says_late_that_it_has_begun_has_begun(first: bool) -> Non
             assert len(opened.after) == first
     finally:
         lazy.stop()
+
+
+def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -> None:
+    """Messages that a server's network loses are explained and flagged, unless the transport is said to be strict."""
+    found = {}
+    strict = system("bear.mission")
+    for name, of in (("strict", strict), ("imperfect", evolve(strict, spec=over_transport(strict.spec)))):
+        with serve("bear.mission", faults=["lost:0.4"], seed=1) as robot, subject(of.name, robot.target) as server:
+            verdict = conform(of, server, examples=2, tours=1, steps=15, seed=3, advice=False)
+        found[name] = (verdict.conforms, any(one.startswith("TR-03=b") for one in verdict.flagged))
+    assert found == {"imperfect": (True, True), "strict": (False, False)}
+
+
+def test_the_transport_belongs_to_a_server(command_line: CommandLine) -> None:
+    """Between the tester and its child process nothing is lost, so that nobody may say so."""
+    ended = command_line("conform", "bear.mission", "--transport", "imperfect")
+    assert (ended.status, "--transport" in ended.err) == (2, True)

@@ -455,7 +455,15 @@ def _was_on(mission: Mission, link: Link) -> bool:
 
 def _again(move: Move, index: int) -> Move:
     move = becomes(move, index, "send again later").mission(index, link=None)
-    gone = ((START, "send"), (START, "ready"), (START, "connect"), (RUN, "send"), (RUN, "status"), (SILENT, "status"))
+    gone = (
+        (START, "send"),
+        (START, "ready"),
+        (START, "connect"),
+        (RUN, "send"),
+        (RUN, "status"),
+        (SILENT, "status"),
+        (DROP, "drop"),
+    )
     return started(stopped(move, index, *gone), index, START, "ready")
 
 

@@ -437,9 +437,7 @@ def lost(move: Move, link: Link) -> Moves:
             here, later = split(way, AI_15_WHEN, "n")
         for index in affected:
             if later is not None:
-                drop = Clock(DROP, "drop", 0, later.at[1] + LOOK + later.state.tolerance)
-                later = later.mission(index, link=None)
-                later = _ticking(later, index, (*later.state.missions[index].clocks, drop))
+                later = _to_be_noticed(later.mission(index, link=None), index)
             if here is not None and letter == "a":
                 here = here.mission(index, link=None)
             elif here is not None and letter == "c":
@@ -447,6 +445,14 @@ def lost(move: Move, link: Link) -> Moves:
             elif here is not None:
                 here = _again(here, index)
         yield from (one for one in (here, later) if one is not None)
+
+
+def _to_be_noticed(move: Move, index: int) -> Move:
+    """The next scheduling pass notices that a mission's connection has dropped; one that is to come notices all."""
+    clocks = move.state.missions[index].clocks
+    if any(one.kind == DROP for one in clocks):
+        return move
+    return _ticking(move, index, (*clocks, Clock(DROP, "drop", 0, move.at[1] + LOOK + move.state.tolerance)))
 
 
 def _was_on(mission: Mission, link: Link) -> bool:

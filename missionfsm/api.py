@@ -17,7 +17,7 @@ import shlex
 import tempfile
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
@@ -34,12 +34,29 @@ History = str | os.PathLike[str] | Iterable[JSON | bytes]
 """The path of a history, or its lines: each a JSON text, or what one stands for."""
 
 
+class Log(TypedDict, total=False):
+    """What is known of a log besides what its first line says.
+
+    Attributes:
+        strict: whether nothing was lost, doubled or made up on the way.
+        anywhere: whether it begins while the system is in use.
+        others: whether others, whose calls are not in it, use the system as well.
+        settled_after: how many seconds (of `at`) after its cause something is late.
+    """
+
+    strict: bool
+    anywhere: bool
+    others: bool
+    settled_after: float
+
+
 def check(
     history: History,
     *,
     robot: str | None = None,
     readings: Mapping[str, str] | None = None,
     no_flagged: bool = False,
+    **log: Unpack[Log],
 ) -> Verdict:
     """Judge a recorded history.
 
@@ -48,12 +65,13 @@ def check(
         robot: about which of the robots that it speaks of the verdict is to be; needed where there are several.
         readings: ambiguity id to the letter that has to be followed, such as ``{"AM-09": "a"}``; the rest is open.
         no_flagged: whether what departs from the letter of the text is held against the implementation.
+        log: what is known of the log itself, see `Log`.
 
     Raises:
         UnreadableError: there is no such file, or a line is not of the format; the message says where and what.
         ValueError: there is no such robot or reading, or `robot` does not say which of several is meant.
     """
-    verdicts = check_robots(history, readings=readings, no_flagged=no_flagged)
+    verdicts = check_robots(history, readings=readings, no_flagged=no_flagged, **log)
     if robot is None and len(verdicts) == 1:
         return next(iter(verdicts.values()))
     if robot in verdicts:
@@ -64,7 +82,7 @@ def check(
 
 
 def check_robots(
-    history: History, *, readings: Mapping[str, str] | None = None, no_flagged: bool = False
+    history: History, *, readings: Mapping[str, str] | None = None, no_flagged: bool = False, **log: Unpack[Log]
 ) -> dict[str | None, Verdict]:
     """Judge a recorded history that speaks of several robots: the verdict on each, by name.
 
@@ -73,13 +91,13 @@ def check_robots(
     from missionfsm.app.recorded import check_file  # noqa: PLC0415 - each function loads what it needs
 
     if isinstance(history, str | os.PathLike):
-        return dict(check_file(os.fspath(history), readings, no_flagged=no_flagged))
+        return dict(check_file(os.fspath(history), readings, no_flagged=no_flagged, **log))
     with tempfile.TemporaryDirectory() as folder:  # so that lines are judged in the one way in which files are
         path = os.path.join(folder, "history")  # noqa: PTH118 - it is given on as text
         with open(path, "wb") as file:  # noqa: PTH123 - as above
             file.writelines(map(_line, history))
         try:
-            return dict(check_file(path, readings, no_flagged=no_flagged))
+            return dict(check_file(path, readings, no_flagged=no_flagged, **log))
         except UnreadableError as error:
             says = str(error).removeprefix(f"{path}:")
             raise UnreadableError(f"line {says}" if says[:1].isdigit() else says.strip()) from None

@@ -140,3 +140,16 @@ def test_a_system_is_explored_within_bounds() -> None:
     small = explore("bear.mission", size=1, goals=1, batch=1)
     assert small.counterexample is None
     assert small.states < explore("bear.mission", size=1, goals=2, batch=1).states
+
+
+def test_what_is_known_of_a_log_is_said_with_it() -> None:
+    """What the command line's options say of a log may be said to `check` as well."""
+    stream = {"return": 1, "result": {"stream": 1}}
+    states = {"missions": [], "currentMissionIndex": -1}
+    message = {"metadata": {"timestamp": "2025-04-01T17:05:00Z", "sequenceNumber": 7}, "missionStates": states}
+    head = {"missionfsm": 1, "system": "bear.mission", "world": {}}
+    shown = {"stream": 1, "message": message}
+    opened = [head, {"call": 1, "method": "SubscribeMissionStatus", "params": {}}, stream, shown]
+    closed = {"stream": 1, "closed": True}
+    assert (check([*opened, closed]).conforms, check([*opened, closed], strict=True).conforms) == (True, False)
+    assert (check([head, shown]).conforms, check([head, shown], anywhere=True).conforms) == (False, True)

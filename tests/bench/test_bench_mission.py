@@ -18,6 +18,7 @@ from days import HEAD, MISSION, WORLD, day
 from transitions import Machine
 
 from missionfsm.adapters.historyfile import fingerprint
+from missionfsm.app.many import histories, judge_files
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.chart import Chart
@@ -190,6 +191,27 @@ def test_bench_mission_events_from_a_file(benchmark: Any, log: Path) -> None:
     ((_, verdict),) = benchmark.pedantic(check_file, (str(log),), rounds=5)
     assert verdict.conforms
     print(f"\n{LINES / benchmark.stats.stats.min:,.0f} lines a second")
+
+
+@pytest.mark.parametrize("known", ["anywhere", "others"])
+def test_bench_mission_events_of_a_log_that_has_not_all(benchmark: Any, log: Path, known: str) -> None:
+    """The same where the log may begin anywhere, or others use the robot, as a ratio to one of which all is known."""
+    whole = rate(1, lambda: check_file(str(log)))
+    ((_, verdict),) = benchmark.pedantic(check_file, (str(log),), {known: True}, rounds=3)
+    assert verdict.conforms
+    print(
+        f"\n{LINES / benchmark.stats.stats.min:,.0f} lines a second, {1 / benchmark.stats.stats.min / whole:.2f} times"
+    )
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_bench_mission_a_folder_of_days(benchmark: Any, tmp_path: Path, jobs: int) -> None:
+    """Lines a second of four logs in one folder, judged in so many processes."""
+    for robot in range(4):
+        written(tmp_path / f"{robot}.jsonl", LINES // 4)
+    found = benchmark.pedantic(lambda: list(judge_files(histories([str(tmp_path)]), {}, jobs=jobs)), rounds=1)
+    assert all(verdict.conforms for one in found for _, verdict in one.verdicts)
+    print(f"\n{LINES / benchmark.stats.stats.min:,.0f} lines a second in {jobs} processes")
 
 
 def test_bench_mission_memory_of_a_long_file(benchmark: Any, tmp_path: Path) -> None:

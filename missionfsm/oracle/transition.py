@@ -429,11 +429,14 @@ class Oracle:
                     yield Sighting(tidy(ended), sighting.rules)
 
     def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
-        """The explanations in which a step has closed the channel of that name, or closes it now."""
+        """The explanations in which a step has closed the channel of that name, or closes it now.
+
+        Where all of them have closed it, its name is carried no more.
+        """
         assert self.spec.closing is not None  # noqa: S101 - the caller has looked
         for sighting in self.moves.closure(explanations):
             here = sighting.explanation
-            if name in here.gone:
+            if name == GONE or name in here.gone:
                 yield sighting
             for channel in here.channels:
                 for step in self.spec.closing(here.state, channel.topic) if channel.name == name else ():

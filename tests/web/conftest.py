@@ -30,7 +30,7 @@ CLIPBOARD = """
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """A headless Chromium. While it runs, its driver's event loop is that of the thread, so that no other can be run."""
+    """A headless Chromium; while it runs, its event loop is that of the thread, so that no other can be run."""
     if CHROMIUM is None:
         pytest.skip("no Chromium to open pages with")
     playwright = pytest.importorskip("playwright.sync_api", reason="no playwright to steer Chromium with")

@@ -76,6 +76,7 @@ def judge_files(
     *,
     jobs: int | None = None,
     progress: Callable[[], None] = lambda: None,
+    tell: Callable[[str], None] | None = None,
     **how: Any,  # noqa: ANN401 - see `missionfsm.app.asked.Asked`
 ) -> Iterator[Judged]:
     """Judge files, several at a time; what is found comes in their order and does not depend on `jobs`.
@@ -83,12 +84,14 @@ def judge_files(
     Args:
         jobs: in how many processes; None: as many as there are cores, as far as the files are worth it.
         progress: called for every file that has been judged.
+        tell: called with what is told on the way, as soon as it is there; None keeps it for `Judged.said`. What several
+            processes are told is kept.
     """
     waiting = list(paths)
     jobs = _processes(waiting) if jobs is None else jobs
     if jobs == 1 or len(waiting) == 1:
         for path in waiting:
-            yield _judged(path, readings, how)
+            yield _judged(path, readings, how, tell)
             progress()
         return
     context = multiprocessing.get_context("spawn")
@@ -115,10 +118,12 @@ def _result(path: str, future: Future[Judged]) -> Judged:
     return Judged(path, trouble=f"{path}: a process that judged ended before it was done; try --jobs 1")
 
 
-def _judged(path: str, readings: Mapping[str, str], how: dict[str, Any]) -> Judged:
+def _judged(
+    path: str, readings: Mapping[str, str], how: dict[str, Any], tell: Callable[[str], None] | None = None
+) -> Judged:
     said: list[str] = []
     try:
-        return Judged(path, tuple(check_file(path, readings, said.append, **how)), tuple(said))
+        return Judged(path, tuple(check_file(path, readings, tell or said.append, **how)), tuple(said))
     except ValueError as error:  # UnreadableError is one, and so is that of a reading that does not exist
         return Judged(path, (), tuple(said), str(error))
 

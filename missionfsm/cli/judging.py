@@ -433,8 +433,14 @@ def check(  # noqa: PLR0913 - options of the command
     told = Told(json) if (many if summary is None else summary) else None
     reached: list[tuple[str, str | None, Verdict]] = []
     troubles = Troubles()
+
+    def tell(line: str) -> None:
+        with troubles.kept():
+            say_shown(line, json=json)
+
     with Bar("files", len(found)) as bar:
-        for one in judge_files(found, readings, jobs=jobs, progress=bar.one_more, **how):
+        live = tell if told is None else None
+        for one in judge_files(found, readings, jobs=jobs, progress=bar.one_more, tell=live, **how):
             with troubles.kept():
                 for line in () if told else one.said:
                     say_shown(line, json=json)

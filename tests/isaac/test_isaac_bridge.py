@@ -291,7 +291,7 @@ def test_a_tolerance_goes_both_ways(seconds: float, statuses: str) -> None:
             system("isaac.server"),
             Head("isaac.server", {"tolerance": 0.3}, ("connect", "line", "disconnect", "advance")),
             list(history(seconds, status)),
-            readings={"AI-39": "a", "AI-07": "a", "AI-05": "a"},
+            readings={"AI-39": "a", "AI-07": "a", "AI-05": "a", "AI-24.whole": "x"},
         ).conforms
     ]
     assert found == statuses.split()

@@ -37,13 +37,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("reports")
 
 
-def _judged(folder: Path, name: str, *options: object) -> Path:
+def _judged(folder: Path, name: str, examples: int, *options: object) -> Path:
     """The page on the subject with one thing broken or with none, with its verdict as JSON beside it."""
     node = shutil.which("node")
     if node is None:
         pytest.skip("no Node.js to run the independent implementations")
     page = folder / f"{name}.html"
-    asked = ("--seed", 2, "--examples", 3, "--steps", 20, "--json", page.with_suffix(".json"), "--html", page)
+    asked = ("--seed", 3, "--examples", examples, "--steps", 20, "--json", page.with_suffix(".json"), "--html", page)
     ended = missionfsm("conform", "bear.mission", *asked, "--", node, SUBJECT, *options)
     assert ended.err == ""
     return page
@@ -51,12 +51,12 @@ def _judged(folder: Path, name: str, *options: object) -> Path:
 
 @pytest.fixture(scope="session")
 def violating(folder: Path) -> Path:
-    return _judged(folder, "violating", "--break", "create-while-queued")
+    return _judged(folder, "violating", 100, "--break", "create-while-queued")
 
 
 @pytest.fixture(scope="session")
 def conforming(folder: Path) -> Path:
-    return _judged(folder, "conforming")
+    return _judged(folder, "conforming", 12)
 
 
 def _history(path: Path, lines: tuple[object, ...]) -> Path:

@@ -416,6 +416,7 @@ class MissionServer:
                 task.cancel()
             if late:
                 self._loop.run_until_complete(asyncio.wait(late))
+        self._loop.run_until_complete(self._loop.shutdown_default_executor())  # a host's address was looked up there
         self._loop.close()
 
 

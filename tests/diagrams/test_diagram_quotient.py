@@ -160,7 +160,9 @@ class Walker:
         while True:
             what, free, asked = self.random.choice(self.tried)
             refs = self.random.choice(list(references(self.system.spec, here.state, free)))
-            names = tuple(None if ref is None else here.names[ref] for ref in refs)
+            if ONCE_HAD in refs and not here.gone:
+                continue
+            names = tuple(self.named(here, ref) for ref in refs)
             label = self.sketch.label(here.state, what, refs)
             after, reply = (self.model.call if asked else self.model.drive)(here, what, names)
             if reply.happened and label is not None and self.sketch.within(after.state):

@@ -121,6 +121,23 @@ def test_a_status_that_a_client_made_leaves_the_call_open(tmp_path: Path, status
     assert judged(tmp_path / "log", failed(status, applied=applied)).conforms
 
 
+def test_many_answers_that_never_came_are_no_violation(tmp_path: Path) -> None:
+    """Where a client's deadline passed again and again, what was appended all the same is listed in its place."""
+    log = Recorder()
+    log.head["drives"] += ["fault"]  # so that the robot itself answers nothing of the kind
+    log.call("CreateMission", navigate("table-1"))
+    for _ in range(14):
+        log.call("AppendMission", navigate("table-1"))
+    log.call(SUBSCRIBE)
+    passed = {"status": "DEADLINE_EXCEEDED", "message": "made up"}
+    lines = [
+        {"return": line["return"], "error": passed} if line.get("return") in (2, 5, 8, 10, 13) else line
+        for line in log.history
+    ]
+    verdict = judged(tmp_path / "log", lines)
+    assert (verdict.conforms, flags(verdict)) == (True, {"TR-04"})
+
+
 WRONG = {
     "another message with the same number": [
         *LINES,

@@ -40,6 +40,11 @@ def failure(code: str) -> Failure | None:
     return Failure((TR_04["b"],), open_ended=True)
 
 
+def makes_up(explanation: Explanation) -> bool:
+    """Whether a client or a gateway has made up the status of an answer before."""
+    return not meet(explanation.assumed, (TR_04["a"],))
+
+
 def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Sighting]:
     """The explanations in which a message came twice, after which everything is as before."""
     for explanation in explanations:

@@ -10,6 +10,7 @@ import attrs
 from missionfsm.adapters.isaac.tcp import fresh_uuid
 from missionfsm.isaac.runtime.missions import DEFAULT_START_TIMEOUT, MissionRequest, Snapshot
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
+from missionfsm.isaac.runtime.scheduler import upstreams_first
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.messages import Uuid
 
@@ -126,15 +127,6 @@ def _config_text(config: Mapping[str, Any]) -> str:
     return text
 
 
-def upstreams_first(mission: Mission) -> list[Mission]:
+def not_submitted(mission: Mission) -> list[Mission]:
     """A mission behind all its upstreams that no server knows, upstreams first."""
-    order: dict[Uuid, Mission] = {}
-    stack = [(mission, False)]
-    while stack:
-        one, expanded = stack.pop()
-        if expanded:
-            order.setdefault(one.uuid, one)
-        elif one.uuid not in order and (one.server is None or one is mission):
-            stack.append((one, True))
-            stack.extend((upstream, False) for upstream in reversed(one.upstream))
-    return list(order.values())
+    return upstreams_first(mission, lambda one: [up for up in one.upstream if up.server is None])

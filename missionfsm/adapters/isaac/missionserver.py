@@ -25,7 +25,7 @@ import attrs
 
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
-from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError, upstreams_first
+from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError, not_submitted
 from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer
 from missionfsm.isaac.runtime.missions import Effect, Refused, StatusChanged
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
@@ -145,7 +145,7 @@ class AsyncMissionServer:
     def submit(self, mission: Mission) -> None:
         """Run the mission when its upstreams have succeeded and its robot is there. MissionRefusedError if refused."""
         tcp = self._running()
-        for one in upstreams_first(mission):
+        for one in not_submitted(mission):
             if one.server is not None and one.server is not self:
                 msg = f"{one!r} belongs to another server"
                 raise MissionRefusedError(msg)

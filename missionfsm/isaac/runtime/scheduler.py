@@ -8,7 +8,7 @@ import heapq
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import Final
+from typing import Final, Protocol, TypeVar
 
 from missionfsm.isaac.runtime.deadlines import Deadlines
 from missionfsm.isaac.runtime.missions import Effect, Send, Status, StatusChanged
@@ -17,6 +17,28 @@ from missionfsm.isaac.runtime.records import ConnectionRecord, LaneRecord, Missi
 from missionfsm.isaac.wire.messages import MissionProto, Uuid
 
 _DAY: Final = 86400
+
+
+class _Identified(Protocol):
+    @property
+    def uuid(self) -> Uuid: ...
+
+
+_Mission = TypeVar("_Mission", bound=_Identified)
+
+
+def upstreams_first(mission: _Mission, upstreams: Callable[[_Mission], list[_Mission]]) -> list[_Mission]:
+    """A mission behind all its upstreams and theirs, each once."""
+    order: dict[Uuid, _Mission] = {}
+    stack = [(mission, False)]
+    while stack:
+        one, expanded = stack.pop()
+        if expanded:
+            order.setdefault(one.uuid, one)
+        elif one.uuid not in order:
+            stack.append((one, True))
+            stack.extend((upstream, False) for upstream in reversed(upstreams(one)))
+    return list(order.values())
 
 
 class Scheduler:
@@ -119,16 +141,11 @@ class Scheduler:
 
     def not_submitted(self, mission: MissionRecord) -> list[MissionRecord]:
         """The mission and all upstreams that were not submitted, upstreams first."""
-        order: dict[Uuid, MissionRecord] = {}
-        stack = [(mission, False)]
-        while stack:
-            one, expanded = stack.pop()
-            if expanded:
-                order.setdefault(one.uuid, one)
-            elif one.number < 0 and one.uuid not in order:
-                stack.append((one, True))
-                stack.extend((self.missions[uuid], False) for uuid in reversed(one.request.upstream))
-        return list(order.values())
+        if mission.number >= 0:
+            return []
+        return upstreams_first(
+            mission, lambda one: [up for uuid in one.request.upstream if (up := self.missions[uuid]).number < 0]
+        )
 
     def finish(self, mission: MissionRecord, status: Status) -> None:
         """End a mission, and all that its end decides."""

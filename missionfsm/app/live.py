@@ -17,7 +17,6 @@ from missionfsm.adapters.grpc.answers import Answered, Listener, Spoilt
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
-from missionfsm.tools.reference.model import Twist, straight
 from missionfsm.tools.reference.stamps import Stamps
 from missionfsm.tools.reference.subject import Reference
 
@@ -35,7 +34,7 @@ class Live:
         clock: seconds since the epoch of the reference, for timestamps.
         record: takes every line of the history as it happens.
         undriven: drives that come about in other ways as well, so that the history does not claim them.
-        twist, bend: what is broken, if anything; see `missionfsm.tools.reference.subject.Reference`.
+        subject: the implementation that lives, where it is not the reference under `readings`.
 
     Raises:
         ValueError: a reading that does not exist.
@@ -51,8 +50,7 @@ class Live:
         clock: Callable[[], float],
         record: Callable[[JSON], None] = lambda _: None,
         undriven: Collection[str] = (),
-        twist: Twist = straight,
-        bend: Callable[[JSON], JSON] = lambda message: message,
+        subject: Reference | None = None,
     ) -> None:
         self.system = system
         self._lock = threading.RLock()
@@ -62,7 +60,7 @@ class Live:
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
         self._history: deque[JSON] = deque(maxlen=MAX_HISTORY_LINES)
-        self._subject = Reference(system, readings, twist, bend, Stamps(clock))
+        self._subject = subject or Reference(system, readings, seconds=Stamps(clock))
         self.reset({} if world is None else world)
 
     def _note(self, line: JSON) -> None:

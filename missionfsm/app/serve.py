@@ -8,6 +8,7 @@ with missionfsm.serve("bear.mission") as robot:
 
 from __future__ import annotations
 
+import difflib
 import json
 import random
 import threading
@@ -26,6 +27,8 @@ from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
 from missionfsm.systems import system as the_system
+from missionfsm.tools.reference.stamps import Stamps
+from missionfsm.tools.reference.subject import Reference
 
 if TYPE_CHECKING:
     from missionfsm.adapters.grpc.server import Server
@@ -184,6 +187,7 @@ def serve(  # noqa: PLR0913 - each with a default
     auto: float | None = None,
     script: Iterable[Cue] = (),
     faults: Iterable[str] = (),
+    broken: str = "",
     seed: int = 0,
     certificate: str = "",
     key: str = "",
@@ -201,6 +205,8 @@ def serve(  # noqa: PLR0913 - each with a default
         auto: every so many seconds something happens by itself: a goal is reached, a mission ends, a value is reported.
         script: what happens first.
         faults: what goes wrong on the network, such as ``deadline:0.05``; see `missionfsm.adapters.grpc.faults.Faults`.
+        broken: the id of a rule that the robot breaks, with the kind of break that ``missionfsm teeth`` names after
+            it, if it is not to be the first; "" for none. Readings are then those under which the rule is in force.
         seed: the same seed, the same faults.
         certificate, key: files in PEM, for TLS.
         token: what callers have to send as ``authorization: Bearer TOKEN``.
@@ -208,7 +214,7 @@ def serve(  # noqa: PLR0913 - each with a default
         record: takes every line of the history as it happens.
 
     Raises:
-        ValueError: there is no such system, world, reading or fault.
+        ValueError: there is no such system, world, reading, fault or break.
         OSError: it cannot listen there, or a file cannot be read.
         ModuleNotFoundError: the extra is not installed.
     """
@@ -217,7 +223,9 @@ def serve(  # noqa: PLR0913 - each with a default
 
     wrong = Faults.parse(faults)
     undriven = ("fault",) if wrong.deadline or wrong.unavailable else ()
-    live = Live(_served(system), world, readings, clock=_seconds, record=record, undriven=undriven)
+    served = _served(system)
+    subject = _mutant(served, broken, readings) if broken else None
+    live = Live(served, world, readings, clock=_seconds, record=record, undriven=undriven, subject=subject)
     security = Security(certificate, key, token)
     with Server(live, host=host, port=port, faults=wrong, seed=seed, security=security, with_control=control) as server:
         driver = _Driver(live, script, auto, seed)
@@ -226,6 +234,20 @@ def serve(  # noqa: PLR0913 - each with a default
             yield Served(live, server)
         finally:
             driver.stop()
+
+
+def _mutant(system: System, name: str, readings: Mapping[str, str] | None) -> Reference:
+    """The reference with a rule broken, by the rule's id or the name that teeth gives the mutant."""
+    from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415 - few need it
+
+    if readings:
+        raise ValueError("what is broken has the readings under which its rule is in force, and no others")
+    known = tuple(mutants(system))
+    found = next((mutant for mutant in known if name in (mutant.rule, mutant.name)), None)
+    if found is None:
+        near = difflib.get_close_matches(name, [mutant.name for mutant in known], 1, 0)
+        raise ValueError(f"--break {name}: no break has that name; is {near[0]!r} meant?")
+    return found.subject(system, Stamps(_seconds))
 
 
 def _served(name: str) -> System:

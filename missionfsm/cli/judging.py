@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import define, evolve
+from attrs import define
 
 from missionfsm.cli.common import (
     ADAPTER_FAILED,
@@ -34,20 +34,22 @@ from missionfsm.cli.common import (
     write_json,
 )
 from missionfsm.cli.overgrpc import (
+    Beginning,
     Force,
     GrpcAddress,
+    KeepaliveSeconds,
+    MetadataEntries,
     SettleSeconds,
     TlsFile,
     TokenFile,
+    Wire,
     WorldFile,
-    over_grpc,
 )
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import printable
-from missionfsm.kernel.transport import over_transport
 from missionfsm.systems import names
 from missionfsm.tools.check.verdict import Verdict
 
@@ -180,10 +182,19 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     force: Force = False,
     token: TokenFile = None,
     tls: TlsFile = None,
+    metadata: MetadataEntries = None,
+    keepalive: KeepaliveSeconds = None,
     transport: Annotated[
         Transport | None,
         typer.Option(help="With --grpc: whether messages may be lost, doubled or made up on the way."),
     ] = None,
+    begins: Annotated[
+        Beginning | None,
+        typer.Option(help="With --grpc: whether the robot is begun anew, or is in use and left so."),
+    ] = None,
+    others: Annotated[
+        bool, typer.Option("--others", help="With --grpc: others use the robot at the same time.")
+    ] = False,
     tolerance: Annotated[
         float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
     ] = 0.2,
@@ -220,9 +231,36 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     limit = TimeLimit(seconds)
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, tolerance)
-    if grpc is None and any((world, settle, force, token, tls, transport)):
-        stop("--world, --settle, --force, --token, --tls, --transport: they belong to --grpc", BAD_INPUT)
-    if grpc is not None:
+    wire = None
+    if grpc is None:
+        options = {
+            "--world": world,
+            "--settle": settle,
+            "--force": force,
+            "--token": token,
+            "--tls": tls,
+            "--metadata": metadata,
+            "--keepalive": keepalive,
+            "--transport": transport,
+            "--begins": begins,
+            "--others": others,
+        }
+        refuse_options(options, "without --grpc")
+    else:
+        wire = Wire(
+            grpc,
+            world=world,
+            settle=settle,
+            force=force,
+            token=token,
+            tls=tls,
+            metadata=metadata or [],
+            keepalive=keepalive,
+            begins=begins or Beginning.FRESH,
+            others=others,
+            strict=transport is Transport.STRICT,
+        )
+        judged = wire.system(system)
         refuse_options(
             {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
             "where --grpc says which server is judged",
@@ -238,13 +276,9 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
         except ValueError as error:
             stop(str(error), BAD_INPUT)
-        if grpc is not None:
-            child: Subject = over_grpc(
-                system, grpc, world=world, settle=settle, force=force, token=token, tls=tls, timeout=timeout
-            )
+        if wire is not None:
+            child: Subject = wire.subject(system, timeout)
             examples = examples or GRPC_EXAMPLES
-            if transport is not Transport.STRICT:
-                judged = evolve(judged, spec=over_transport(judged.spec))
         elif bridge:
             child = bridge.subject
         else:
@@ -369,13 +403,6 @@ def _known(path: str | None, *judged: System) -> tuple[str, ...]:
         stop(f"{path}:{line}: byte 0x{data[error.start]:02x} is not UTF-8", BAD_INPUT)
     except ValueError as error:
         stop(f"{path}:{error}", BAD_INPUT)
-
-
-class Beginning(enum.Enum):
-    """With what a log begins."""
-
-    FRESH = "fresh"
-    ANYWHERE = "anywhere"
 
 
 def check(  # noqa: PLR0913 - options of the command

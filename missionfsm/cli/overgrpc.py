@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import enum
+import re
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+from attrs import evolve, frozen
 
 from missionfsm.cli.common import BAD_INPUT, complain, stop
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.subject import Subject
+from missionfsm.kernel.system import System
+
+if TYPE_CHECKING:
+    from missionfsm.kernel.subject import Subject
 
 TokenFile = Annotated[
     str | None, typer.Option("--token", metavar="FILE", help="A file that holds the token callers have to send.")
@@ -68,33 +74,121 @@ TlsFile = Annotated[
     str | None,
     typer.Option("--tls", metavar="FILE", help="With --grpc: TLS, with that authority in PEM, or `system`."),
 ]
+MetadataEntries = Annotated[
+    list[str] | None,
+    typer.Option("--metadata", metavar="KEY:VALUE", help="With --grpc: sent with every call; repeat it."),
+]
+KeepaliveSeconds = Annotated[
+    float | None,
+    typer.Option(
+        "--keepalive",
+        metavar="SECONDS",
+        min=1,
+        max=86_400,
+        help="With --grpc: silence after which a connection is asked whether it is alive; 20 by default.",
+    ),
+]
+
+
+class Beginning(enum.Enum):
+    """With what a log, or a conversation, begins."""
+
+    FRESH = "fresh"
+    ANYWHERE = "anywhere"
+
+
 DRIVEN_SETTLE_SECONDS, SETTLE_SECONDS = 0.02, 0.2
 """Silence that is waited for where nothing else is said: of a server with the control service, and of any other."""
 
 
-def over_grpc(  # noqa: PLR0913 - options of the command
-    system: str,
-    address: str,
-    *,
-    world: str | None,
-    settle: float | None,
-    force: bool,
-    token: str | None,
-    tls: str | None,
-    timeout: float,
-) -> Subject:
-    """The server at an address as a subject; bad input ends the command. Raises SubjectError if nobody answers."""
-    needs_grpc()
-    from missionfsm.adapters.grpc.client import GrpcSubject, Target  # noqa: PLC0415 - an extra
-    from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
+@frozen
+class Wire:
+    """How a gRPC server is judged, as the options of the command say it.
 
-    if system not in SERVICES:
-        stop(f"--grpc: {' and '.join(SERVICES)} are judged so, not {system}", BAD_INPUT)
-    host, colon, port = address.rpartition(":")
+    Attributes:
+        address: ``HOST:PORT``.
+        begins: whether conversations begin with a robot that has no missions, or with whatever there is.
+        others: whether others use the robot at the same time.
+        strict: whether nothing is lost, doubled or made up on the way.
+    """
+
+    address: str
+    world: str | None
+    settle: float | None
+    force: bool
+    token: str | None
+    tls: str | None
+    metadata: list[str]
+    keepalive: float | None
+    begins: Beginning
+    others: bool
+    strict: bool
+
+    @property
+    def anywhere(self) -> bool:
+        """Whether conversations begin with whatever there is."""
+        return self.begins is Beginning.ANYWHERE
+
+    def system(self, name: str) -> System:
+        """The system as a server of it is judged; bad input ends the command."""
+        from missionfsm.app.asked import judged_system  # noqa: PLC0415 - commands load what they need
+
+        try:
+            return judged_system(name, strict=self.strict, anywhere=self.anywhere, others=self.others)
+        except UnreadableError as error:
+            stop(f"--begins, --others: {error}", BAD_INPUT)
+
+    def subject(self, system: str, timeout: float) -> Subject:
+        """The server as a subject; bad input ends the command. Raises SubjectError if nobody answers."""
+        needs_grpc()
+        from missionfsm.adapters.grpc.client import GrpcSubject, Target  # noqa: PLC0415 - an extra
+        from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
+
+        if system not in SERVICES:
+            stop(f"--grpc: {' and '.join(SERVICES)} are judged so, not {system}", BAD_INPUT)
+        target = Target(
+            target_address(self.address),
+            read_token(self.token),
+            metadata=read_metadata(self.metadata),
+            certificate=self.tls or "",
+            timeout=timeout,
+            settle=self.settle or SETTLE_SECONDS,
+        )
+        if self.keepalive is not None:
+            target = evolve(target, keepalive=self.keepalive)
+        subject = GrpcSubject(
+            system,
+            target,
+            read_world(self.world),
+            force=self.force,
+            shared=self.others,
+            anywhere=self.anywhere,
+            tell=complain,
+        )
+        if self.settle is None and subject.driven:
+            subject.settle_within(DRIVEN_SETTLE_SECONDS)
+        return subject
+
+
+def target_address(text: str) -> str:
+    """``HOST:PORT``; anything else ends the command."""
+    host, colon, port = text.rpartition(":")
     if not colon or not host or not port.isdecimal() or not 0 < int(port) <= 65535:
-        stop(f"--grpc {address}: expected HOST:PORT, such as localhost:50051", BAD_INPUT)
-    target = Target(address, read_token(token), certificate=tls or "", timeout=timeout, settle=settle or SETTLE_SECONDS)
-    subject = GrpcSubject(system, target, read_world(world), force=force, tell=complain)
-    if settle is None and subject.driven:
-        subject.settle_within(DRIVEN_SETTLE_SECONDS)
-    return subject
+        stop(f"--grpc {text}: expected HOST:PORT, such as localhost:50051", BAD_INPUT)
+    return text
+
+
+def read_metadata(entries: list[str]) -> tuple[tuple[str, str], ...]:
+    """Metadata from ``KEY:VALUE``; bad input for what gRPC does not send."""
+    found = []
+    for entry in entries:
+        key, colon, value = entry.partition(":")
+        key, value = key.strip().lower(), value.strip()
+        wrong = not colon or not _KEY.fullmatch(key) or not (value.isascii() and value.isprintable())
+        if wrong or key.endswith("-bin") or key.startswith("grpc-"):
+            stop(f"--metadata {entry}: expected KEY:VALUE in printable ASCII, such as x-site:lab-2", BAD_INPUT)
+        found.append((key, value))
+    return tuple(found)
+
+
+_KEY = re.compile("[a-z0-9_.-]+")

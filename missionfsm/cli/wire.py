@@ -24,8 +24,8 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
-from missionfsm.cli.judging import Beginning, JsonFile, Readings
-from missionfsm.cli.overgrpc import TokenFile, needs_grpc, read_token, read_world
+from missionfsm.cli.judging import JsonFile, Readings
+from missionfsm.cli.overgrpc import Beginning, TokenFile, needs_grpc, read_token, read_world
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:
@@ -62,6 +62,9 @@ def serve(  # noqa: PLR0913 - options of the command
         list[str] | None,
         typer.Option(metavar="NAME:NUMBER", help="deadline, unavailable, lost, doubled (0 to 1), ends (s); repeat it."),
     ] = None,
+    broken: Annotated[
+        str, typer.Option("--break", metavar="RULE", help="Break a rule on purpose: its id, or a name of `teeth`.")
+    ] = "",
     seed: Annotated[int, typer.Option(help="The same seed, the same faults.")] = 0,
     control: Annotated[bool, typer.Option(help="The control service, by which tests set the scene.")] = True,
     record: Annotated[
@@ -107,6 +110,7 @@ def serve(  # noqa: PLR0913 - options of the command
                 auto=auto,
                 script=cues,
                 faults=fault or (),
+                broken=broken,
                 seed=seed,
                 certificate=tls_certificate,
                 key=tls_key,

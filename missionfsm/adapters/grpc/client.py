@@ -25,8 +25,8 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.text import brief
 
-KEEPALIVE = (("grpc.keepalive_time_ms", 20_000), ("grpc.keepalive_timeout_ms", 10_000))
-"""A connection that is dead is noticed within half a minute."""
+KEEPALIVE_TIMEOUT_MS = 10_000
+"""How long a connection may leave a question unanswered whether it is alive."""
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
 MAX_ROUNDS = 100
@@ -48,6 +48,7 @@ class Target:
             ``Settle``, that says so instead.
         settle_most: seconds after which that is so even without silence.
         begin: seconds after which a stream that was not refused has begun, where the server does not say so.
+        keepalive: seconds of silence after which a connection is asked whether it is still alive.
     """
 
     address: str
@@ -58,6 +59,7 @@ class Target:
     settle: float = 0.2
     settle_most: float = 5.0
     begin: float = 1.0
+    keepalive: float = 20.0
 
     @property
     def sent(self) -> tuple[tuple[str, str], ...]:
@@ -66,10 +68,22 @@ class Target:
 
     def channel(self) -> grpc.Channel:
         """A connection. Raises OSError for a certificate that cannot be read."""
+        options = (
+            ("grpc.keepalive_time_ms", round(1000 * self.keepalive)),
+            ("grpc.keepalive_timeout_ms", KEEPALIVE_TIMEOUT_MS),
+        )
+        credentials = self.credentials()
+        if credentials is None:
+            return grpc.insecure_channel(self.address, options)
+        return grpc.secure_channel(self.address, credentials, options)
+
+    def credentials(self) -> grpc.ChannelCredentials | None:
+        """What the server's certificate is checked with; None without TLS. Raises OSError, as `channel` does."""
         if not self.certificate:
-            return grpc.insecure_channel(self.address, KEEPALIVE)
-        roots = None if self.certificate == "system" else Path(self.certificate).read_bytes()
-        return grpc.secure_channel(self.address, grpc.ssl_channel_credentials(roots), KEEPALIVE)
+            return None
+        return grpc.ssl_channel_credentials(
+            None if self.certificate == "system" else Path(self.certificate).read_bytes()
+        )
 
 
 class GrpcSubject:
@@ -80,6 +94,9 @@ class GrpcSubject:
         target: where it is.
         world: its world, as JSON, where the control service cannot change it.
         force: whether a reset may end and clear missions that this tester did not create.
+        shared: whether others use the server at the same time. Then it is never begun anew by the control service: a
+            reset ends what this tester began.
+        anywhere: whether conversations begin with whatever there is. Then a reset does not clear the list either.
         tell: takes a line for people: the server sent a field that the table does not know; once for each.
         clock, sleep: seconds that pass, and how to wait.
 
@@ -94,6 +111,8 @@ class GrpcSubject:
         world: JSON = None,
         *,
         force: bool = False,
+        shared: bool = False,
+        anywhere: bool = False,
         tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
@@ -101,7 +120,7 @@ class GrpcSubject:
         self.system = system
         self.target = target
         self.world = world or {}
-        self._force = force
+        self._force, self._shared, self._anywhere = force, shared or anywhere, anywhere
         self._tell = tell
         self._clock, self._sleep = clock, sleep
         self._methods = methods(system)
@@ -168,7 +187,7 @@ class GrpcSubject:
             "concurrent": False,
             "requests": "binary",
         }
-        if not self._control:
+        if not self._control or self._shared:
             said |= {"worlds": "fixed", "world": self.world, "reset": "soft"}
         return said
 
@@ -319,38 +338,50 @@ class GrpcSubject:
     def _asked_of_control(self, name: str, value: JSON) -> Any:  # noqa: ANN401 - JSON
         call = self._channel.unary_unary(f"/{control.SERVICE}/{name}")
         try:
-            return control.unpack(call(control.pack(value), timeout=self.target.timeout, metadata=self.target.sent))
+            answer = call(
+                control.pack(value), timeout=self.target.timeout, metadata=self.target.sent, wait_for_ready=True
+            )
+            return control.unpack(answer)
         except grpc.RpcError as error:
             raise SubjectError(f"the control service answered {name} with {_words(error)}") from None
 
     def _reset(self, world: JSON) -> None:
         self._cancel_all()
-        if self._control:
+        if self._control and not self._shared:
             self._asked_of_control("Reset", {"world": world})
         elif self.system == "bear.mission":
             self._end_missions()
         self._taken()
 
     def _end_missions(self) -> None:
-        """Cancel what is under way until nothing is, then clear the list."""
+        """Cancel what is under way until nothing is, then clear the list; of what others began only as far as allowed.
+
+        Where a conversation begins with whatever there is, missions of others are left alone, and own ones that wait
+        behind them, which nothing can end.
+        """
         for _ in range(MAX_ROUNDS):
             listed = self._listed()
-            if any(mission.get("state") not in ENDED for mission in listed):
+            active = self._active(listed)
+            if self._anywhere and not self._force and (not active or active not in self._created):
+                return
+            if not listed:
+                return
+            if not self._anywhere:
                 self._may_touch(mission.get("missionId", "") for mission in listed)
-                active = self._active(listed)
-                self._must("UpdateMission", {"missionCommand": {"missionId": active, "command": "COMMAND_CANCEL"}})
-                self._settle()
-                continue
-            if listed:
-                self._may_touch(mission.get("missionId", "") for mission in listed)
+            if not active:
                 self._must("ClearMissionStatus", {})
-            return
+                return
+            self._must("UpdateMission", {"missionCommand": {"missionId": active, "command": "COMMAND_CANCEL"}})
+            self._settle()
         raise SubjectError(f"after {MAX_ROUNDS} cancellations there are still missions that have not ended")
 
     def _listed(self) -> list[dict[str, JSON]]:
         """The missions that a new subscription shows first."""
         method = self._methods["SubscribeMissionStatus"]
-        call = self._channel.unary_stream(path(method))(b"", metadata=self.target.sent, timeout=self.target.timeout)
+        # A server that was away may be back in a moment, and what is asked of one that is away says nothing.
+        call = self._channel.unary_stream(path(method))(
+            b"", metadata=self.target.sent, timeout=self.target.timeout, wait_for_ready=True
+        )
         try:
             message = self._decoded(method, next(call))
         except (grpc.RpcError, StopIteration) as error:
@@ -361,17 +392,17 @@ class GrpcSubject:
 
     @staticmethod
     def _active(listed: Iterable[dict[str, JSON]]) -> str:
-        """The mission to cancel: the one that runs, else the first that waits."""
+        """The mission to cancel: the one that runs, else the first that waits; "" where all have ended."""
         open_ones = [one for one in listed if one.get("state") not in ENDED]
         running = [one for one in open_ones if one.get("state") in ("STATE_RUNNING", "STATE_PAUSED")]
-        return str((running or open_ones)[0].get("missionId", ""))
+        return str((running or open_ones or [{}])[0].get("missionId", ""))
 
     def _may_touch(self, missions: Iterable[str]) -> None:
         others = [mission for mission in missions if mission not in self._created]
         if others and not self._force:
             raise SubjectError(
                 f"the robot has missions that this tester did not create, such as {brief(others[0])}; --force ends and "
-                "clears them"
+                "clears them, --begins anywhere leaves them alone"
             )
 
     def _must(self, name: str, params: JSON) -> None:

@@ -66,7 +66,7 @@ def _fill(proto: descriptor_pb2.DescriptorProto, name: str) -> None:
     for group in groups:
         proto.oneof_decl.add(name=group)
     order = {group: index for index, group in enumerate(groups)}
-    optional = [field for field in MESSAGES[name] if field.label == "optional" and field.type in _SCALARS]
+    optional = [field for field in MESSAGES[name] if field.label == "optional"]
     for field in MESSAGES[name]:
         one = proto.field.add(name=field.name, number=field.number)
         one.label = _Proto.LABEL_REPEATED if field.label in ("repeated", "map") else _Proto.LABEL_OPTIONAL

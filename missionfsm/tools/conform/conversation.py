@@ -70,7 +70,8 @@ class Conversation:
         self.partner = partner
         self.system = partner.system
         self.world = world
-        self.past = None if partner.names is None else tuple(partner.names)
+        # What was named before is gone with a reset; where nothing was reset, it may still be there.
+        self.past = None if partner.names is None or self.system.spec.anywhere else tuple(partner.names)
         self.judge = self._judged(automaton)
         self.heard: list[JSON] = []
         self.actions: list[Action] = []
@@ -82,7 +83,15 @@ class Conversation:
         self._notifications(self._result("reset", {"world": world}).after)
 
     def _judged(self, automaton: Automaton) -> Judge:
-        head = Head(self.system.name, self.world, self.partner.info.drives, strict=not self.system.spec.transport)
+        spec = self.system.spec
+        head = Head(
+            self.system.name,
+            self.world,
+            self.partner.info.drives,
+            strict=not spec.transport,
+            anywhere=spec.anywhere,
+            others=spec.others,
+        )
         return Judge(self.system, head, automaton, keep=1_000_000, waits=False, past=self.past)
 
     @property

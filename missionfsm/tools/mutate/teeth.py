@@ -71,9 +71,9 @@ class Mutant:
         """The rule and how it is broken."""
         return f"{self.rule} {self.kind}"
 
-    def subject(self, system: System) -> Reference:
-        """The implementation, to be asked."""
-        return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend)
+    def subject(self, system: System, seconds: Callable[[int], float] = float) -> Reference:
+        """The implementation, to be asked; `seconds` are its timestamps, see `Reference`."""
+        return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend, seconds)
 
 
 @frozen

@@ -16,7 +16,7 @@ _UNWANTED = re.compile(r"@font-face \{.*?\}\s*|<!--.*?-->", re.DOTALL)
 _COLOURS = {
     "violates": "bold red",
     r"^  \d+\. .*": "cyan",
-    "allowed here:|against:": "bold",
+    "allowed here:|against:|as --expect-violations takes it:": "bold",
     r"\[Mission ›.*\]": "dim",
 }
 
@@ -29,7 +29,7 @@ def demo() -> str:
     ran = subprocess.run([*asked, faulty], capture_output=True, text=True, check=False)
     console = Console(record=True, width=118, file=io.StringIO(), force_terminal=True)
     console.print(Text(f"$ {COMMAND}\n", style="bold green"))
-    told = Text(ran.stdout.partition("\nreadings followed")[0])
+    told = Text(re.split(r"\n(?:flagged|readings still open|rules exercised):", ran.stdout)[0])
     for pattern, style in _COLOURS.items():
         told.highlight_regex(re.compile(pattern, re.MULTILINE), style)  # type: ignore[arg-type]
     console.print(told)

@@ -28,9 +28,11 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
 from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.explore.undriven import missed_without
 
 Lost = Mapping[str | None, frozenset[int]]
 """For each robot the ids of the calls that are never answered."""
@@ -241,8 +243,15 @@ class _Judges:
         if self._settled_after is not None and not any(judge.quiet and judge.quiet.timed for judge in judges.values()):
             message = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
             raise UnreadableError(message)
-        told = [(robot, judge, judge.verdict()) for robot, judge in judges.items()]
+        told = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
         return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]
+
+    def _completed(self, verdict: Verdict) -> Verdict:
+        """A verdict that conforms, with the refusals that could be missed for want of drives."""
+        if not verdict.conforms:
+            return verdict
+        missed = missed_without(system(self._head.system), frozenset(verdict.untested.drives))
+        return evolve(verdict, untested=evolve(verdict.untested, refusals=missed))
 
 
 def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) -> Verdict:

@@ -46,6 +46,7 @@ from missionfsm.cli.overgrpc import (
     WorldFile,
 )
 from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
+from missionfsm.cli.printing import in_github, say_annotations, say_verdict, stamped
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
@@ -77,6 +78,15 @@ NoFlagged = Annotated[
 ]
 JunitFile = Annotated[
     str | None, typer.Option("--junit", metavar="FILE", help="Write the verdict as JUnit XML; - is stdout.")
+]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Tell all readings, what would decide those that are open, rare rules.")
+]
+Github = Annotated[
+    bool | None,
+    typer.Option(
+        "--github/--no-github", help="Annotations for GitHub Actions; by default where GITHUB_ACTIONS is true."
+    ),
 ]
 KnownFile = Annotated[
     str | None,
@@ -211,6 +221,8 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     json: JsonFile = None,
     html: HtmlFile = None,
     junit: JunitFile = None,
+    github: Github = None,
+    verbose: Verbose = False,
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
@@ -302,7 +314,9 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             stop(str(error), BAD_INPUT)
         finally:
             child.close()
-    troubles = _told(verdict, json)
+    troubles = _told(verdict, json, verbose=verbose)
+    with troubles.kept():
+        _annotate(github, [(None, "", verdict)], json)
     with troubles.kept():
         write_report(html, ("", None, verdict))
     with troubles.kept():
@@ -349,14 +363,26 @@ def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, 
     return named
 
 
-def _told(found: Verdict | Exploration | Teeth | Hazards | Smoke, json: str | None) -> Troubles:
+def _told(
+    found: Verdict | Exploration | Teeth | Hazards | Smoke, json: str | None, *, verbose: bool = False
+) -> Troubles:
     """Tell what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():
-        say_shown(str(found), json=json)
+        say_verdict(found.told(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
     with troubles.kept():
-        write_json(json, found.to_json())
+        write_json(json, stamped(found.to_json()))
     return troubles
+
+
+def _annotate(wanted: bool | None, judged: list[tuple[str | None, str, Verdict]], json: str | None) -> None:
+    """Write what GitHub shows beside the files, where it is wanted: each verdict with its file and its robot."""
+    if not in_github(wanted):
+        return
+    from missionfsm.tools.check.github import workflow_commands  # noqa: PLC0415 - commands load what they need
+
+    named = ((path, robot or verdict.implementation or verdict.system, verdict) for path, robot, verdict in judged)
+    say_annotations(list(workflow_commands(named)), json=json)
 
 
 def _write_junit(path: str | None, named: list[tuple[str, Verdict]]) -> None:
@@ -437,6 +463,8 @@ def check(  # noqa: PLR0913 - options of the command
     json: JsonFile = None,
     html: HtmlFile = None,
     junit: JunitFile = None,
+    github: Github = None,
+    verbose: Verbose = False,
 ) -> None:
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
     from missionfsm.app.many import histories, judge_files  # noqa: PLC0415 - commands load what they need
@@ -474,7 +502,7 @@ def check(  # noqa: PLR0913 - options of the command
                 for robot, judged in one.verdicts:
                     reached.append((readable(one.path), robot, excused(judged, known)))
                     if told is None:
-                        say_shown(_headed(*reached[-1]), json=json)
+                        say_verdict(_headed(*reached[-1], verbose=verbose), json=json)
                 if one.trouble:  # one that cannot be read keeps none of the others from being judged
                     raise UnreadableError(one.trouble)
     if told is not None:
@@ -488,7 +516,9 @@ def check(  # noqa: PLR0913 - options of the command
         more = {"stale": list(stale)} if stale else {}
         verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
         with troubles.kept():
-            write_json(json, verdicts[0] if len(verdicts) == 1 and not many else verdicts)
+            write_json(json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
+        with troubles.kept():
+            _annotate(github, [(path, robot or "", verdict) for path, robot, verdict in reached], json)
         with troubles.kept():
             write_report(html, *reached)
         with troubles.kept():
@@ -496,9 +526,9 @@ def check(  # noqa: PLR0913 - options of the command
     troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
 
 
-def _headed(path: str, robot: str | None, verdict: Verdict) -> str:
+def _headed(path: str, robot: str | None, verdict: Verdict, *, verbose: bool) -> str:
     """The verdict with what it is about."""
-    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict}"
+    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict.told(verbose=verbose)}"
 
 
 def explore(  # noqa: PLR0913 - options of the command

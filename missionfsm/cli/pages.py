@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from missionfsm.adapters.outputs import STDOUT, write_whole
+from missionfsm.cli.printing import made
 from missionfsm.systems import system
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> 
     if path is not None:
         from missionfsm.pages.report import Judged, report  # noqa: PLC0415 - pages load what they need
 
-        _write(path, lambda: report([Judged(verdict, file, robot or "") for file, robot, verdict in judged], system))
+        judgements = [Judged(verdict, file, robot or "") for file, robot, verdict in judged]
+        _write(path, lambda: report(judgements, system, str(made())))
 
 
 def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
@@ -47,7 +49,7 @@ def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
     if path is not None:
         from missionfsm.pages.teeth import teeth_page  # noqa: PLC0415 - pages load what they need
 
-        _write(path, lambda: teeth_page(judged, found))
+        _write(path, lambda: teeth_page(judged, found, str(made())))
 
 
 def write_explorer(path: str | None, explored: System, bounds: Bounds, assumed: int) -> None:
@@ -55,4 +57,4 @@ def write_explorer(path: str | None, explored: System, bounds: Bounds, assumed: 
     if path is not None:
         from missionfsm.pages.explorer import explorer_page  # noqa: PLC0415 - pages load what they need
 
-        _write(path, lambda: explorer_page(explored, bounds, assumed))
+        _write(path, lambda: explorer_page(explored, bounds, assumed, str(made())))

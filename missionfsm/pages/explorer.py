@@ -12,11 +12,12 @@ STAND_IN = "the history"
 """Where the page puts a history into the text of a test."""
 
 
-def explorer_page(system: System, bounds: Bounds, assumed: int) -> str:
+def explorer_page(system: System, bounds: Bounds, assumed: int, made: str = "") -> str:
     """The page to click through a system with.
 
     Args:
         assumed: the readings that are possible (see `missionfsm.kernel.readings`).
+        made: when, by which version and by which command the page is made.
     """
     graph = Graph(system, bounds, assumed).data()
     steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
@@ -29,4 +30,5 @@ def explorer_page(system: System, bounds: Bounds, assumed: int) -> str:
         steps=steps,
         whole=graph["whole"],
         graph={**graph, "test": test, "standIn": STAND_IN},
+        made=made,
     )

@@ -140,11 +140,12 @@ class Chapter:
         return sum(topic.applicable for topic in self.topics)
 
 
-def report(judged: Sequence[Judged], system: Callable[[str], System]) -> str:
+def report(judged: Sequence[Judged], system: Callable[[str], System], made: str = "") -> str:
     """The page on some verdicts.
 
     Args:
         system: a system's name to the system.
+        made: when, by which version and by which command the page is made.
     """
     by_system: dict[str, list[Judged]] = {}
     for one in judged:
@@ -159,6 +160,7 @@ def report(judged: Sequence[Judged], system: Callable[[str], System]) -> str:
         chapters=chapters,
         meanings=MEANINGS,
         Standing=Standing,
+        made=made,
     )
 
 

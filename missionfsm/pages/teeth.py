@@ -42,7 +42,7 @@ class Bitten:
         return "exercised" if self.killed else "otherwise"
 
 
-def teeth_page(system: System, teeth: Teeth) -> str:
+def teeth_page(system: System, teeth: Teeth, made: str = "") -> str:
     """The page on all mutants of a system."""
     by_rule: dict[str, list[tuple[str, Bite]]] = {}
     for bite in teeth.bites:
@@ -52,7 +52,7 @@ def teeth_page(system: System, teeth: Teeth) -> str:
         if rule.id in by_rule or rule.id in teeth.untested:
             bitten = Bitten(rule, tuple(by_rule.get(rule.id, ())))
             topics.setdefault(rule.id.split("/")[1], []).append(bitten)
-    return rendered("teeth.html", teeth=teeth, spec=system.spec, topics=topics, scores=_scores(topics))
+    return rendered("teeth.html", teeth=teeth, spec=system.spec, topics=topics, scores=_scores(topics), made=made)
 
 
 def _scores(topics: Mapping[str, list[Bitten]]) -> Mapping[str, tuple[int, int]]:

@@ -2,19 +2,44 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import Transcript
 from missionfsm.tools.check.phrases import answer_words, event_words, name_words
 
+WORLD = 240
+"""How many characters of a world a story has room for."""
+
 
 def story(system: System, history: tuple[JSON, ...]) -> str:
-    """A history in numbered lines; calls and their answers share one where nothing came between."""
-    return "\n".join(f"{number:>3}. {line}" for number, line in enumerate(_told(system, history), 1))
+    """A history in numbered lines; calls and their answers share one where nothing came between.
+
+    A world that is not the usual one stands before them.
+    """
+    lines = [f"{number:>3}. {line}" for number, line in enumerate(_told(system, history), 1)]
+    unusual = _unusual(system, history[0].get("world") or {}) if history else ""
+    return "\n".join([f"  0. in the world {unusual}", *lines] if unusual else lines)
+
+
+def _unusual(system: System, world: JSON) -> str:
+    """The members of a world that are not as in the usual one, as JSON of moderate length; empty if it is that."""
+    read = system.codec.world
+    if read(world) == read(system.alphabet({}, Bounds()).worlds[0]):
+        return ""
+    differs = dict(world)
+    for name in world:
+        with contextlib.suppress(UnreadableError):  # what must be said cannot be usual
+            rest = {other: value for other, value in differs.items() if other != name}
+            differs = rest if read(rest) == read(world) else differs
+    text = json.dumps(differs, ensure_ascii=False)
+    return text if len(text) <= WORLD else f"{text[: WORLD - 1]}…"
 
 
 def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:
@@ -48,8 +73,6 @@ def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
 
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:
     """A pytest function that judges the history again."""
-    import json  # noqa: PLC0415 - text for a file, seldom needed
-
     body = "\n".join(f"    {json.dumps(line, ensure_ascii=False)!r}," for line in history)
     return (
         "from missionfsm import check\n\n"

@@ -10,8 +10,9 @@ from attrs import evolve
 from missionfsm.kernel.readings import ANYTHING, Ambiguity, clashes, constrain, meet, unflagged
 from missionfsm.kernel.rules import OK, UNIMPLEMENTED
 from missionfsm.kernel.spec import Spec
+from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, Untested
 from missionfsm.tools.check.eliminations import Ruling
-from missionfsm.tools.check.verdict import Outcome, Untested, Verdict, Violation
+from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 Rulings = Mapping[tuple[str, str], Ruling]
 """Ambiguity id and letter to the event that ruled the letter out."""
@@ -137,19 +138,20 @@ def untested(spec: Spec, answers: Answers, drives: Iterable[str], left_out: Iter
     for rule_id in left_out:
         operation = rule_id.split("/")[1]
         rules[rule_id] = f"{operation} {calls[operation]}" if operation in calls else "never came up"
-    return Untested(calls, rules, missing)
+    shown = any(OK in answers.get(name, {}) for name, operation in spec.operations.items() if operation.streaming)
+    return Untested(calls, rules, missing, (), len(spec.operations), len(spec.drives), shown)
 
 
 def _why_not(codes: Mapping[str, int]) -> str:
     """Why nothing is known of a call that was answered so; empty where something is."""
     if not codes:
-        return "was not tried"
+        return NOT_TRIED
     if codes.keys() == {UNIMPLEMENTED}:
-        return "is not there: UNIMPLEMENTED"
+        return f"{NOT_THERE}: UNIMPLEMENTED"
     if OK in codes:
         return ""
     most = ", ".join(f"{code} {times} times" if times > 1 else code for code, times in Counter(codes).most_common(3))
-    return f"never succeeded: {most}"
+    return f"{NEVER_SUCCEEDED}: {most}"
 
 
 def held_to_the_text(verdict: Verdict) -> Verdict:

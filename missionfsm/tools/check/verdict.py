@@ -9,6 +9,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import printable
+from missionfsm.tools.check.basis import Untested, readings_line
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -124,25 +125,6 @@ class Experiment:
 
 
 @frozen
-class Untested:
-    """What a judgement says nothing of.
-
-    Attributes:
-        calls: name of an operation to why nothing is known of it.
-        rules: id of a rule to why it was not put to the test.
-        drives: names of the drives that nobody commanded.
-    """
-
-    calls: Mapping[str, str] = field(factory=dict)
-    rules: Mapping[str, str] = field(factory=dict)
-    drives: tuple[str, ...] = ()
-
-    def to_json(self) -> JSON:
-        """The gaps as the command line writes them."""
-        return {"calls": dict(self.calls), "rules": dict(self.rules), "drives": list(self.drives)}
-
-
-@frozen
 class Verdict:
     """A judgement of one implementation or of one recorded history.
 
@@ -175,7 +157,7 @@ class Verdict:
     because: str = ""
     flagged: tuple[str, ...] = ()
     unchecked: tuple[str, ...] = ()
-    untested: Untested = Untested()
+    untested: Untested = field(factory=Untested)
     story: str = ""
     ruled_out: Mapping[str, Mapping[str, str]] = field(factory=dict)
     experiments: tuple[Experiment, ...] = ()
@@ -193,6 +175,8 @@ class Verdict:
         """The verdict as the command line writes it."""
         return {
             "verdict": self.outcome.value,
+            "headline": self.headline,
+            "rests_on": list(self.rests_on(all_names=True)),
             "system": self.system,
             "implementation": self.implementation,
             "seed": self.seed,
@@ -225,30 +209,93 @@ class Verdict:
             },
         }
 
+    @property
+    def headline(self) -> str:
+        """The outcome in a few words: one that conforms says whether it does so whole, and by the text."""
+        if not self.conforms:
+            return self.outcome.value
+        part = " in part" if self.untested.something else ""
+        flagged = ", flagged" if self.flagged else ""
+        return f"{self.outcome.value}{part}{flagged}"
+
+    def rests_on(self, *, all_names: bool = False) -> tuple[str, ...]:
+        """What a verdict that conforms rests on, in at most three lines: calls, readings, drives.
+
+        Args:
+            all_names: whether all calls, readings and drives are named, not only a few.
+        """
+        if not self.conforms:
+            return ()
+        lines = (
+            self.untested.calls_line(all_names=all_names),
+            readings_line(self.readings, self.flagged, all_names=all_names),
+            self.untested.drives_line(all_names=all_names),
+        )
+        return tuple(filter(None, lines))
+
     def __str__(self) -> str:
+        return self.told(verbose=True)
+
+    def told(self, *, verbose: bool = False) -> str:
+        """The verdict for people, what is worst first.
+
+        Args:
+            verbose: whether readings that are decided, what would decide the others, and rules that came up seldom are
+                told as well.
+        """
         about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
         counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
-        lines = [f"{self.outcome.value}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
+        lines = [f"{self.headline}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
+        lines += [f"  {line}" for line in self.rests_on(all_names=verbose)]
         if self.because:
             lines.append(f"  because {self.because}")
         if self.violation:
             if self.story:
                 lines += ["", self.story]
-            lines += ["", self.violation.explanation]
+            lines += ["", self.violation.explanation, *self._rule_ids()]
         lines += [f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times]
         lines += [f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale]
         lines += [f"  {note}" for note in self.notes]
-        if self.readings:
-            lines += ["", "readings followed:"]
-            lines += [f"  {name} = {self._told(name, letters)}" for name, letters in self.readings.items()]
-        lines += [f"  {one}" for one in self.flagged]
-        for experiment in self.experiments:
-            lines += ["", str(experiment)]
+        if self.flagged:
+            lines += ["", "flagged:", *(f"  {one}" for one in self.flagged)]
+        lines += self._readings(verbose=verbose)
+        if verbose:
+            for experiment in self.experiments:
+                lines += ["", str(experiment)]
         total = len(self.exercised) + len(self.uncovered)
         if total:
             lines += ["", f"rules exercised: {len(self.exercised)} of {total}"]
-        lines += self._rarely()
+        if verbose:
+            lines += self._rarely()
+        elif folded := self._folded():
+            lines.append(f"-v shows {folded}")
         return "\n".join(lines)
+
+    def _rule_ids(self) -> list[str]:
+        """The rules that are broken as a list of known violations takes them."""
+        ids = dict.fromkeys(rule.id for rule in self.violation.rules) if self.violation else {}
+        return ["  as --expect-violations takes it:", *(f"    {one}" for one in ids)] if ids else []
+
+    def _readings(self, *, verbose: bool) -> list[str]:
+        """The readings that are left: those of open questions first, the others only if they are wanted."""
+        left_open = {name: letters for name, letters in self.readings.items() if len(letters) != 1}
+        decided = {name: letters for name, letters in self.readings.items() if len(letters) == 1}
+        lines: list[str] = []
+        for title, some in (("readings still open:", left_open), ("readings followed:", decided)):
+            if some and (verbose or some is left_open):
+                lines += ["", title]
+                lines += [f"  {name} = {self._told(name, letters)}" for name, letters in some.items()]
+        return lines
+
+    def _folded(self) -> str:
+        """What is told only where it is wanted."""
+        decided = sum(len(letters) == 1 for letters in self.readings.values())
+        parts = (
+            f"what decided {decided} readings" if decided else "",
+            "what would decide the others" if self.experiments else "",
+            f"{len(self.rare)} rules that came up seldom" if self.rare else "",
+        )
+        return ", ".join(filter(None, parts))
 
     def _rarely(self) -> list[str]:
         """The rules that came up least, but for those that belong to readings that are not followed."""

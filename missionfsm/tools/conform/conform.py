@@ -5,12 +5,13 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Collection, Iterable, Mapping
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Expected, held_against
+from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.scope import flagged, held_to_the_text, unchecked, uncovered, untested
@@ -23,6 +24,7 @@ from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.shortening import shorten, shorten_evidence
 from missionfsm.tools.conform.tour import play, some, tour
+from missionfsm.tools.explore.undriven import missed_without
 
 EXAMPLES, TOURS, STEPS = 100, 60, 40
 """Conversations that are drawn, conversations before those that walk where the run has been least, and the calls and
@@ -190,7 +192,7 @@ def verdict_of(
         because,
         (*flagged(spec, followed, ledger.rulings), *ledger.oddities),
         unchecked(spec, (*used, *run.partner.info.drives)),
-        untested(spec, ledger.answers, run.partner.info.drives, left_out),
+        _untested(run, left_out),
         story(run.system, violation.history) if violation and run.found is not None else "",
         by_ambiguity(spec.ambiguities, ledger.rulings),
         tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
@@ -200,6 +202,15 @@ def verdict_of(
     )
     # A search that was stopped says nothing of what it did not come to.
     return verdict if run.enough() else held_against(verdict, known.stale)
+
+
+def _untested(run: Run, left_out: Iterable[str]) -> Untested:
+    """What the run says nothing of: calls that the adapter does not declare are not there."""
+    declared, drives = run.partner.info.methods, run.partner.info.drives
+    found = untested(run.system.spec, run.ledger.answers, drives, left_out)
+    absent = {} if declared is None else dict.fromkeys(set(found.calls) - set(declared), f"{NOT_THERE}: not declared")
+    calls = {name: absent.get(name, why) for name, why in found.calls.items()}
+    return evolve(found, calls=calls, refusals=missed_without(run.system, frozenset(found.drives)))
 
 
 def _idle(run: Run, exercised: Mapping[str, int]) -> str:

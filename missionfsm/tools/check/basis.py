@@ -1,0 +1,116 @@
+"""What a verdict rests on: what was not put to the test, and the three lines in which a person is told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from attrs import field, frozen
+
+from missionfsm.kernel.codec import JSON
+
+NAMED = 4
+"""How many calls, drives or readings a line has room for."""
+_DEPARTS = " departs "
+
+
+@frozen
+class Untested:
+    """What a judgement says nothing of.
+
+    Attributes:
+        calls: name of an operation to why nothing is known of it.
+        rules: id of a rule to why it was not put to the test.
+        drives: names of the drives that nobody commanded.
+        refusals: ids of the refusals that could be missed for want of those drives: what they do by themselves may
+            have come between, unseen.
+        operations: how many operations the system has; `all_drives`: how many drives.
+        shown: whether a stream showed what the system did meanwhile.
+    """
+
+    calls: Mapping[str, str] = field(factory=dict)
+    rules: Mapping[str, str] = field(factory=dict)
+    drives: tuple[str, ...] = ()
+    refusals: tuple[str, ...] = ()
+    operations: int = 0
+    all_drives: int = 0
+    shown: bool = False
+
+    def to_json(self) -> JSON:
+        """The gaps as the command line writes them."""
+        return {
+            "calls": dict(self.calls),
+            "rules": dict(self.rules),
+            "drives": list(self.drives),
+            "refusals": list(self.refusals),
+        }
+
+    @property
+    def something(self) -> bool:
+        """Whether a call or a drive is missing."""
+        return bool(self.calls or self.drives)
+
+    def calls_line(self, *, all_names: bool = False) -> str:
+        """What the calls of the system came to; empty for a system without any."""
+        return f"calls: {self._calls(all_names=all_names)}" if self.operations else ""
+
+    def drives_line(self, *, all_names: bool = False) -> str:
+        """What the drives of the system came to; empty for a system without any."""
+        return f"drives: {self._drives(all_names=all_names)}" if self.all_drives else ""
+
+    def _calls(self, *, all_names: bool) -> str:
+        if not self.calls:
+            return f"all {self.operations} succeeded"
+        by_reason: dict[str, list[str]] = {}
+        for name, why in self.calls.items():
+            reason, _, codes = why.partition(": ")
+            told = f"{name} ({codes})" if codes and reason != NOT_THERE else name
+            by_reason.setdefault(_SAID.get(reason, reason), []).append(told)
+        missing = (f"{why}: {_few(names, all_names=all_names)}" for why, names in by_reason.items())
+        return "; ".join((f"{self.operations - len(self.calls)} of {self.operations} succeeded", *missing))
+
+    def _drives(self, *, all_names: bool) -> str:
+        if not self.drives:
+            return f"all {self.all_drives} commanded"
+        missing = _few(self.drives, all_names=all_names)
+        told = f"{len(self.drives)} of {self.all_drives} missing ({missing}); what they do may have happened unseen"
+        if not self.refusals:
+            return told
+        count = "1 refusal" if len(self.refusals) == 1 else f"{len(self.refusals)} refusals"
+        if self.shown:
+            return f"{told}, so that {count} could be tested only where a stream showed that it had not"
+        return f"{told}, so that {count} could not be tested"
+
+
+NOT_TRIED, NOT_THERE, NEVER_SUCCEEDED = "was not tried", "is not there", "never succeeded"
+"""Why nothing is known of a call."""
+_SAID = {NOT_TRIED: "not tried", NOT_THERE: "not there"}
+
+
+def departing(flagged: Iterable[str]) -> tuple[str, ...]:
+    """The readings, as ``AM-09=b``, that lines about what is flagged name as departing from the text."""
+    return tuple(line.partition(_DEPARTS)[0] for line in flagged if _DEPARTS in line)
+
+
+def readings_line(readings: Mapping[str, tuple[str, ...]], flagged: tuple[str, ...], *, all_names: bool = False) -> str:
+    """What the readings that mattered came to, in a line."""
+    still_open = sum(len(letters) > 1 for letters in readings.values())
+    against = departing(flagged)
+    others = len(flagged) - len(against)
+    if against:
+        verb = "departs" if len(against) == 1 else "depart"
+        told = f"{len(against)} {verb} from the text ({_few(against, all_names=all_names)})"
+    else:
+        told = "none departs from the text"
+    besides = f"; {others} besides that {'is' if others == 1 else 'are'} flagged" if others else ""
+    mattered = f"{len(readings)} mattered, {still_open} of them still open" if readings else "none mattered"
+    return f"readings: {told}{besides}; {mattered}"
+
+
+def _few(names: Iterable[str], *, all_names: bool) -> str:
+    listed = list(names)
+    if all_names or len(listed) <= NAMED + 1:
+        return ", ".join(listed)
+    return f"{', '.join(listed[:NAMED])} and {len(listed) - NAMED} more"
+
+
+__all__ = ["NEVER_SUCCEEDED", "NOT_THERE", "NOT_TRIED", "Untested", "departing", "readings_line"]

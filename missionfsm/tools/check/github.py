@@ -1,0 +1,43 @@
+"""Verdicts as workflow commands of GitHub Actions, which are shown beside the lines of the files that they name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from missionfsm.kernel.text import printable
+from missionfsm.tools.check.verdict import Outcome, Verdict
+
+_DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
+_PROPERTY = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", ",": "%2C"})
+
+
+def workflow_commands(verdicts: Iterable[tuple[str | None, str, Verdict]]) -> Iterator[str]:
+    """A line for each verdict that is bad (an error), and for each reading that departs from the text (a warning).
+
+    Args:
+        verdicts: each with the file that it is about, if it is about one, and what it is about in words.
+    """
+    for path, about, verdict in verdicts:
+        line = verdict.violation.at if verdict.violation and verdict.violation.where else 1
+        title = f"{verdict.headline}: {about}"
+        if verdict.outcome is not Outcome.CONFORMS:
+            told = verdict.violation.explanation if verdict.violation else f"because {verdict.because}"
+            yield _command("error", path, line, title, told)
+        for flagged in verdict.flagged if verdict.conforms else ():
+            yield _command("warning", path, 1, title, flagged)
+
+
+def _command(kind: str, path: str | None, line: int, title: str, told: str) -> str:
+    place = {"file": path, "line": str(line)} if path else {}
+    properties = ",".join(
+        f"{name}={_clean(value).translate(_PROPERTY)}" for name, value in {**place, "title": title}.items()
+    )
+    return f"::{kind} {properties}::{_clean(told).translate(_DATA)}"
+
+
+def _clean(text: str) -> str:
+    """The text without what a terminal would obey; its lines stay apart."""
+    return "\n".join(map(printable, text.split("\n")))
+
+
+__all__ = ["workflow_commands"]

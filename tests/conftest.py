@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, settings
 from missionfsm.cli import main
 
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("long", settings.get_profile("untimed"), max_examples=2_000)  # --hypothesis-profile long
 settings.load_profile("untimed")
 
 

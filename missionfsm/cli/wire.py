@@ -25,12 +25,14 @@ from missionfsm.cli.common import (
     write_json,
 )
 from missionfsm.cli.judging import JsonFile, Readings
-from missionfsm.cli.overgrpc import Beginning, TokenFile, needs_grpc, read_token, read_world
+from missionfsm.cli.overgrpc import Beginning, TokenFile, needs_grpc, read_token, read_world, target_address
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.adapters.grpc.proxy import Proxy
 
+Certificate = Annotated[str, typer.Option(metavar="FILE", help="For TLS at the own port, in PEM.")]
+Key = Annotated[str, typer.Option(metavar="FILE", help="For TLS at the own port, in PEM.")]
 SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="bear.mission or bear.status.")]
 
 
@@ -70,8 +72,8 @@ def serve(  # noqa: PLR0913 - options of the command
     record: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the history, a line at a time; check judges it.")
     ] = None,
-    tls_certificate: Annotated[str, typer.Option(metavar="FILE", help="For TLS, in PEM.")] = "",
-    tls_key: Annotated[str, typer.Option(metavar="FILE", help="For TLS, in PEM.")] = "",
+    tls_certificate: Certificate = "",
+    tls_key: Key = "",
     token: TokenFile = None,
 ) -> None:
     """Serve the reference as a real robot, or a fleet, to develop against, until interrupted.
@@ -86,8 +88,7 @@ def serve(  # noqa: PLR0913 - options of the command
     from missionfsm.app.serve import serve as serving  # noqa: PLC0415
 
     served = the_system(system)
-    if bool(tls_certificate) != bool(tls_key):
-        stop("--tls-certificate and --tls-key: one does not go without the other", BAD_INPUT)
+    _both_or_neither(tls_certificate, tls_key)
     refuse_outputs({"--record": record}, (world, script, token))
     the_world, the_token = read_world(world), read_token(token)
     cues: tuple[Cue, ...] = ()
@@ -125,6 +126,11 @@ def serve(  # noqa: PLR0913 - options of the command
     raise typer.Exit(DONE)
 
 
+def _both_or_neither(certificate: str, key: str) -> None:
+    if bool(certificate) != bool(key):
+        stop("--tls-certificate and --tls-key: one does not go without the other", BAD_INPUT)
+
+
 @contextlib.contextmanager
 def _noting(record: str | None) -> Iterator[Callable[[JSON], None]]:
     """What writes a line of the history to the file, if there is one."""
@@ -152,6 +158,8 @@ def proxy(  # noqa: PLR0913 - options of the command
     tls: Annotated[
         str, typer.Option(metavar="FILE", help="The robot has TLS: its authority in PEM, or system for the machine's.")
     ] = "",
+    tls_certificate: Certificate = "",
+    tls_key: Key = "",
     begins: Annotated[
         Beginning, typer.Option(help="Whether the robot has done nothing yet, or is in use already.")
     ] = Beginning.FRESH,
@@ -175,12 +183,14 @@ def proxy(  # noqa: PLR0913 - options of the command
 
     from missionfsm.adapters.grpc.client import Target  # noqa: PLC0415
     from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
-    from missionfsm.adapters.grpc.proxy import Proxy  # noqa: PLC0415
+    from missionfsm.adapters.grpc.proxy import Proxy, read_line  # noqa: PLC0415
+    from missionfsm.adapters.grpc.server import Security  # noqa: PLC0415
     from missionfsm.app.asked import judged_system  # noqa: PLC0415
     from missionfsm.app.recorder import Recorder  # noqa: PLC0415
 
     if system not in SERVICES:
         stop(f"{system}: there is a proxy for {' and '.join(SERVICES)}", BAD_INPUT)
+    _both_or_neither(tls_certificate, tls_key)
     refuse_outputs({"--record": record, "--json": json, "--html": html}, (world,))
     head: dict[str, JSON] = {"missionfsm": 1, "system": system, "world": read_world(world), "drives": []}
     if begins is Beginning.ANYWHERE:
@@ -189,8 +199,11 @@ def proxy(  # noqa: PLR0913 - options of the command
         head["others"] = True
     with _bad_input():
         judged_system(system, strict=False, anywhere=begins is Beginning.ANYWHERE, others=others)
-        recorder = Recorder(head, file=record or "", readings=choice(reading), html=html or "", tell=complain)
-        relay = Proxy(system, Target(grpc, certificate=tls), recorder.record)
+        recorder = Recorder(
+            head, file=record or "", read=read_line, readings=choice(reading), html=html or "", tell=complain
+        )
+        security = Security(tls_certificate, tls_key)
+        relay = Proxy(system, Target(target_address(grpc), certificate=tls), recorder.record, security=security)
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(_relayed(relay, host, listen, f"to {grpc}; Ctrl-C ends it"))
         judged = recorder.close()

@@ -2,26 +2,30 @@
 
     pytest -o addopts= tests/bench/test_bench_grpc.py -s
 
-Clients and servers share one process, and so its one interpreter at a time: only the ratios say something.
+But for the proxy, clients and servers share one process, and so its one interpreter at a time: only ratios say
+something.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import re
+import signal
 import statistics
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import grpc
 import pytest
 from grpc import aio
 
-from missionfsm.adapters.grpc.client import Target
 from missionfsm.adapters.grpc.descriptors import encode, methods, path
-from missionfsm.adapters.grpc.proxy import Proxy
 from missionfsm.app.serve import serve
 
 CALLS = 2_000
@@ -93,13 +97,12 @@ def echoing() -> Iterator[tuple[str, Callable[[bytes], Awaitable[None]], Loop]]:
 
 
 @contextlib.contextmanager
-def relayed(upstream: str) -> Iterator[str]:
-    """A proxy before a server: where it is."""
-    loop, proxy = Loop(), Proxy("bear.mission", Target(upstream), lambda _: None)
-    loop.run(proxy.start("127.0.0.1", 0))
-    yield f"127.0.0.1:{proxy.port}"
-    loop.run(proxy.stop(0))
-    loop.close()
+def process(*arguments: str) -> Iterator[int]:
+    """A Python process that prints its port, after a colon or alone, in its first line; interrupted at the end."""
+    with subprocess.Popen([sys.executable, *arguments], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        yield int(re.findall(r"\d+", child.stdout.readline().split(",")[0])[-1])
+        child.send_signal(signal.SIGINT)
 
 
 def calls_a_second(target: str, name: str, request: bytes) -> tuple[float, float]:
@@ -134,16 +137,25 @@ def messages_a_second(target: str, name: str, subscribers: int, cause: Callable[
 
 
 def test_unary_calls_beside_an_echo() -> None:
-    """Calls a second to the robot, and through the proxy, against those to the echo server."""
+    """Calls a second to the robot against those to the echo server."""
     request = encode(METHODS["CreateMission"].request, GOAL)
     with echoing() as (echo, _, _):
-        bare, bare_ms = calls_a_second(echo, "/bench.Echo/Call", request)
-        with relayed(echo) as proxy:
-            _, proxied_ms = calls_a_second(proxy, path(METHODS["CreateMission"]), request)
+        bare, _ = calls_a_second(echo, "/bench.Echo/Call", request)
     with serve("bear.mission") as robot:
         robot_calls, _ = calls_a_second(robot.target, path(METHODS["CreateMission"]), request)
     print(f"\nunary: echo {bare:,.0f}/s, robot {robot_calls:,.0f}/s: {robot_calls / bare:.2f} of it")
-    print(f"proxy: {proxied_ms - bare_ms:.2f} ms added to {bare_ms:.2f} ms (medians)")
+
+
+def test_what_a_proxy_adds(tmp_path: Path) -> None:
+    """Milliseconds that the proxy adds while it records and judges; server, proxy and client have a process each."""
+    name, request = path(METHODS["CreateMission"]), encode(METHODS["CreateMission"].request, GOAL)
+    with process(str(Path(__file__).with_name("echo.py"))) as echo:
+        options = ("--grpc", f"127.0.0.1:{echo}", "--listen", "0", "--record", str(tmp_path / "day.jsonl"))
+        with process("-m", "missionfsm", "proxy", "bear.mission", *options) as proxy:
+            for _ in range(3):
+                _, bare = calls_a_second(f"127.0.0.1:{echo}", name, request)
+                _, proxied = calls_a_second(f"127.0.0.1:{proxy}", name, request)
+                print(f"\nproxy: {proxied - bare:.2f} ms added to {bare:.2f} ms (medians)", end="")
 
 
 @pytest.mark.parametrize("subscribers", [1, 8, 200])

@@ -16,7 +16,9 @@ import pytest
 
 from missionfsm.adapters.grpc.client import Target
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
-from missionfsm.adapters.grpc.proxy import Proxy
+from missionfsm.adapters.grpc.proxy import Proxy, read_line
+from missionfsm.adapters.grpc.server import Security
+from missionfsm.app.asked import judged_system
 from missionfsm.app.recorded import check_file
 from missionfsm.app.recorder import Recorder
 from missionfsm.app.serve import Served, serve
@@ -35,13 +37,19 @@ METHODS = methods("bear.mission")
 class Relay:
     """A proxy that runs in a loop of its own."""
 
-    def __init__(self, target: str, record: Any) -> None:
+    def __init__(self, target: str, record: Any, tls: tuple[str, str] | None = None) -> None:
         self.loop = asyncio.new_event_loop()
         self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
         self.thread.start()
-        self.proxy = Proxy("bear.mission", Target(target), record)
+        certificate, key = tls or ("", "")
+        self.proxy = Proxy(
+            "bear.mission",
+            Target(target, certificate=certificate),
+            lambda line: record(read_line(line)),
+            security=Security(certificate, key),
+        )
         asyncio.run_coroutine_threadsafe(self.proxy.start("127.0.0.1", 0), self.loop).result(WAIT)
-        self.channel = grpc.insecure_channel(f"127.0.0.1:{self.proxy.port}")
+        self.channel = Target(f"localhost:{self.proxy.port}", certificate=certificate).channel()
 
     def call(self, name: str, request: JSON = None, **options: Any) -> JSON:
         method = METHODS[name]
@@ -145,6 +153,71 @@ def test_metadata_passes_but_is_not_recorded() -> None:
         assert relay.call("ChargeRobot", metadata=(("authorization", "Bearer sesame"),))["missionId"]
         relay.close()
     assert "sesame" not in json.dumps(lines)
+
+
+def test_both_sides_may_have_tls(tls: tuple[str, str], lines: list[JSON]) -> None:
+    """The robot is reached over TLS, and clients reach the proxy so; both are recorded as without."""
+    certificate, key = tls
+    with serve("bear.mission", certificate=certificate, key=key) as robot:
+        relay = Relay(f"localhost:{robot.port}", lines.append, tls)
+        mission = relay.call("CreateMission", NAVIGATE)["missionId"]
+        bare = grpc.insecure_channel(f"localhost:{relay.proxy.port}")
+        with pytest.raises(grpc.RpcError) as refused:
+            bare.unary_unary(path(METHODS["ChargeRobot"]))(b"", timeout=WAIT)
+        assert refused.value.code() is grpc.StatusCode.UNAVAILABLE
+        bare.close()
+        relay.close()
+    assert without_times(lines)[-1] == {"return": 1, "result": {"missionId": mission}}
+
+
+def test_a_token_that_expires_is_refused_by_the_robot(lines: list[JSON]) -> None:
+    """Calls and subscriptions with a token that is good no more are UNAUTHENTICATED, and the record conforms."""
+    with serve("bear.mission", token="new") as robot:  # noqa: S106 - it is nobody's
+        relay = Relay(robot.target, lines.append)
+        old, new = ((("authorization", f"Bearer {token}"),) for token in ("old", "new"))
+        assert relay.call("CreateMission", NAVIGATE, metadata=new)["missionId"]
+        for name in ("AppendMission", "SubscribeMissionStatus"):
+            with pytest.raises(grpc.RpcError) as refused:
+                next(relay.channel.unary_stream(path(METHODS[name]))(b"", timeout=WAIT, metadata=old))
+            assert refused.value.code() is grpc.StatusCode.UNAUTHENTICATED
+        relay.close()
+    verdict = check(judged_system("bear.mission", strict=False), head(HEAD), without_times(lines))
+    assert verdict.violation is None, str(verdict)
+
+
+def test_a_call_that_is_cancelled_stays_without_an_answer(lines: list[JSON]) -> None:
+    """A client that gives up its call cancels it at the robot; the history has the call and no answer."""
+    slow = Slow()
+    relay = Relay(f"127.0.0.1:{slow.port}", lines.append)
+    call = relay.channel.unary_unary(path(METHODS["CreateMission"])).future(b"", timeout=WAIT)
+    assert slow.asked.wait(WAIT)
+    call.cancel()
+    assert slow.cancelled.wait(WAIT)
+    relay.close()
+    slow.stop()
+    assert [line.get("call") for line in lines] == [1]
+
+
+class Slow:
+    """A robot that answers CreateMission never."""
+
+    def __init__(self) -> None:
+        self.asked, self.cancelled = threading.Event(), threading.Event()
+        self._server = grpc.server(concurrent.futures.ThreadPoolExecutor(2))
+        service, name = path(METHODS["CreateMission"]).split("/")[1:]
+        handlers = {name: grpc.unary_unary_rpc_method_handler(self._wait)}
+        self._server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(service, handlers),))
+        self.port = self._server.add_insecure_port("127.0.0.1:0")
+        self._server.start()
+
+    def _wait(self, _: bytes, context: Any) -> bytes:
+        context.add_callback(self.cancelled.set)
+        self.asked.set()
+        self.cancelled.wait(WAIT)
+        return b""
+
+    def stop(self) -> None:
+        self._server.stop(0).wait()
 
 
 def test_a_deadline_of_the_client_reaches_the_robot(relay: Relay, lines: list[JSON]) -> None:

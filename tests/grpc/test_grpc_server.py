@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import concurrent.futures
 import queue
-import shutil
-import subprocess
 import threading
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import grpc
@@ -328,15 +325,11 @@ def test_the_fixture_of_the_plugin_serves_until_the_test_ends(missionfsm_serve: 
     assert missionfsm.serve is serve
 
 
-@pytest.mark.skipif(shutil.which("openssl") is None, reason="a certificate is made with openssl")
-def test_tls_is_spoken_with_a_certificate(tmp_path: Path) -> None:
+def test_tls_is_spoken_with_a_certificate(tls: tuple[str, str]) -> None:
     """With a certificate a client that trusts it is served, the subject of conform as well; one without TLS is not."""
-    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
-    made = "req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=localhost -addext subjectAltName=DNS:localhost"
-    command = ["openssl", *made.split(), "-keyout", str(key), "-out", str(certificate)]
-    subprocess.run(command, check=True, capture_output=True, timeout=60)
-    with serve("bear.mission", certificate=str(certificate), key=str(key), token="sesame") as robot:  # noqa: S106 - nobody's
-        target = Target(f"localhost:{robot.port}", "sesame", certificate=str(certificate), timeout=WAIT)
+    certificate, key = tls
+    with serve("bear.mission", certificate=certificate, key=key, token="sesame") as robot:  # noqa: S106 - nobody's
+        target = Target(f"localhost:{robot.port}", "sesame", certificate=certificate, timeout=WAIT)
         subject = GrpcSubject("bear.mission", target)
         assert subject.exchange("CreateMission", NAVIGATE).error is None
         subject.close()

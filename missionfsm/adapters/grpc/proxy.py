@@ -1,7 +1,8 @@
 """A proxy between a client and a robot: passes on everything as it is, and tells what it saw.
 
 Bytes, metadata, trailers, deadlines and cancellations go through unchanged, unknown calls and fields as well. What is
-seen is handed to a recorder, which only puts it into a queue: whatever becomes of it there, traffic goes on.
+seen is handed to a recorder as bytes, which only puts it into a queue: whatever becomes of it there, and however long
+it takes to read it, traffic goes on.
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ from collections.abc import AsyncIterator, Callable
 from typing import Any
 
 import grpc
+from attrs import frozen
 from grpc import aio
 
 from missionfsm.adapters.grpc.client import Target
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, methods, path
+from missionfsm.adapters.grpc.server import Security
 from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON
 
 Record = Callable[[JSON], None]
+"""Takes a line of a history, with what was said in it as `Said`."""
 HOP_BY_HOP = frozenset(("user-agent", "te", "content-type", "grpc-timeout", "grpc-accept-encoding", "grpc-encoding"))
 """Metadata that the proxy's own connection has."""
 UNLIMITED = (("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1))
@@ -35,17 +39,51 @@ def _passed(metadata: Any) -> tuple[tuple[str, str | bytes], ...]:  # noqa: ANN4
     return tuple((key, value) for key, value in metadata or () if key not in HOP_BY_HOP)
 
 
+@frozen
+class Said:
+    """A message as it was on the wire.
+
+    Attributes:
+        message: its name in the table of the wire.
+    """
+
+    message: str
+    data: bytes
+
+    def read(self) -> JSON:
+        """Its protobuf JSON; of bytes that are no message a text that says so."""
+        try:
+            return decode(self.message, self.data)
+        except NotOnTheWireError as error:
+            return f"(malformed: {error})"
+
+
+def read_line(line: dict[str, JSON]) -> dict[str, JSON]:
+    """A line of a history as the format has it: what was said in it is read."""
+    return {key: value.read() if isinstance(value, Said) else value for key, value in line.items()}
+
+
 class Proxy:
     """A gRPC server that passes every call on.
 
     Args:
         system: which calls are recorded: those of ``bear.mission`` or ``bear.status``.
         upstream: the robot.
-        record: takes the lines of the history as they are seen; must not block.
+        record: takes the lines of the history as they are seen, see `read_line`; must not block.
+        security: TLS at its own port; tokens are the robot's business.
         clock: seconds, for the lines' ``at``.
     """
 
-    def __init__(self, system: str, upstream: Target, record: Record, clock: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self,
+        system: str,
+        upstream: Target,
+        record: Record,
+        *,
+        security: Security = Security(),  # noqa: B008 - a frozen value
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        self._security = security
         self._methods = {path(one): one for one in methods(system).values()}
         self._upstream = upstream
         self._record = record
@@ -57,18 +95,19 @@ class Proxy:
         self.port = 0
 
     async def start(self, host: str, port: int) -> None:
-        """Listen. Raises OSError where that is impossible."""
+        """Listen. Raises OSError where that is impossible, or a file of TLS cannot be read."""
         target = self._upstream
-        if target.certificate:
-            roots = None if target.certificate == "system" else _bytes(target.certificate)
-            self._channel = aio.secure_channel(target.address, grpc.ssl_channel_credentials(roots), UNLIMITED)
-        else:
+        upstream, own = target.credentials(), self._security.credentials()
+        if upstream is None:
             self._channel = aio.insecure_channel(target.address, UNLIMITED)
+        else:
+            self._channel = aio.secure_channel(target.address, upstream, UNLIMITED)
         self._server = aio.server(options=(*UNLIMITED, ("grpc.so_reuseport", 0)))
         self._server.add_generic_rpc_handlers((_Handlers(self),))
         where = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
         try:
-            self.port = self._server.add_insecure_port(where)
+            add = self._server.add_insecure_port
+            self.port = add(where) if own is None else self._server.add_secure_port(where, own)
         except RuntimeError as error:
             raise OSError(f"{where}: {str(error).splitlines()[0]}") from None
         await self._server.start()
@@ -86,13 +125,27 @@ class Proxy:
     # Passing on.
 
     def handler(self, name: str) -> grpc.RpcMethodHandler:
-        """How a call is passed on: any kind of call is a stream of requests and one of responses on the wire."""
+        """How a call is passed on.
 
-        async def pass_on(requests: AsyncIterator[bytes], context: Context) -> AsyncIterator[bytes]:
+        A call that nobody knows is a stream of requests and one of responses, as any call is on the wire. One that is
+        known is passed on as what it is, which takes a fraction of the time.
+        """
+        method = self._methods.get(name)
+        if method is not None and not method.streams:
+            assert self._channel is not None  # noqa: S101 - it is asked only once it listens
+            return grpc.unary_unary_rpc_method_handler(_Unary(self, method, self._channel.unary_unary(name)).answer)
+
+        async def pass_one(request: bytes, context: Context) -> AsyncIterator[bytes]:
+            async for one in self._passed_on(name, _only(request), context):
+                yield one
+
+        async def pass_all(requests: AsyncIterator[bytes], context: Context) -> AsyncIterator[bytes]:
             async for one in self._passed_on(name, requests, context):
                 yield one
 
-        return grpc.stream_stream_rpc_method_handler(pass_on)
+        if method is not None:
+            return grpc.unary_stream_rpc_method_handler(pass_one)
+        return grpc.stream_stream_rpc_method_handler(pass_all)
 
     async def _passed_on(self, name: str, requests: AsyncIterator[bytes], context: Context) -> AsyncIterator[bytes]:
         seen = _Seen(self, self._methods.get(name))
@@ -111,9 +164,9 @@ class Proxy:
             seen.gone()
             raise
         except aio.AioRpcError as error:
-            await self._ended(call, seen, context, error)
+            await _ended(call, seen, context, error)
             return
-        await self._ended(call, seen, context, None)
+        await _ended(call, seen, context, None)
 
     async def _called(self, name: str, requests: AsyncIterator[bytes], context: Context, seen: _Seen) -> Any:  # noqa: ANN401
         """The call to the robot.
@@ -145,16 +198,52 @@ class Proxy:
 
         return self._channel.stream_stream(name)(all_requests(), **options)
 
-    @staticmethod
-    async def _ended(call: Any, seen: _Seen, context: Context, error: aio.AioRpcError | None) -> None:  # noqa: ANN401
-        code = await call.code() if error is None else error.code()
-        details = (await call.details() if error is None else error.details()) or ""
-        trailing = await call.trailing_metadata() if error is None else error.trailing_metadata()
-        context.set_trailing_metadata(_passed(trailing))
-        seen.ended(code, details)
-        if code is not grpc.StatusCode.OK:
-            with contextlib.suppress(aio.AbortError):
-                await context.abort(code, details)
+
+async def _only(request: bytes) -> AsyncIterator[bytes]:
+    yield request
+
+
+async def _ended(call: Any, seen: _Seen, context: Context, error: aio.AioRpcError | None) -> None:  # noqa: ANN401
+    code = await call.code() if error is None else error.code()
+    details = (await call.details() if error is None else error.details()) or ""
+    trailing = await call.trailing_metadata() if error is None else error.trailing_metadata()
+    context.set_trailing_metadata(_passed(trailing))
+    seen.ended(code, details)
+    if code is not grpc.StatusCode.OK:
+        with contextlib.suppress(aio.AbortError):
+            await context.abort(code, details)
+
+
+@frozen
+class _Unary:
+    """Passes on the calls of a method that has one answer."""
+
+    proxy: Proxy
+    method: Method
+    ask: Any
+
+    async def answer(self, request: bytes, context: Context) -> bytes:
+        """The robot's answer, or its refusal."""
+        seen = _Seen(self.proxy, self.method)
+        metadata = _passed(context.invocation_metadata())
+        seen.request(request)
+        call = self.ask(request, timeout=context.time_remaining(), metadata=aio.Metadata(*metadata))
+        try:
+            response: bytes = await call
+        except aio.AioRpcError as error:
+            initial = _passed(error.initial_metadata())
+            if initial:
+                await context.send_initial_metadata(initial)
+            await _ended(call, seen, context, error)
+            return b""  # which is not sent: the call has ended
+        seen.response(response)
+        initial = _passed(await call.initial_metadata())
+        if initial:
+            await context.send_initial_metadata(initial)
+        trailing = _passed(await call.trailing_metadata())
+        if trailing:
+            context.set_trailing_metadata(trailing)
+        return response
 
 
 class _Handlers(grpc.GenericRpcHandler):
@@ -218,18 +307,9 @@ class _Seen:
             self._note({"call": call, "method": "cancel", "params": {"stream": self._stream}})
             self._note({"return": call, "result": {}})
 
-    def _read(self, data: bytes, *, request: bool) -> JSON:
+    def _read(self, data: bytes, *, request: bool) -> Said:
         assert self._method is not None  # noqa: S101 - the callers have looked
-        try:
-            return decode(self._method.request if request else self._method.response, data)
-        except NotOnTheWireError as error:
-            return f"(malformed: {error})"
+        return Said(self._method.request if request else self._method.response, data)
 
     def _note(self, line: dict[str, JSON]) -> None:
         self._proxy._note(line)  # noqa: SLF001 - as above
-
-
-def _bytes(file: str) -> bytes:
-    from pathlib import Path  # noqa: PLC0415 - few need it
-
-    return Path(file).read_bytes()

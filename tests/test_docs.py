@@ -38,8 +38,10 @@ def blocks(kind: str) -> list[tuple[str, str]]:
 
 def anchors(path: Path) -> set[str]:
     """The anchors of a page, as the usual hosts make them."""
-    headings = re.findall(r"^#+ (.*)$", path.read_text(), re.MULTILINE)
-    return {"#" + re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    text = path.read_text()
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    named = {f"#{name}" for name in re.findall(r'<a (?:id|name)="([^"]+)"', text)}
+    return named | {"#" + re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def test_there_are_pages() -> None:
@@ -55,7 +57,10 @@ def test_computed_parts_are_computed(page: Path) -> None:
     assert page.read_text() == regenerate(page.read_text()), "run python tests/test_docs.py"
 
 
-@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=named)
+EVERY_PAGE = [*PAGES, *ROOT.glob("*.md"), *(ROOT / "specs").glob("*.md"), *(ROOT / "examples").rglob("*.md")]
+
+
+@pytest.mark.parametrize("page", sorted(EVERY_PAGE), ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_hold(page: Path) -> None:
     """Every link to a file of the project, and to a heading of a page, leads somewhere."""
     broken = []

@@ -355,8 +355,9 @@ class Spec:
         decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
             is not. It speaks for `outcomes`: whoever replaces those drops it.
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
-        foresees: (state, its names, content, names of the content) to whether the state may come to be shown as the
-            content, by whatever steps; None where nothing is known of that. Names are numbers; one below -1 was not
+        foresees: (state, its names, content, names of the content, operations) to whether the state may come to be
+            shown as the content, by calls of those operations and whatever steps else; None where nothing is known of
+            that. Names are numbers; one below -1 was not
             seen yet and may be any. It has to be true wherever it is possible: it only saves a search the trouble.
         abstraction: how a search and an exploration look at its states.
         waived: what its documents say and no rule checks.
@@ -398,7 +399,7 @@ class Spec:
     recalls: bool = False
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
-    foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...]], bool] | None = None
+    foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...], frozenset[str]], bool] | None = None
     abstraction: Abstraction = Abstraction()
     parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()

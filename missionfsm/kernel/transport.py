@@ -20,7 +20,7 @@ from missionfsm.kernel.rules import (
     UNAVAILABLE,
     UNKNOWN,
 )
-from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.spec import Failure, Spec
 
 
 def _reading(number: int, question: str, happened: str) -> Ambiguity:
@@ -59,6 +59,10 @@ MADE_BY_CLIENTS = frozenset(
     }
 )
 """The statuses that any gRPC client or gateway makes by itself, on every call."""
+MADE_UP = Failure((TR_04["b"],), open_ended=True)
+"""An answer with such a status, which leaves open what becomes of the call."""
+REDELIVERED = "redelivered"
+"""The relation of a message to the one before that it is, number, timestamp and content."""
 ENDS = frozenset({OK, DEADLINE_EXCEEDED})
 """How a transport ends a stream that has lasted long enough."""
 
@@ -75,4 +79,4 @@ def over_transport(spec: Spec) -> Spec:
     )
 
 
-__all__ = ["ENDS", "MADE_BY_CLIENTS", "TRANSPORT", "over_transport"]
+__all__ = ["ENDS", "MADE_BY_CLIENTS", "MADE_UP", "REDELIVERED", "TRANSPORT", "over_transport"]

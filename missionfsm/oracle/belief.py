@@ -29,8 +29,8 @@ from missionfsm.kernel.history import (
 from missionfsm.kernel.readings import ANYTHING
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Explanation, rename
-from missionfsm.oracle.lenient import REDELIVERED
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import BUDGET, Moves, Sighting
 from missionfsm.oracle.transition import Oracle

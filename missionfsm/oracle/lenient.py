@@ -9,14 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Failure, Spec
+from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.transport import ENDS, MADE_BY_CLIENTS, TR_01, TR_02, TR_03, TR_04, TR_05
 from missionfsm.oracle.explanation import Channel, Explanation, Owed, tidy
 from missionfsm.oracle.successors import Moves, Sighting
 
-REDELIVERED = "redelivered"
-"""The relation of a message to the one before that it is, number, timestamp and content."""
 LOSES = TR_03["b"]
 """That messages are lost."""
 _RENEWED = frozenset({"zero", "first"})
@@ -31,18 +28,6 @@ def ends(code: str) -> tuple[Assumption, ...] | None:
     if code in ENDS:
         return (TR_01["b"],)
     return (TR_04["b"],) if code in MADE_BY_CLIENTS else None
-
-
-def failure(code: str) -> Failure | None:
-    """The failure that a client or a gateway makes up, which leaves open what becomes of the call; None if neither."""
-    if code == OK or code not in MADE_BY_CLIENTS:
-        return None
-    return Failure((TR_04["b"],), open_ended=True)
-
-
-def makes_up(explanation: Explanation) -> bool:
-    """Whether a client or a gateway has made up the status of an answer before."""
-    return not meet(explanation.assumed, (TR_04["a"],))
 
 
 def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Sighting]:
@@ -84,4 +69,4 @@ def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:
     return LOSES if channel.last else otherwise
 
 
-__all__ = ["LOSES", "REDELIVERED", "ends", "failure", "given_up", "redelivered", "restarted", "skips"]
+__all__ = ["LOSES", "ends", "given_up", "redelivered", "restarted", "skips"]

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 import bisect
 import operator
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from typing import Any
 
-from missionfsm.kernel.history import Answer, Cancelled, Ended, Received, Returned, Settled
+from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 
-NEXT = 4
+NEXT = 12
 """How many of the messages that a stream shows next are compared with what it owes."""
 
 Symbol = tuple[Any, ...]
@@ -39,6 +40,8 @@ class Lookahead:
         spec: the system.
         symbols: the events.
         horizon: how many of them may be known beforehand.
+        calls: the operations of all calls that may take effect.
+        beyond: the positions of those that the system does not explain; what follows says nothing of what is before.
         latest: what each channel showed last before the window.
         last: whether nothing comes after the horizon.
 
@@ -46,17 +49,22 @@ class Lookahead:
         at: how many of them have been observed.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all but the first four have a default
         self,
         spec: Spec,
         symbols: Sequence[Symbol],
         horizon: int,
         latest: Mapping[int, Message],
         *,
+        calls: frozenset[str] = frozenset(),
+        beyond: Collection[int] = (),
         last: bool = False,
     ) -> None:
         self.spec = spec
         self._last = last
+        self._calls = calls
+        self._horizon = horizon
+        self._beyond = sorted(beyond)
         self.at = 0
         self.answers: dict[int, tuple[Answer, Names]] = {}
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
@@ -64,29 +72,42 @@ class Lookahead:
         self._latest = latest
         self._passed: dict[Any, Narrowed | None] = {}
         self._shows: dict[Any, bool] = {}
-        ended: set[int] = set()
+        self._ended: dict[int, int] = {}
+        called: dict[int, int] = {}
         for position, (kind, *what) in enumerate(symbols[:horizon]):
-            if kind is Returned:
+            if kind is Called:
+                called[what[-1]] = position
+            elif kind is Returned:
                 answer, names, call = what
-                if call > GONE:
+                if call > GONE and position not in beyond:
                     self.answers[call] = answer, names
             elif kind is Received:
-                content, names, _, channel = what
-                if channel > GONE and channel not in ended:
+                content, names, relations, channel = what
+                if channel > GONE and channel not in self._ended and REDELIVERED not in relations:
                     positions, messages = self._messages.setdefault(channel, ([], []))
                     positions.append(position)
                     messages.append((content, names))
             elif kind is Settled:
                 self._settled.append(position)
             elif kind in (Cancelled, Ended):
-                ended.add(what[-1])
-                # What is still owed to it then is never shown, and nobody minds.
-                self._messages.pop(what[-1], None)
-        self._ended = ended
+                self._ended.setdefault(what[-1], position)
+        opened = ((call, channel) for call, (_, names) in self.answers.items() for channel in names)
+        first = ((*self._messages[channel], call) for call, channel in opened if channel in self._messages)
+        # Of streams that are opened: when the call was sent, what it is, and when which message came first.
+        self._openings = sorted(
+            ((at, called.get(call, -1), call, message) for (at, *_), (message, *_), call in first),
+            key=operator.itemgetter(0),
+        )
 
     def answer(self, call: int) -> tuple[Answer, Names] | None:
         """What a call in flight comes back with, and with which names; None where it is not known."""
         return self.answers.get(call)
+
+    def lag(self, channel: Channel) -> int:
+        """How many messages that last a channel owes besides those that it is known to show."""
+        positions, _ = self._messages.get(channel.name, _NO_MESSAGES)
+        due = len(positions) - bisect.bisect_left(positions, self.at)
+        return sum(not one.passing for one in channel.owed) - due
 
     def narrowed(self, explanation: Explanation) -> Explanation | None:
         """The explanation without what is known never to be shown; None where it cannot lead to what is.
@@ -95,6 +116,8 @@ class Lookahead:
         """
         if not (self._messages or self._settled or self._last):
             return explanation
+        if self._openings and not self._leads_to_openings(explanation):
+            return None
         channels = explanation.channels
         known = [one.name for one in channels if one.name > GONE]
         if len(known) > 1 and len(set(known)) < len(known):
@@ -103,7 +126,7 @@ class Lookahead:
         assumed = explanation.assumed
         for channel in channels:
             found: Narrowed | None = (channel, None)
-            if channel.name > GONE and channel.name not in self._ended:
+            if channel.name > GONE:
                 found = self._narrowed(explanation, channel)
             if found is None:
                 return None
@@ -116,20 +139,35 @@ class Lookahead:
             return explanation
         return explanation.but(channels=tuple(narrow), assumed=assumed)
 
+    def _leads_to_openings(self, explanation: Explanation) -> bool:
+        """Whether the state may come to be shown as streams begin that nobody has opened yet."""
+        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        for first, called, call, message in self._openings:
+            if first < self.at:
+                continue
+            if first >= cut:
+                break
+            ahead = called >= self.at or any(one.name == call and one.done is None for one in explanation.calls)
+            if ahead and not self._foresees(explanation, message):
+                return False
+        return True
+
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
         positions, messages = self._messages.get(channel.name, _NO_MESSAGES)
-        first = bisect.bisect_left(positions, self.at)
-        quiet = bisect.bisect_left(self._settled, self.at)
-        if first == len(positions) and quiet == len(self._settled):
-            silent = self._last and channel.owed
+        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        end = min(self._ended.get(channel.name, cut), cut)
+        first, last = bisect.bisect_left(positions, self.at), bisect.bisect_left(positions, end)
+        quiet, quieter = bisect.bisect_left(self._settled, self.at), bisect.bisect_left(self._settled, end)
+        if first >= last and quiet >= quieter:
+            # What is owed to a stream that ends is never shown, and nobody minds.
+            silent = channel.owed and (end < cut or (self._last and cut == self._horizon))
             return (Channel(channel.name, channel.topic, channel.last), None) if silent else (channel, None)
-        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet)
+        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet, end)
         if key not in self._passed:
-            last = len(positions)
-            if quiet < len(self._settled):
+            if quiet < quieter:
                 last = bisect.bisect_left(positions, self._settled[quiet], first)
             due = messages[first:last]
-            rests = quiet < len(self._settled) and len(due) <= NEXT
+            rests = quiet < quieter and len(due) <= NEXT
             before = messages[first - 1] if first else self._latest.get(channel.name)
             self._passed[key] = self._leading(explanation, channel, due[:NEXT], before, rests=rests)
         return self._passed[key]
@@ -187,7 +225,13 @@ class Lookahead:
         if not set(explanation.gone).isdisjoint(names):
             return False
         foresees = self.spec.foresees
-        return foresees is None or foresees(explanation.state, explanation.names, content, names)
+        if foresees is None:
+            return True
+        key = (explanation.state, explanation.names, message)
+        found = self._shows.get(key)
+        if found is None:
+            found = self._shows[key] = foresees(explanation.state, explanation.names, content, names, self._calls)
+        return found
 
     def _may_show(self, owed: Owed, message: Message) -> bool:
         key = (owed.view, owed.names, message)

@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from attrs import define, field
 
+from missionfsm.kernel.history import Called
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.lookahead import Lookahead, Message, Symbol
 from missionfsm.oracle.subsumption import sift
@@ -22,9 +23,6 @@ from missionfsm.oracle.transition import Oracle
 T = TypeVar("T")
 WIDTH = 1
 """How many explanations are followed at once."""
-
-SOME = 8
-"""How many explanations are followed of an event that the system itself does not explain."""
 
 EFFORT = 300
 """How much of the budget goes into finding more than one explanation of an event at once, the first time."""
@@ -39,7 +37,6 @@ class Layer:
         more: what else explains the event as well; None where that is all.
         begun: whether the event was looked at; once it was too dear to look at all of it, it is looked at anew.
         effort: how much of the budget goes into finding more than one explanation at once.
-        partly: whether no more than some of what explains the event was asked for.
     """
 
     explanations: tuple[Explanation, ...]
@@ -47,12 +44,11 @@ class Layer:
     more: Iterator[Sighting] | None = field(default=None, repr=False)
     begun: bool = False
     effort: int = EFFORT
-    partly: bool = False
 
     @property
     def unfinished(self) -> bool:
         """Whether there may be other explanations of the event after these that were not looked at."""
-        return self.more is not None or self.partly
+        return self.more is not None
 
 
 class Search:
@@ -70,6 +66,8 @@ class Search:
         width: how many explanations are followed at once.
         layers: the explanations that were found: at position n of the first n events.
         reached: how many events were explained that have some more behind them in mind.
+        beyond: the positions of events that the system itself does not explain; what lies between it and the recording
+            is asked for them.
     """
 
     def __init__(
@@ -85,11 +83,17 @@ class Search:
         self._start = tuple(start)
         self._symbols = symbols
         self._latest = latest
+        requests = {what[0] for kind, *what in symbols if kind is Called}
+        for one in start:
+            requests.update(call.request for call in one.calls)
+            requests.update(request for request, *_ in one.lost)
+        self._operations = frozenset(map(oracle.spec.request_operation, requests))
         self._budget = budget
         self.whole = False
         self.width = WIDTH
         self.layers: list[Layer] = []
         self.reached = 0
+        self.beyond: set[int] = set()
 
     def explain(self, horizon: int) -> bool:
         """Whether the first events up to a horizon are explained.
@@ -98,43 +102,21 @@ class Search:
             ExhaustedError: it costs more than the budget.
         """
         last = self.whole and horizon == len(self._symbols)
-        self._ahead = Lookahead(self.oracle.spec, self._symbols, horizon, self._latest, last=last)
+        self._ahead = Lookahead(
+            self.oracle.spec,
+            self._symbols,
+            horizon,
+            self._latest,
+            calls=self._operations,
+            beyond=self.beyond,
+            last=last,
+        )
         self._horizon = horizon
         start = (self._ahead.narrowed(one) for one in self._start)
         self.layers = [Layer(tuple(one for one in start if one))]
         self._tried: list[Seen] = [{} for _ in range(horizon + 1)]
         self.moves.reset()
         return self._spending(self._explain)
-
-    def differently(self) -> bool:
-        """Whether the same events are explained otherwise as well, in a way that was not found yet.
-
-        Raises:
-            ExhaustedError: it costs more than the budget.
-        """
-        self.layers.pop()
-        return self._spending(self._explain)
-
-    def step_over(self) -> bool:
-        """Whether the event after those that were explained last is explained by what lies between robot and recording.
-
-        Raises:
-            ExhaustedError: it costs more than the budget.
-        """
-        spec = self.oracle.spec
-        if not (spec.transport or spec.anywhere or spec.others):
-            return False
-        symbol = self._symbols[len(self.layers) - 1]
-        while self.layers:
-            here = self.layers[-1]
-            found = self._spending(lambda: self.oracle.beyond(self.layers[-1].explanations, *symbol, most=SOME))
-            if found:
-                here.partly = len(found) == SOME
-                self._enter(sift(self.moves, found))
-                return True
-            if not self.differently():
-                break
-        return False
 
     def _spending(self, work: Callable[[], T]) -> T:
         """Do some work on the budget of the search."""
@@ -171,7 +153,8 @@ class Search:
         if not here.begun:
             here.begun = True
             kind, *what = self._symbols[position]
-            here.more = self.oracle.explained(here.explanations, kind, *what)
+            explains = self.oracle.beyond if position in self.beyond else self.oracle.explained
+            here.more = explains(here.explanations, kind, *what)
         found: list[Sighting] = []
         begun = moves.spent
         try:
@@ -200,7 +183,17 @@ class Search:
         """The position of the first event that nothing explains, given those before it; None where all are explained.
 
         The layers are those of the events before it.
+
+        Raises:
+            ExhaustedError: it costs more than the budget.
         """
+        found = self._first_unexplained()
+        while found is not None and found not in self.beyond and self.oracle.reckons:
+            self.beyond.add(found)
+            found = self._first_unexplained()
+        return found
+
+    def _first_unexplained(self) -> int | None:
         if self.explain(len(self._symbols)):
             return None
         good, bad, stride = self.reached, len(self._symbols), 1

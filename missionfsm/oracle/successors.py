@@ -12,6 +12,7 @@ from typing import Any
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, by_bit, meet
 from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
+from missionfsm.kernel.transport import MADE_BY_CLIENTS, MADE_UP
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
     GONE,
@@ -38,7 +39,8 @@ Seen = dict[Place, list[tuple[int, Lost]]]
 """At each point: what was assumed there, with which lost calls left."""
 
 LAG = 6
-"""How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones."""
+"""How many changes that nobody drove every channel may owe before the oracle stops to imagine further ones: one that is
+slow keeps nobody from imagining what the others show. Messages that are known to come do not count."""
 
 BUDGET = 20_000
 """How many explanations one event may cost before the run is given up as inconclusive."""
@@ -225,6 +227,14 @@ class Moves:
             return None
         return failure
 
+    def failures(self, call: InFlight, code: str) -> Iterator[Failure]:
+        """The same, and that a client or a gateway has made the code up: nobody can tell how often they do."""
+        failure = self.may_fail(call, code)
+        if failure is not None:
+            yield failure
+        if self.spec.transport and code in MADE_BY_CLIENTS and not (failure and failure.open_ended):
+            yield MADE_UP
+
     def refs(self, explanation: Explanation, args: Names) -> tuple[int | None, ...]:
         """The positions of a request's names, as `Spec.outcomes` takes them."""
         found = tuple(map(explanation.ref, args))
@@ -256,7 +266,7 @@ class Moves:
         """
         for step in self.urgent(explanation.state):
             yield from self._sight(explanation, step, besides)
-        if all(len(channel.owed) < LAG for channel in explanation.channels):
+        if self._may_go_on(explanation):
             for step in self.unseen(explanation.state):
                 yield from self._sight(explanation, step, besides)
         for position, (request, args, _) in enumerate(explanation.lost):
@@ -268,6 +278,12 @@ class Moves:
         for position, call in enumerate(explanation.calls):
             if call.done is None and call.name != besides:
                 yield from self._take_effect(explanation, position, besides)
+
+    def _may_go_on(self, explanation: Explanation) -> bool:
+        """Whether some subscriber, if there are any, is near enough to the state for more to be imagined."""
+        if self.ahead:
+            return not explanation.channels or any(self.ahead.lag(channel) < LAG for channel in explanation.channels)
+        return not explanation.channels or any(len(channel.owed) < LAG for channel in explanation.channels)
 
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
         self.spend(weight(explanation) - 1)
@@ -316,10 +332,8 @@ class Moves:
                     if bound is None:
                         return None
                     explanation = bound
-            elif not call.ready:
-                failure = self.may_fail(call, answer.code)
-                if failure is None or not failure.open_ended:
-                    return None
+            elif not call.ready and not any(one.open_ended for one in self.failures(call, answer.code)):
+                return None
         return ahead.narrowed(explanation)
 
     def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:

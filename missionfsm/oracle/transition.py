@@ -13,6 +13,7 @@ from typing import Any
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Match, Mismatch, Step
+from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import (
     GONE,
@@ -61,31 +62,40 @@ class Oracle:
         found: Iterable[Sighting] = self.explained(explanations, kind, *what)
         if self.eager:
             found = (*found, *self._leniently(1, explanations, kind, *what))
-        return sift(self.moves, found) or sift(self.moves, self.beyond(explanations, kind, *what))
+        kept = sift(self.moves, found)
+        for more in () if kept else self._beyond(explanations, kind, *what):
+            kept = kept or sift(self.moves, more)
+        return kept
+
+    @property
+    def reckons(self) -> bool:
+        """Whether something besides the system itself may explain an event."""
+        return self.spec.transport or self.spec.anywhere or self.spec.others
 
     def beyond(
         self,
         explanations: Iterable[Explanation],
         kind: type,
         *what: Any,  # noqa: ANN401
-        most: int | None = None,
-    ) -> tuple[Sighting, ...]:
-        """What explains an event that the system does not explain: the transport, or somebody who is not in the log.
+    ) -> Iterator[Sighting]:
+        """What explains an event that the system does not explain, one by one; see `step`."""
+        return itertools.chain.from_iterable(self._beyond(tuple(explanations), kind, *what))
 
-        Args:
-            explanations, kind, what: see `step`.
-            most: how many explanations are wanted; all if None.
-        """
-        found: tuple[Sighting, ...] = ()
-        # What may become of things on their way, or else a robot that has restarted.
-        for level in (1, 2) if self.spec.transport else ():
-            found = found or self._leniently(level, explanations, kind, *what, most=most)
-        if not found and (self.spec.anywhere or self.spec.others):
-            relations = (one for one in what[2] if one != lenient.REDELIVERED) if kind is Received else ()
+    def _beyond(
+        self,
+        explanations: tuple[Explanation, ...],
+        kind: type,
+        *what: Any,  # noqa: ANN401
+    ) -> Iterator[Iterable[Sighting]]:
+        """What may have become of things on their way, or a robot that has restarted, or somebody not in the log."""
+        if self.spec.transport:
+            yield self._leniently(1, explanations, kind, *what)
+            yield self._leniently(2, explanations, kind, *what)
+        if self.spec.anywhere or self.spec.others:
+            relations = (one for one in what[2] if one != REDELIVERED) if kind is Received else ()
             assumed = self._sequence(relations)
             if assumed is not None:
-                found = tuple(itertools.islice(middle.unforeseen(self.moves, explanations, assumed, kind, *what), most))
-        return found
+                yield middle.unforeseen(self.moves, explanations, assumed, kind, *what)
 
     def _leniently(
         self,
@@ -93,14 +103,18 @@ class Oracle:
         explanations: Iterable[Explanation],
         kind: type,
         *what: Any,  # noqa: ANN401
-        most: int | None = None,
-    ) -> tuple[Sighting, ...]:
+    ) -> Iterator[Sighting]:
         """What explains an event with as much of the transport as the level says."""
-        self._lenient = level
-        try:
-            return tuple(itertools.islice(self.explained(explanations, kind, *what), most))
-        finally:
-            self._lenient = 0
+        found = self.explained(explanations, kind, *what)
+        while True:
+            self._lenient = level
+            try:
+                one = next(found, None)
+            finally:
+                self._lenient = 0
+            if one is None:
+                return
+            yield one
 
     def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Sighting]:  # noqa: ANN401
         """The same, one by one: the nearest first, some of them in several ways; without what only a transport does."""
@@ -160,13 +174,8 @@ class Oracle:
         if names or answer.shape is not None:
             return
         one = explanation.calls[position]
-        failures = [self.moves.may_fail(one, answer.code)]
-        # Where one status was made up, more of them assume no more.
-        made_up = self.spec.transport and lenient.makes_up(explanation)
-        if self._lenient or made_up or (self.spec.transport and failures[0] and not failures[0].open_ended):
-            failures.append(lenient.failure(answer.code))
-        for failure in failures:
-            if failure is None or (one.done and not failure.open_ended):
+        for failure in self.moves.failures(one, answer.code):
+            if one.done and not failure.open_ended:
                 continue
             assumed = meet(explanation.assumed, failure.assumes)
             if assumed:
@@ -233,10 +242,12 @@ class Oracle:
         relations: tuple[str, ...],
         channel: int,
     ) -> Iterator[Sighting]:
-        again = lenient.REDELIVERED in relations
-        relations = tuple(relation for relation in relations if relation != lenient.REDELIVERED)
-        if self._lenient and again:
-            yield from lenient.redelivered(explanations, channel)
+        again = REDELIVERED in relations
+        relations = tuple(relation for relation in relations if relation != REDELIVERED)
+        if again:
+            # One that may send a message again under its number has said it twice.
+            once = (one for one in explanations if not self._echoed(one, channel))
+            yield from lenient.redelivered(explanations if self._lenient else once, channel)
         if self._lenient > 1:
             explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations, relations))
         todo: list[tuple[Sighting, Hashable]] = []
@@ -422,7 +433,9 @@ class Oracle:
             for own in (name,) if name in names else [one for one in names if one < GONE]:
                 assumed = here.assumed
                 for topic in (channel.topic for channel in here.channels if channel.name == own):
-                    assumes = lenient.ends(code) if self._lenient else self.spec.delivery(topic).ends.get(code)
+                    assumes = self.spec.delivery(topic).ends.get(code)
+                    if self.spec.transport and (assumes is None or self._lenient):
+                        assumes = lenient.ends(code)
                     assumed = meet(assumed, assumes) if assumes is not None else 0
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:

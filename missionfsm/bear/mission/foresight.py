@@ -1,46 +1,131 @@
-"""What a later status message tells of a robot before it: where a search through a recording need not look."""
+"""What a later status message tells of a robot before it: where a search through a recording need not look.
+
+Whatever happens to a robot, the missions that it lists keep their order. Those that have ended are forgotten together,
+before those that wait; those that wait vanish together, after all others, and only where a mission has failed or was
+cancelled, or a workflow takes their place. What is new comes last; only a charge may come before missions that wait,
+and nothing before one that has started.
+"""
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.state import Robot
+from collections.abc import Container, Sequence
+
+from attrs import frozen
+
+from missionfsm.bear.mission.state import Kind, Mission, Robot
 from missionfsm.bear.mission.stream import Seen, has_goals
-from missionfsm.bear.wire.messages import State
+from missionfsm.bear.wire.messages import MissionState, State
 from missionfsm.kernel.codec import Garbled
 
 _ACTIVE = (State.STATE_RUNNING, State.STATE_PAUSED)
+_BROKEN_OFF = (State.STATE_CANCELED, State.STATE_FAILED)
+_CHARGE = Mission(Kind.CHARGE)
 
 
-def foresees(robot: Robot, names: tuple[int, ...], content: Seen | Garbled, shown: tuple[int, ...]) -> bool:
-    """Whether the robot may come to be shown so, by whatever steps; see `Spec.foresees`.
-
-    A mission keeps its id, its kind and its goals, and one that has ended stays as it is. As long as a mission is
-    active those that wait behind it go on waiting in their order: nobody takes one away or comes between two of them.
-    """
+def foresees(
+    robot: Robot, names: tuple[int, ...], content: Seen | Garbled, shown: tuple[int, ...], calls: Container[str]
+) -> bool:
+    """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
     if isinstance(content, Garbled) or not all(content.named):
         return True
-    missions = content.states.missions
-    places = {name: place for place, name in enumerate(shown)}
-    ended = len(robot.done)
-    for position, mission in enumerate(robot.listed):
-        place = places.get(names[position])
-        if place is None:
-            continue
-        if position < ended and missions[place].state != mission.state:
-            return False
-        if not has_goals(mission, missions[place]):
-            return False
-    if robot.active is None:
-        return True
-    place = places.get(names[ended])
-    if place is None or missions[place].state not in _ACTIVE:
-        return True
-    waiting, behind = names[ended + 1 :], shown[place + 1 :]
-    return any(
-        all(
-            (name == shown_name or (name < 0 and shown_name not in names)) and has_goals(mission, missions[at])
-            for name, shown_name, mission, at in zip(
-                waiting, behind[first:], robot.pending, range(place + 1 + first, len(missions)), strict=False
-            )
+    later = _Later(robot, names, content.states.missions, shown, calls)
+    return later.all_kept() or later.some_forgotten()
+
+
+@frozen
+class _Later:
+    """A robot with the names of its missions, and the missions with theirs that a message lists later."""
+
+    robot: Robot
+    names: tuple[int, ...]
+    missions: Sequence[MissionState]
+    shown: tuple[int, ...]
+    calls: Container[str]
+
+    def all_kept(self) -> bool:
+        """Whether the message may list everything that has started, before all else."""
+        robot = self.robot
+        ended, started = len(robot.done), len(robot.done) + (robot.active is not None)
+        return (
+            started <= len(self.shown)
+            and all(self._is(mission, at, at) for at, mission in enumerate(robot.done))
+            and all(self.missions[at].state == mission.state for at, mission in enumerate(robot.done))
+            and (robot.active is None or self._is(robot.active, ended, ended))
+            and self._waiting(0, started, survived=started > 0)
         )
-        for first in range(len(behind) - len(waiting) + 1)
-    )
+
+    def some_forgotten(self) -> bool:
+        """Whether the message may list what is left once those that have ended by then were forgotten."""
+        robot, listed = self.robot, frozenset(self.shown)
+        ended = len(robot.done)
+        if not listed.isdisjoint(self.names[:ended]):
+            return False
+        if (
+            robot.active is not None
+            and self.shown
+            and self._is(robot.active, ended, 0)
+            and self._waiting(0, 1, survived=True)
+        ):
+            return True
+        for first in range(len(robot.pending) + 1):
+            before = ended + (robot.active is not None) + first
+            if not listed.isdisjoint(self.names[ended:before]):
+                return False
+            if self._waiting(first, 0, survived=False):
+                return True
+        return False
+
+    def _is(self, mission: Mission, at: int, place: int) -> bool:
+        """Whether the mission with the name at a position may be the one in that place of the message."""
+        name, shown = self.names[at], self.shown[place]
+        return (name == shown or (name < 0 and self._is_new(place))) and has_goals(mission, self.missions[place])
+
+    def _is_new(self, place: int) -> bool:
+        """Whether no mission of the robot has the name in that place of the message."""
+        return self.shown[place] not in self.names
+
+    def _is_charge(self, place: int) -> bool:
+        """Whether a new mission in that place of the message may be a charge that goes before those that wait."""
+        new = "ChargeRobot" in self.calls and self._is_new(place)
+        return new and has_goals(_CHARGE, self.missions[place])
+
+    def _waiting(self, first: int, place: int, *, survived: bool) -> bool:
+        """Whether those that wait, from the first one that is left, may be what the message lists from a place on.
+
+        Args:
+            survived: whether something before them is listed.
+        """
+        pending, shown = self.robot.pending, self.shown
+        behind = len(self.names) - len(pending)
+        goes_on = survived and self.robot.active is not None and self.missions[place - 1].state in _ACTIVE
+        # Where the first so many of those that wait can be followed by what is listed from that place on.
+        places = {place: survived}
+        for at in range(first, len(pending) + 1):
+            name = behind + at
+            if not (goes_on and at < len(pending)) and any(
+                self._end_here(name, last, survived=some) for last, some in places.items()
+            ):
+                return True
+            if at == len(pending):
+                return False
+            following: dict[int, bool] = {}
+            for here in places:
+                for there in range(here, len(shown)):
+                    if self._is(pending[at], name, there):
+                        following[there + 1] = True
+                    if not self._is_charge(there):
+                        break
+            places = following
+        return False
+
+    def _end_here(self, name: int, place: int, *, survived: bool) -> bool:
+        """Whether those from a name on may have vanished, and what is listed from a place on be new."""
+        if not all(map(self._is_new, range(place, len(self.shown)))):
+            return False
+        if name == len(self.names) or not survived:
+            return True
+        replaced = "CreateMissionWorkflow" in self.calls and (self.robot.halted or place < len(self.shown))
+        return replaced or any(one.state in _BROKEN_OFF for one in self.missions[max(0, place - 1) :])
+
+
+__all__ = ["foresees"]

@@ -45,7 +45,6 @@ class Held:
         self._belief = belief
         self._window = Window(belief)
         self._size = FIRST
-        self._behind = 0
         self.lines: list[HeldEvent] = []
         self.unexplained = 0
         self.reached = 0
@@ -75,45 +74,25 @@ class Held:
         Raises:
             ExhaustedError: it costs too much.
         """
-        while True:
-            window = self._window
-            lost = window.unanswered if whole else None
-            search = window.search(lost)
-            try:
-                found = search.first_unexplained()
-            finally:
-                reached = search.reached < len(window.positions)
-                self.reached = self._behind + (window.positions[search.reached] if reached else 0)
-            if found is None:
-                if search.exact or whole:
-                    window.close(search)
-                return True, search.exact
-            self.unexplained = self._behind + window.positions[found]
-            if not self._go_on_behind(lost):
-                return False, True
-
-    def _go_on_behind(self, lost: frozenset[int] | None) -> bool:
-        """Go on behind the event that the robot does not explain, if what lies in between explains it.
-
-        Otherwise the belief stands before it.
-        """
+        window = self._window
+        lost = window.unanswered if whole else None
+        search = window.search(lost)
+        try:
+            found = search.first_unexplained()
+        finally:
+            reached = search.reached < len(window.positions)
+            self.reached = window.positions[search.reached] if reached else 0
+        if found is None:
+            if search.exact or whole:
+                window.close(search)
+            return True, search.exact
+        self.unexplained = window.positions[found]
         before = Window(self._belief)
-        for line in self.lines[self._behind : self.unexplained]:
+        for line in self.lines[: self.unexplained]:
             before.add(line.event)
-        with_it = Window(self._belief)
-        for line in self.lines[self._behind : self.unexplained + 1]:
-            with_it.add(line.event)
-        search = with_it.search(lost)
-        search.explain(len(with_it.positions) - 1)
-        if search.step_over():
-            with_it.close(search)
-            self._behind = self.unexplained + 1
-            self._window = Window(self._belief)
-            for line in self.lines[self._behind :]:
-                self._window.add(line.event)
-            return True
-        search = before.search(lost)
-        search.explain(len(before.positions))
-        before.close(search)
+        again = before.search(lost)
+        again.beyond = {position for position in search.beyond if position < found}
+        again.explain(len(before.positions))
+        before.close(again)
         self._belief.broken = True
-        return False
+        return False, True

@@ -1,0 +1,150 @@
+"""What later messages tell of a robot: never that it cannot be what it was."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import orjson
+import pytest
+from attrs import evolve
+from busy import Habits, busy
+from traffic import readings_at_random
+
+from missionfsm.app import recorded
+from missionfsm.app.recorded import check_file
+from missionfsm.bear.mission.foresight import foresees
+from missionfsm.bear.mission.state import Robot
+from missionfsm.bear.mission.stream import Listing, listing
+from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.readings import choose
+from missionfsm.kernel.spec import Step
+from missionfsm.oracle import window
+from missionfsm.systems import system
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.explore.explore import Labels, steps
+
+MISSION = system("bear.mission")
+SPEC = MISSION.spec
+ALPHABET = MISSION.alphabet({}, Bounds(3, goals=2, batch=2))
+LABELS = Labels.of(MISSION, ALPHABET.plain, ALPHABET.plain_drives)
+Named = tuple[Any, tuple[int, ...]]
+"""A robot, or what is seen of it, with the names of its missions; no two missions ever have the same."""
+
+
+def lives(random: Random, length: int) -> Iterator[tuple[Named, list[Named]]]:
+    """Robots after one another, by whatever steps under whatever readings, and what each step makes seen."""
+    robot: Robot = SPEC.initial(MISSION.codec.world(random.choice(ALPHABET.worlds)))
+    names: tuple[int, ...] = ()
+    minted = 0
+    for _ in range(length):
+        found = [one.step for one in steps(SPEC, robot, LABELS) if one.step.after is not robot]
+        # What clears the list comes up less often, so that lists grow.
+        growing = [one for one in found if SPEC.names(one.after) >= len(names)]
+        step: Step = random.choice(growing if growing and random.random() < 0.8 else found)
+        highest = max((*(step.names or ()), len(names) - 1))
+        pool = [*names, *range(minted, minted + highest + 1 - len(names))]
+        minted += highest + 1 - len(names)
+        names = names if step.names is None else tuple(pool[ref] for ref in step.names)
+        robot = step.after
+        seen = [(one.view, names if one.refs is None else tuple(pool[ref] for ref in one.refs)) for one in step.emits]
+        yield (robot, names), [*seen, (listing(robot), names)]
+
+
+def content(view: Listing, choice: int) -> Any:
+    """The content of the message that shows a view under some readings."""
+    missions = [f"m{number}" for number in range(len(view.missions))]
+    message = MISSION.codec.write_message(view, tuple(missions), choice, 1, 0.0)
+    return MISSION.codec.content(next(iter(MISSION.codec.strip(message)))[2])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_comes_to_be_shown_is_foreseen(seed: int) -> None:
+    """A robot foresees every message of its future, whatever happens to it, and whichever names were not seen yet."""
+    random = Random(seed)
+    choice = choose(SPEC.ambiguities, readings_at_random(seed))
+    past: list[Named] = []
+    for here, seen in lives(random, 40):
+        for view, shown in seen:
+            message = content(view, choice)
+            for robot, names in past:
+                known = tuple(-2 - at if random.random() < 0.2 else name for at, name in enumerate(names))
+                assert foresees(robot, known, message, shown, SPEC.operations), (robot, known, view, shown)
+        past.append(here)
+
+
+CALLS = ("AppendMission", "SkipGoal", "ClearMissionStatus")
+ORDERS = {
+    "another comes before one that has started": (("B", "A"), False),
+    "one that waits has vanished though nothing failed": (("A", "C"), False),
+    "those that wait have changed places": (("A", "C", "B"), False),
+    "what has ended is forgotten": (("B", "C", "D"), True),
+    "everything is forgotten": ((), True),
+    "what is new comes last": (("A", "B", "C", "D"), True),
+}
+
+
+@pytest.mark.parametrize("case", ORDERS)
+def test_missions_keep_their_order(case: str) -> None:
+    """Of a robot with one mission that has ended and two that wait, no message is foreseen that changes their order."""
+    shown, possible = ORDERS[case]
+    numbers = {"A": 0, "B": 1, "C": 2, "D": 3}
+    kind, running = _queue()
+    missions = tuple(kind for _ in shown)
+    message = content(Listing(missions, None, running.world.family), choose(SPEC.ambiguities))
+    ended = evolve(kind, state=running.done[0].state)
+    first = content(
+        Listing((ended, *missions[1:]) if shown[:1] == ("A",) else missions, None, running.world.family),
+        choose(SPEC.ambiguities),
+    )
+    message = first if shown[:1] == ("A",) else message
+    assert foresees(running, (0, 1, 2), message, tuple(numbers[name] for name in shown), CALLS) == possible
+
+
+def _queue() -> tuple[Any, Robot]:
+    """A mission that waits, and a robot with one that has succeeded before two of them."""
+    robot: Robot = SPEC.initial(MISSION.codec.world({}))
+    params = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    _, rest = MISSION.codec.split("CreateMission", params)
+    request = MISSION.codec.request("CreateMission", rest)
+    created = next(step.after for step in SPEC.outcomes(robot, request, ()) if step.after.pending)
+    (mission,) = created.pending
+    ended = mission.moved("start").moved("succeed")
+    return mission, evolve(created, done=(ended,), pending=(mission, mission))
+
+
+def judged(path: Path, lines: list[Any]) -> Verdict:
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path))
+    return verdict
+
+
+def disordered(lines: list[Any]) -> list[Any]:
+    """The log with the last list of several missions turned round."""
+    wrong = copy.deepcopy(lines)
+    lists = [line["message"]["missionStates"]["missions"] for line in wrong if "message" in line]
+    next((one for one in reversed(lists) if len(one) > 1), []).reverse()
+    return wrong
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """Small logs, right ones and such with a list that is turned round, are judged alike where nothing is foreseen."""
+    right = busy(seed, 26, Habits(clients=2), readings_at_random(seed) if seed % 2 else None)
+    wrong = disordered(right)
+    monkeypatch.setattr(window, "BUDGET", 1_500)
+    led = [judged(tmp_path / "log", lines) for lines in (right, wrong)]
+    as_it_is = recorded.judged_system
+
+    def blind(*name: Any, **how: Any) -> Any:
+        found = as_it_is(*name, **how)
+        return evolve(found, spec=evolve(found.spec, foresees=None, decided=None))
+
+    monkeypatch.setattr(recorded, "judged_system", blind)
+    for lines, verdict in zip((right, wrong), led, strict=True):
+        other = judged(tmp_path / "log", lines)
+        if other.outcome.value != "inconclusive":
+            assert (verdict.outcome, verdict.events) == (other.outcome, other.events)

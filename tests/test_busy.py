@@ -1,0 +1,26 @@
+"""Logs of several clients at once, of a robot that nobody drives: never a false alarm, and nearly always decided."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import orjson
+import pytest
+from busy import Habits, busy
+from traffic import readings_at_random
+
+from missionfsm.app.recorded import check_file
+
+ROUGH = Habits(lost=0.12, late=0.12, ends=0.05, slow=0.8)
+"""Where much is lost or late, and little comes at once."""
+
+
+@pytest.mark.parametrize("habits", [Habits(), ROUGH], ids=["usual", "rough"])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_busy_log_conforms(tmp_path: Path, seed: int, habits: Habits) -> None:
+    """Clients that overlap, calls that are lost or late and streams that end are explained, under any readings."""
+    choice = readings_at_random(seed) if seed % 2 else None
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in busy(seed, 40, habits, choice)))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.conforms, str(verdict)

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+import typer
 from commandline import CommandLine
 
 import missionfsm
+from missionfsm.cli import app
+from missionfsm.cli.helping import EXAMPLES, completed
+from missionfsm.systems import names, system
 
 EDGES = Path(__file__).parent / "bear" / "edges"
 GOOD = EDGES / "conform" / "AM-53-failed-without-having-run.jsonl"
@@ -74,3 +80,57 @@ def test_a_wrong_default_is_bad_input(
     monkeypatch.chdir(tmp_path)
     ended = command_line("check", GOOD)
     assert (ended.status, says in ended.err, ended.err.count("\n")) == (2, True, 1)
+
+
+def test_help_lists_the_systems_and_examples(command_line: CommandLine) -> None:
+    """--help says which systems there are and what each is, and shows commands to copy."""
+    shown = command_line("--help").out
+    told = re.findall(r"^  (\S+) +(.*)$", shown.partition("Systems:\n")[2].partition("\n\n")[0], re.MULTILINE)
+    assert told == [(name, system(name).spec.title) for name in names()]
+    assert shown.partition("Examples:\n")[2].split("\n")[:-1] == [f"  {one}" for one in EXAMPLES["missionfsm"]]
+
+
+def test_every_command_has_examples_whose_options_exist() -> None:
+    """Each command shows at least one example; its words are the command, options of it, or their values."""
+    group = typer.main.get_group(app)
+    assert EXAMPLES.keys() == {"missionfsm", *group.commands}
+    for name, examples in EXAMPLES.items():
+        for one in examples:
+            program, command, *words = shlex.split(one)
+            assert (program, name in ("missionfsm", command)) == ("missionfsm", True)
+            known = {option for parameter in group.commands[command].params for option in parameter.opts}
+            own = words[: words.index("--")] if "--" in words else words
+            shell = own[: own.index(">")] if ">" in own else own
+            assert {word for word in shell if word.startswith("-")} <= known, one
+
+
+def test_names_of_systems_are_completed() -> None:
+    """A shell is told the systems whose names begin as what was typed."""
+    assert completed("isaac.") == ["isaac.server", "isaac.robot"]
+    assert completed("") == list(names())
+
+
+BARE = '{"metadata": {"sequenceNumber": "1"}, "batteryState": {"chargePercent": 50}}\n'
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("conform", "bear.mission", "--tolerance", "1"), "--tolerance: it has no effect without --tcp"),
+        (("conform", "isaac.server", "--tcp", "h:1", "--distinguish"), "--distinguish: it has no effect over TCP"),
+        (("check", "bare", "--others"), "bare: --others has no effect on bare messages"),
+        (("check", "bare", "--settled-after", "2"), "bare: --settled-after has no effect on bare messages"),
+    ],
+)
+def test_options_without_effect_are_refused(
+    command_line: CommandLine,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    says: str,
+) -> None:
+    """An option that changes nothing where it is given is bad usage, in one line."""
+    (tmp_path / "bare").write_text(BARE)
+    monkeypatch.chdir(tmp_path)
+    ended = command_line(*arguments)
+    assert (ended.status, ended.err.startswith(f"missionfsm: {says}"), ended.err.count("\n")) == (2, True, 1)

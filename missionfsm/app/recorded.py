@@ -30,7 +30,7 @@ from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
-from missionfsm.tools.check.scope import assumed
+from missionfsm.tools.check.scope import assumed, held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.explore.undriven import missed_without
 
@@ -124,9 +124,11 @@ def _judged(
         with placed(path, number):
             line = texts.json(text)
         if subscription(line):
+            _refuse_without_effect(path, asked)
             messages = itertools.chain([(number, line)], texts.parsed(numbered))
             try:
-                return [(None, verdict) for verdict in watch_messages(messages, tell, strict=asked.strict)]
+                watched = watch_messages(messages, tell, strict=asked.strict)
+                return [(None, held_to_the_text(one) if asked.no_flagged else one) for one in watched]
             except UnplacedError as error:
                 raise wrong_line(path, error.number, error) from None
         with placed(path, number):
@@ -141,6 +143,21 @@ def _judged(
     return [
         (robot, verdict if keep else _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found
     ]
+
+
+def _refuse_without_effect(path: str, asked: Asked) -> None:
+    """Raise UnreadableError where something is said of bare messages that has no effect on them."""
+    given = {
+        "--reading": asked.readings,
+        "--profile": asked.profile,
+        "--begins": asked.anywhere,
+        "--others": asked.others,
+        "--settled-after": asked.settled_after,
+    }
+    for option, value in given.items():
+        if value:
+            message = f"{called(path)}: {option} has no effect on bare messages, which are judged one by one"
+            raise UnreadableError(message)
 
 
 class _Judges:

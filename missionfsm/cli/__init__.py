@@ -16,10 +16,12 @@ from missionfsm.adapters.outputs import silence_stdout
 from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, wire
 from missionfsm.cli.common import BAD_INPUT, DONE, complain, say
 from missionfsm.cli.defaults import defaults
+from missionfsm.cli.helping import Command, Program
 from missionfsm.cli.signals import ended_like_ctrl_c
 from missionfsm.kernel.codec import UnreadableError
 
 app = typer.Typer(
+    cls=Program,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -43,7 +45,7 @@ for _command in (
     wire.serve,
     wire.proxy,
 ):
-    app.command()(_command)
+    app.command(cls=Command)(_command)
 
 
 def _version(*, wanted: bool) -> None:

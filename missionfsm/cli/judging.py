@@ -33,6 +33,7 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
+from missionfsm.cli.helping import SystemName
 from missionfsm.cli.overgrpc import (
     Beginning,
     Force,
@@ -101,6 +102,9 @@ KnownFile = Annotated[
 GRPC_EXAMPLES = 20
 """Conversations over gRPC, where silence has to be waited for."""
 
+TOLERANCE = 0.2
+"""Seconds that times may be off over TCP."""
+
 DAY = 24 * 60 * 60.0
 """Seconds that anything may be waited for."""
 
@@ -140,7 +144,7 @@ class Transport(enum.Enum):
 
 
 def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
-    system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
+    system: SystemName,
     command: Annotated[
         list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")
     ] = None,
@@ -206,8 +210,9 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
         bool, typer.Option("--others", help="With --grpc: others use the robot at the same time.")
     ] = False,
     tolerance: Annotated[
-        float, typer.Option(min=0, callback=_finite, help="Over TCP: seconds that times may be off.")
-    ] = 0.2,
+        float | None,
+        typer.Option(min=0, callback=_finite, help=f"Over TCP: seconds that times may be off; {TOLERANCE} by default."),
+    ] = None,
     trace: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="Write every line that is sent and that comes, with its time; - is stdout."),
@@ -242,7 +247,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     refuse_outputs(outputs, (expect_violations, missions))
     limit = TimeLimit(seconds)
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
-    sockets = Sockets(tcp, tcp_listen, missions, tolerance)
+    sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
     wire = None
     if grpc is None:
         options = {
@@ -278,7 +283,11 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             "where --grpc says which server is judged",
         )
     if sockets.wanted:
-        refuse_options({"--only": only, "--without": without, "--trace": trace}, "over TCP")
+        refuse_options(
+            {"--only": only, "--without": without, "--trace": trace, "--distinguish": distinguish}, "over TCP"
+        )
+    else:
+        refuse_options({"--tolerance": tolerance, "--missions": missions}, "without --tcp or --tcp-listen")
     with one_line_errors(), interruptible() as interruption, tracing(trace) as traced:
 
         def enough() -> bool:
@@ -327,7 +336,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
 
 
 def smoke(
-    system: Annotated[str, typer.Argument(help="Which system: see `missionfsm readings`.")],
+    system: SystemName,
     command: Annotated[list[str], typer.Argument(help="The adapter to look at, after --.")],
     timeout: Annotated[
         float, typer.Option(min=0.01, max=DAY, callback=_finite, help="Seconds that an answer may take.")
@@ -532,7 +541,7 @@ def _headed(path: str, robot: str | None, verdict: Verdict, *, verbose: bool) ->
 
 
 def explore(  # noqa: PLR0913 - options of the command
-    system: Annotated[str, typer.Argument(help="Which system.")],
+    system: SystemName,
     missions: Annotated[int, typer.Option(min=0, max=8, help="Listed missions, at most.")] = 2,
     goals: Annotated[int, typer.Option(min=1, max=8, help="Goals of a mission, at most.")] = 2,
     batch: Annotated[int, typer.Option(min=1, max=8, help="Missions of a batch, at most.")] = 2,
@@ -574,7 +583,7 @@ def explore(  # noqa: PLR0913 - options of the command
 
 
 def teeth(  # noqa: PLR0913 - options of the command
-    system: Annotated[str, typer.Argument(help="Which system.")],
+    system: SystemName,
     only: Annotated[str, typer.Option(help="Judge only implementations with this in their name.")] = "",
     seed: Annotated[int, typer.Option(help="The same seed asks the same, in as many processes.")] = 0,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
@@ -599,7 +608,7 @@ def teeth(  # noqa: PLR0913 - options of the command
 
 
 def adapter(
-    system: Annotated[str, typer.Argument(help="Which system.")],
+    system: SystemName,
     reading: Readings = None,
     profile: ProfileName = None,
 ) -> None:

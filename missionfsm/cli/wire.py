@@ -76,12 +76,7 @@ def serve(  # noqa: PLR0913 - options of the command
     tls_key: Key = "",
     token: TokenFile = None,
 ) -> None:
-    """Serve the reference as a real robot, or a fleet, to develop against, until interrupted.
-
-    Examples:
-      missionfsm serve bear.mission --grpc 50051 --auto 2
-      missionfsm serve bear.mission --grpc 50051 --fault deadline:0.05 --fault lost:0.01 --seed 7
-    """
+    """Serve the reference as a real robot, or a fleet, to develop against, until interrupted."""
     needs_grpc()
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
     from missionfsm.app.serve import Cue, read_script  # noqa: PLC0415

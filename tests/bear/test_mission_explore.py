@@ -121,6 +121,7 @@ def test_a_broken_invariant_has_a_shortest_counterexample(*, forgetting: bool) -
     assert "does not hold in [" in str(found.counterexample)
 
 
+@pytest.mark.long
 def test_every_rule_fires_and_rests() -> None:
     """Every refusal is met by some call in some state of some world, and not met by another."""
     bounds = Bounds(2, goals=1, batch=1)

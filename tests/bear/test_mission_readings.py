@@ -74,12 +74,14 @@ def explained(choice: dict[str, str], chance: random.Random, conversations: int 
     return undecided
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("question", "letter"), ALTERNATIVES, ids=[f"{one}={letter}" for one, letter in ALTERNATIVES])
 def test_the_reference_under_an_alternative_reading_conforms(question: str, letter: str) -> None:
     """A reference that reads one question in another way is explained, and so is what it follows."""
     assert explained({question: letter}, random.Random(f"{question}={letter}")) == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None:
     """A reference that reads every question by chance, and apart in each call and situation, is explained.
@@ -91,26 +93,28 @@ def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None
     assert explained(choice, chance) <= CONVERSATIONS // 4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_reference_conforms_under_its_own_readings() -> None:
     """The reference conforms where its own readings are demanded, and does not where another one is."""
     demanded = {one.id: one.default for one in MISSION.spec.ambiguities}
-    conforming = conform(MISSION, Reference(MISSION), examples=5, steps=25, seed=1, readings=demanded)
+    conforming = conform(MISSION, Reference(MISSION), examples=5, tours=3, steps=25, seed=1, readings=demanded)
     assert conforming.conforms, str(conforming)
     violating = conform(MISSION, Reference(MISSION), examples=20, steps=25, seed=1, readings={"AM-16": "b"})
     assert violating.outcome.value == "violates"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_verdict() -> None:
     """Whatever a verdict says, it says again for the same seed; another seed exercises other things."""
     verdicts = [
-        conform(MISSION, Reference(MISSION, {"AM-09": "b"}), examples=2, steps=15, seed=seed) for seed in (5, 5, 6)
+        conform(MISSION, Reference(MISSION, {"AM-09": "b"}), examples=2, tours=2, steps=15, seed=seed)
+        for seed in (5, 5, 6)
     ]
     assert verdicts[0].to_json() == verdicts[1].to_json()
     assert verdicts[0].exercised != verdicts[2].exercised
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "letter"),
     [

@@ -16,6 +16,7 @@ ALTERNATIVES = list(
 """Questions that are asked in several calls are answered alike in all of them here."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("entry", "letter"), ALTERNATIVES)
 def test_every_single_alternative_reading_is_accepted(entry: str, letter: str) -> None:
     """The reference that follows it conforms on random walks, and the reading is never ruled out."""

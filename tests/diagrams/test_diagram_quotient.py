@@ -194,7 +194,7 @@ def test_every_step_of_the_reference_is_in_the_picture(name: str, sketch: Sketch
     check(name, sketch, {}, seeds=20)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @every_sketch
 def test_every_step_under_another_reading_is_in_its_picture(name: str, sketch: Sketch) -> None:
     """So it is under every choice that differs from the reference's in one reading, in all calls that look alike."""

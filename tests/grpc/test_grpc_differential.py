@@ -188,7 +188,7 @@ def test_the_model_and_protobuf_agree(chance: random.Random) -> None:
     mutants(chance)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.integers(0, 2**32))
 @settings(max_examples=100)
 def test_the_model_and_protobuf_agree_on_much_more(seed: int) -> None:

@@ -138,6 +138,7 @@ def test_the_robot_that_ships_conforms() -> None:
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("entry", "letter"), [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
 )
@@ -190,7 +191,7 @@ def test_breaks_of_the_independent_robot_are_caught() -> None:
 
 
 @needs_node
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_other_break_of_the_independent_robot_is_caught() -> None:
     """So it is with all the others."""
     others = [one for one in breaks("isaac.robot") if one not in COMMON_BREAKS]

@@ -195,7 +195,7 @@ PROFILES = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("profile", PROFILES, ids=_difference)
 def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
     """The server under any single other reading conforms; only names in any case are nobody's reading (AI-37 c)."""
@@ -203,7 +203,7 @@ def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
     assert explained(run, 1, 20), run.ledger.contradiction or (run.found and run.found.judge.violation)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("entry", "letter"), [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
 )
@@ -256,7 +256,7 @@ def test_breaks_of_the_independent_server_are_caught() -> None:
 
 
 @needs_node
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_other_break_of_the_independent_server_is_caught() -> None:
     """So it is with all the others."""
     others = [one for one in breaks("isaac.server") if one not in COMMON_BREAKS]

@@ -17,7 +17,7 @@ def bench(name: str) -> Bench:
     return Bench.of(system(name))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(COMBINATIONS))
 @pytest.mark.parametrize("name", names())
 def test_a_combination_of_readings_is_recognised(name: str, seed: int) -> None:

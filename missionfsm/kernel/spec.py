@@ -23,6 +23,7 @@ from typing import Any, Protocol
 from attrs import field, frozen
 
 from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer, Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
@@ -334,6 +335,9 @@ class Spec:
         drives: what a tester may make happen, by name.
         urgent: what must have happened once things have settled.
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
+        silent_for: (state, what is observed) to those among its urgent and spontaneous steps that are enough to be
+            thought of before that, since the others can as well come after it; None: all are.
+        calmed: state to the one in which nothing that a step has left open happened before things settled.
         matches: (view, content) to the ways in which the message shows the view, or why it does not.
         delivery: topic to how its messages travel.
         looks: (view, content) to what is remembered of a message that came, so that an owed one which looks the same is
@@ -364,6 +368,8 @@ class Spec:
         closing: (state, topic) to the ways in which the system may at any time close the channel of that topic,
             and an end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
+        unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
+            are broken by a message that nothing owes; None where those of the topic's `Delivery` say it.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
         restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
         middle: what lets it be judged without its beginning, or None where that cannot be.
@@ -387,6 +393,8 @@ class Spec:
     failing: Callable[[Any, str], Failure | None] = lambda _, __: None
     looks: Callable[[View, Any], Hashable] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
+    silent_for: Callable[[State, Focus], tuple[Step, ...]] | None = None
+    calmed: Callable[[State], State] = lambda state: state
     closing: Callable[[State, Hashable], tuple[Step, ...]] | None = None
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
     describe: Callable[[Any], str] = repr
@@ -404,6 +412,7 @@ class Spec:
     parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
+    unowed: Callable[[State, Hashable, Any, tuple[int | None, ...]], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None
     middle: Middle | None = None

@@ -10,17 +10,23 @@ from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.readings import merge
 from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, within
-from missionfsm.oracle.successors import Moves, Place, Sighting, place, point
+from missionfsm.oracle.successors import FocusOf, Moves, Place, Sighting, place, point
 
 
-def sift(moves: Moves, found: Iterable[Sighting]) -> tuple[Sighting, ...]:
-    """Those among the explanations that the others do not already stand for."""
+def sift(moves: Moves, found: Iterable[Sighting], focus: FocusOf | None = None) -> tuple[Sighting, ...]:
+    """Those among the explanations that the others do not already stand for.
+
+    Args:
+        moves: what one of them can silently become.
+        found: the explanations.
+        focus: what was observed, where what happens elsewhere is left to later observations.
+    """
     points: dict[Place, list[Sighting]] = {}
     for sighting in found:
         here = place(sighting.explanation)
         points[here] = _widened(moves, points.get(here, []), sighting)
     kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
-    return tuple(kept) if len(kept) <= 1 else tuple(_without_later(moves, kept))
+    return tuple(kept) if len(kept) <= 1 else tuple(_without_later(moves, kept, focus))
 
 
 def _widened(moves: Moves, sightings: list[Sighting], new: Sighting) -> list[Sighting]:
@@ -36,7 +42,7 @@ def _widened(moves: Moves, sightings: list[Sighting], new: Sighting) -> list[Sig
     return [*sightings, new]
 
 
-def _without_later(moves: Moves, sightings: list[Sighting]) -> Iterator[Sighting]:
+def _without_later(moves: Moves, sightings: list[Sighting], focus: FocusOf | None) -> Iterator[Sighting]:
     """Those that no other can silently become."""
     reached: dict[Place, int] = {}
     for sighting in sightings:
@@ -47,7 +53,7 @@ def _without_later(moves: Moves, sightings: list[Sighting]) -> Iterator[Sighting
             covered = False
             yield sighting
         base = reached[here] if covered else sighting.explanation.assumed
-        for later in moves.silent(sighting.explanation.but(assumed=base)):
+        for later in moves.silent(sighting.explanation.but(assumed=base), focus=focus):
             key = place(later.explanation)
             if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
                 reached[key] = later.explanation.assumed

@@ -6,9 +6,10 @@ one explanation at a time; `missionfsm.oracle.transition` puts it together with 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
+from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import ANYTHING, by_bit, meet
 from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
@@ -58,6 +59,10 @@ class Sighting:
     rules: tuple[str, ...] = ()
 
 
+FocusOf = Callable[[Explanation], Focus]
+"""What is observed next, seen from an explanation."""
+
+
 class Moves:
     """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
 
@@ -81,6 +86,7 @@ class Moves:
         self._idle: dict[Any, tuple[Step, ...]] = {}
         self._urgent: dict[Any, tuple[Step, ...]] = {}
         self._unseen: dict[Any, tuple[Step, ...]] = {}
+        self._focused: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
         self.ahead: Lookahead | None = None
         self.spent = 0
@@ -94,7 +100,15 @@ class Moves:
 
     def forget(self) -> None:
         """Drop what the spec said; it will say the same again."""
-        for memory in (self._outcomes, self._effects, self._idle, self._urgent, self._unseen, self._matches):
+        for memory in (
+            self._outcomes,
+            self._effects,
+            self._idle,
+            self._urgent,
+            self._unseen,
+            self._focused,
+            self._matches,
+        ):
             memory.clear()
 
     def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
@@ -148,6 +162,20 @@ class Moves:
                         steps += drive.steps(state, event, ())
             found = self._unseen[state] = self._possible(steps)
         return found
+
+    def _silent(self, explanation: Explanation, focus: FocusOf | None) -> Iterator[Step]:
+        """What may happen without a call, as far as what is observed next can tell."""
+        state = explanation.state
+        if self.spec.silent_for is not None and focus is not None:
+            key = (state, focus(explanation))
+            found = self._focused.get(key)
+            if found is None:
+                found = self._focused[key] = self._possible(self.spec.silent_for(*key))
+            yield from found
+            return
+        yield from self.urgent(state)
+        if self._may_go_on(explanation):
+            yield from self.unseen(state)
 
     def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
         """The ways in which a message shows what is owed."""
@@ -259,16 +287,16 @@ class Moves:
                         if bound:
                             yield from self.addressed(bound, args)
 
-    def silent(self, explanation: Explanation, besides: int | None = None) -> Iterator[Sighting]:
+    def silent(
+        self, explanation: Explanation, besides: int | None = None, focus: FocusOf | None = None
+    ) -> Iterator[Sighting]:
         """Everything that an explanation can become next without anybody seeing it.
 
-        Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves.
+        Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves,
+        as far as what is observed next can tell where `focus` says what that is.
         """
-        for step in self.urgent(explanation.state):
+        for step in self._silent(explanation, focus):
             yield from self._sight(explanation, step, besides)
-        if self._may_go_on(explanation):
-            for step in self.unseen(explanation.state):
-                yield from self._sight(explanation, step, besides)
         for position, (request, args, _) in enumerate(explanation.lost):
             for where, refs in self.addressed(explanation, args):
                 for step in self.effects(where.state, request, refs):
@@ -336,8 +364,10 @@ class Moves:
                 return None
         return ahead.narrowed(explanation)
 
-    def closure(self, starts: Iterable[Explanation], besides: int | None = None) -> Iterator[Sighting]:
-        """Explanations and everything that they can silently become, nearest first.
+    def closure(
+        self, starts: Iterable[Explanation], besides: int | None = None, focus: FocusOf | None = None
+    ) -> Iterator[Sighting]:
+        """Explanations and everything that they can silently become, nearest first; `focus` as in `silent`.
 
         One that has used up more lost calls than another at the same point is left out, and so is all that follows.
         """
@@ -351,7 +381,7 @@ class Moves:
                 yield sighting
                 later += (
                     Sighting(next_one.explanation, sighting.rules + next_one.rules)
-                    for next_one in self.silent(sighting.explanation, besides)
+                    for next_one in self.silent(sighting.explanation, besides, focus)
                 )
             todo = later
 

@@ -10,6 +10,9 @@ import itertools
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
+from attrs import evolve
+
+from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Refs
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Match, Mismatch, Step
@@ -29,7 +32,7 @@ from missionfsm.oracle.explanation import (
     with_lost,
 )
 from missionfsm.oracle.subsumption import sift
-from missionfsm.oracle.successors import Moves, Seen, Sighting
+from missionfsm.oracle.successors import FocusOf, Moves, Seen, Sighting
 
 
 class Oracle:
@@ -62,9 +65,10 @@ class Oracle:
         found: Iterable[Sighting] = self.explained(explanations, kind, *what)
         if self.eager:
             found = (*found, *self._leniently(1, explanations, kind, *what))
-        kept = sift(self.moves, found)
+        about = self._about(kind, *what)
+        kept = sift(self.moves, found, about)
         for more in () if kept else self._beyond(explanations, kind, *what):
-            kept = kept or sift(self.moves, more)
+            kept = kept or sift(self.moves, more, about)
         return kept
 
     @property
@@ -160,7 +164,7 @@ class Oracle:
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, answer, names):
                 yield Sighting(tidy(after), rules)
-        for sighting in self.moves.closure(undone, besides=call):
+        for sighting in self.moves.closure(undone, besides=call, focus=self._before_answer(call, answer)):
             position = _position(sighting.explanation, call)
             if position is not None:
                 for after, rules in self._answered(sighting.explanation, position, answer, names):
@@ -270,6 +274,7 @@ class Oracle:
                 yield from self._showings(start, channel, None, content, names, echo=True)
             if not ("equal" in relations and echoes):
                 todo.append((start, None))
+        about = self._before(RECEIVED, channel)
         # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
         seen: dict[Hashable, Seen] = {}
         while todo:
@@ -281,7 +286,7 @@ class Oracle:
                 for skipped, whose in self._passed_over(sighting.explanation, channel, topic):
                     later += (
                         (Sighting(one.explanation, sighting.rules + one.rules), whose)
-                        for one in self.moves.silent(skipped)
+                        for one in self.moves.silent(skipped, focus=about)
                     )
             todo = later
 
@@ -427,7 +432,7 @@ class Oracle:
                 (known if named else unknown).append(explanation)
         if self.spec.closing is not None:
             yield from self._closed((*known, *unknown), name)
-        for sighting in (*map(Sighting, known), *self.moves.closure(unknown)):
+        for sighting in (*map(Sighting, known), *self.moves.closure(unknown, focus=self._before(ENDED, name))):
             here = sighting.explanation
             names = dict.fromkeys(channel.name for channel in here.channels)
             for own in (name,) if name in names else [one for one in names if one < GONE]:
@@ -449,7 +454,7 @@ class Oracle:
         Where all of them have closed it, its name is carried no more.
         """
         assert self.spec.closing is not None  # noqa: S101 - the caller has looked
-        for sighting in self.moves.closure(explanations):
+        for sighting in self.moves.closure(explanations, focus=self._before(ENDED, name)):
             here = sighting.explanation
             if name == GONE or name in here.gone:
                 yield sighting
@@ -469,7 +474,8 @@ class Oracle:
 
     def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Sighting]:
         drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
-        for sighting in self.moves.closure(explanations):
+
+        for sighting in self.moves.closure(explanations, focus=self._before_drive(event, names)):
             here = sighting.explanation
             for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
                 taken = self.moves.advance(here, step, names)
@@ -492,10 +498,59 @@ class Oracle:
                     continue
                 rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
                 for rest in rests:
-                    yield Sighting(rest, sighting.rules)
+                    yield Sighting(self._calmed(rest), sighting.rules)
                 if here.assumed not in (rest.assumed for rest in rests):
-                    later += (Sighting(one.explanation, sighting.rules + one.rules) for one in self.moves.silent(here))
+                    silent = self.moves.silent(here, focus=self._before_rest)
+                    later += (Sighting(one.explanation, sighting.rules + one.rules) for one in silent)
             todo = later
+
+    def _calmed(self, explanation: Explanation) -> Explanation:
+        state = self.spec.calmed(explanation.state)
+        return explanation if state is explanation.state else evolve(explanation, state=state)
+
+    def _about(self, kind: type, *what: Any) -> FocusOf:  # noqa: ANN401
+        """What was observed by an event, seen from what explains it; of an answer no part is told more than before."""
+        if kind is Driven:
+            return self._before_drive(*what)
+        return self._before(RECEIVED, what[-1]) if kind in (Received, Ended) else self._before_rest
+
+    def _before_rest(self, here: Explanation) -> Focus:
+        return Focus(SETTLED, calls=self._in_flight(here))
+
+    def _before_drive(self, event: Hashable, names: Names) -> FocusOf:
+        """That the surroundings do something."""
+
+        def about(here: Explanation) -> Focus:
+            return Focus(DRIVEN, event, tuple(map(here.ref, names)), calls=self._in_flight(here))
+
+        return about
+
+    def _before(self, kind: str, name: int) -> FocusOf:
+        """That something comes on a channel of that name, or on one whose name is not known yet."""
+
+        def about(here: Explanation) -> Focus:
+            topics = tuple(one.topic for one in here.channels if one.name == name or one.name < GONE)
+            return Focus(kind, topics=topics, calls=self._in_flight(here))
+
+        return about
+
+    def _before_answer(self, call: int, answer: Answer) -> FocusOf:
+        """That a call is answered."""
+
+        def about(here: Explanation) -> Focus:
+            asked = next(one for one in here.calls if one.name == call)
+            refs = self.moves.refs(here, asked.args)
+            return Focus(RETURNED, asked.request, refs, answer, calls=self._in_flight(here, besides=call))
+
+        return about
+
+    def _in_flight(self, here: Explanation, besides: int | None = None) -> tuple[tuple[Hashable, Refs], ...]:
+        """The calls that may still take effect, with the positions of their names."""
+        return tuple(
+            (one.request, self.moves.refs(here, one.args))
+            for one in here.calls
+            if one.done is None and one.name != besides
+        )
 
     def _nothing_owed(self, explanation: Explanation, *, loses: bool) -> Iterator[Explanation]:
         """The explanations in which every channel has shown where things stand; none if one has not."""

@@ -89,6 +89,24 @@ def test_the_connection_that_said_the_name_later_is_served() -> None:
     assert right(begun, 30, ("RUNNING", "FAILED_TIMEDOUT"))["as-shipped"] == [("RUNNING", "FAILED_TIMEDOUT")]
 
 
+def test_a_cancellation_that_the_next_pass_notices() -> None:
+    """It need not come at once, whoever is there, but within a second of time that passes (AI-03.when q)."""
+    begun = History().submit(1).submit(2, robot="s", upstream=[1]).robot(1).waits(1).sends(1, 1).settles
+    begun = begun.reports(1, 1, "failure").settles.shows("FAILED", "QUEUED")
+    queued, canceled = ("FAILED", "QUEUED"), ("FAILED", "FAILED_UPSTREAM")
+    assert right(begun, 0.9, queued, canceled)["documented"] == [queued, canceled]
+    assert right(begun, 1.1, queued, canceled)["documented"] == [canceled]
+
+
+def test_a_take_over_that_no_pass_noticed() -> None:
+    """The newer connection is gone before a pass comes: the mission may keep its timeouts or lose them."""
+    begun = sent(start_timeout=2).drive("connect", connection=2).says(2).drive("disconnect", connection=2).settles
+    assert right(begun, 6, STARTED, ABORTED)["as-shipped"] == [STARTED, ABORTED]
+    noticed = sent(start_timeout=2).drive("connect", connection=2).says(2).waits(1.1)
+    noticed = noticed.drive("disconnect", connection=2).settles
+    assert right(noticed, 6, STARTED, ABORTED)["as-shipped"] == [STARTED]
+
+
 def test_the_known_fault_is_named_with_the_upstream_rule() -> None:
     """A downstream fails whose upstream was STARTED when it was made: as shipped; as documented in a short story."""
     for late in (False, True):

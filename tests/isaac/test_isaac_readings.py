@@ -22,13 +22,16 @@ def reading(*choices: str, **settings: float) -> Driver:
 def test_isaac_profiles_by_entry() -> None:
     """Both profiles, entry by entry."""
     documented = {
-        "AI-03": "a", "AI-04": "a", "AI-05": "a", "AI-06": "a", "AI-07": "a", "AI-08": "a", "AI-09": "a",
-        "AI-10": "a", "AI-11": "a", "AI-12": "a", "AI-13": "a", "AI-15": "c", "AI-16": "a", "AI-17": "a",
-        "AI-18": "ac", "AI-19": "c", "AI-21": "a", "AI-22": "ae", "AI-24": "a", "AI-25": "a", "AI-26": "ec",
+        "AI-03": "an", "AI-04": "a", "AI-05": "a", "AI-06": "a", "AI-07": "a", "AI-08": "a", "AI-09": "a",
+        "AI-10": "a", "AI-11": "a", "AI-12": "a", "AI-13": "a", "AI-15": "cn", "AI-16": "alq", "AI-17": "a",
+        "AI-18": "ac", "AI-19": "c", "AI-21": "a", "AI-22": "ae", "AI-24": "ax", "AI-25": "a", "AI-26": "ec",
         "AI-31": "b", "AI-36": "a", "AI-37": "a", "AI-38": "b",
     }  # fmt: skip
     assert DOCUMENTED.readings() == documented
-    assert AS_SHIPPED.readings() == {**documented, "AI-10": "b", "AI-12": "b", "AI-21": "b", "AI-22": "be"}
+    assert AS_SHIPPED.readings() == {
+        **documented, "AI-03": "ap", "AI-10": "b", "AI-12": "b", "AI-15": "cp", "AI-16": "nmr", "AI-21": "b",
+        "AI-22": "be", "AI-24": "aw",
+    }  # fmt: skip
     assert PROFILES == {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
 
 
@@ -522,23 +525,47 @@ def test_isaac_as_shipped_deviations() -> None:
     server.add(channel="m", start_timeout=1.5)
     assert server.wait(1.0) == [0]
     server.add(upstream=[0])
-    assert server.statuses() == ["STARTED", "FAILED_UPSTREAM"]
+    assert server.statuses() == ["STARTED", "QUEUED"]
     server.wait(1.9)
-    assert server.statuses()[0] == "STARTED"
     server.hear(1, says_status(0, RUNNING, "m_status"))
-    assert server.statuses()[0] == "RUNNING"
+    assert server.statuses() == ["RUNNING", "QUEUED"]
     server.hear(1, says_status(0, SUCCESS, "m_status"))
-    server.add(start_timeout=86_400.0)
+    server.wait(0.1)
+    assert server.statuses() == ["SUCCESS", "FAILED_UPSTREAM"]
+    server.add(start_timeout=86_399.0)
     server.add(start_timeout=1.5)
     assert server.wait(1) == [2]
     server.wait(10 * 86_400)
     assert server.statuses()[2:] == ["STARTED", "QUEUED"]
     server.report(1, 2, SUCCESS)
-    assert server.wait(1) == [3]  # 0.9 s ago
-    server.wait(1.0)
+    assert server.wait(1) == [3]
+    server.wait(1.9)
     assert server.statuses()[3] == "STARTED"
-    server.wait(0.2)
+    server.wait(0.1)
     assert server.statuses()[3] == "FAILED_TIMEDOUT"
+
+
+def test_isaac_as_shipped_what_waits_for_a_pass() -> None:
+    """What waits for a pass is given up, run again and forgotten like everything else."""
+    server = Driver(AS_SHIPPED)
+    server.connect(1, "r")
+    server.add()
+    server.add(upstream=[0])
+    server.wait(1)
+    server.report(1, 0, FAILURE)
+    assert server.core.cancel(uuid(0), server.now) == Refused(f"mission {uuid(0)} has ended: FAILED")
+    server.wait(1)
+    assert server.statuses() == ["FAILED", "FAILED_UPSTREAM"]
+    assert not isinstance(server.core.retry(uuid(0), uuid(9), server.now), Refused)
+    assert server.wait(1) == [9]
+    server.report(1, 9, SUCCESS)
+    assert server.wait(1) == [1]
+    server.drop(1)
+    assert server.statuses() == ["SUCCESS", "STARTED"]
+    server.wait(1)
+    assert server.statuses() == ["SUCCESS", "FAILED_DISCONNECTED"]
+    assert server.core.forget(uuid(1)) is None
+    assert server.core.unfinished == 0
 
 
 @st.composite

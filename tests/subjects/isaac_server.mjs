@@ -126,7 +126,7 @@ class MissionServer {
 
   /** Any status acknowledges a mission; a final one ends it, whether or not RUNNING came before (AI-07). */
   #apply(reported, mission) {
-    if (!isUnderWay(mission) && !canReopen(reported)) return;
+    if (!isUnderWay(mission) && !canReopen(reported, mission)) return;
     if (reported === 'RUNNING') this.#run(mission);
     else if (!(reported === 'SUCCESS' && broken('success-ignored'))) mission.status = finalStatus(reported);
   }
@@ -137,6 +137,8 @@ class MissionServer {
       mission.clockStarted = this.#now;
     } else if (broken('status-falls-back')) {
       mission.status = 'STARTED';
+    } else if (broken('timeout-restarts')) {
+      mission.clockStarted = this.#now;
     }
   }
 
@@ -234,6 +236,7 @@ class MissionServer {
 }
 
 function isNameOf(robot, name) {
+  if (broken('name-beginning-suffices')) return name && robot.startsWith(name);
   return broken('name-case-ignored') ? name?.toLowerCase() === robot.toLowerCase() : name === robot;
 }
 
@@ -249,7 +252,8 @@ function finalStatus(reported) {
 }
 
 /** A mission that has ended stays as it ended (AI-09). */
-function canReopen(reported) {
+function canReopen(reported, { status }) {
+  if (broken('failure-overwritten') && status === 'FAILED') return reported === 'SUCCESS';
   return reported === 'RUNNING' ? broken('terminal-revived') : broken('terminal-overwritten');
 }
 

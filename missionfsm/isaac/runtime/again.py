@@ -81,7 +81,8 @@ def restore(
 
 def _renew(mission: MissionRecord) -> None:
     mission.waiting = 0
-    mission.doomed = mission.ended = mission.was_sent = mission.acknowledged = False
+    mission.doomed = mission.ended = mission.was_sent = mission.acknowledged = mission.untimed = False
+    mission.connection = None
 
 
 def _depend(scheduler: Scheduler, mission: MissionRecord) -> None:

@@ -29,6 +29,8 @@ class Profile:
 
     - ``ai_03`` a failure cancels (a) everything downstream, (b) direct downstream, and only where the robot reported
       it, (c) direct downstream alone
+    - ``ai_03_when`` it does so (n) at once, (p) in a scheduling pass in which the downstream heads the queue of a robot
+      that is there and idle
     - ``ai_04`` a submitted mission that waits for upstreams is (a) QUEUED, (b) CREATED
     - ``ai_05`` start_timeout counts from (a) dispatch, (b) submission, (c) upstreams done, (d) the robot's connection
     - ``ai_06`` timeout counts from (a) acknowledgement, (b) dispatch, (c) submission
@@ -42,8 +44,13 @@ class Profile:
     - ``ai_12`` a mission that waits for upstreams (a) is overtaken, (b) holds up those behind it
     - ``ai_13`` of several that are ready (a) the first submitted goes, (b) any does: here the last submitted
     - ``ai_15`` a lost connection (a) changes nothing: timeouts decide, (b) has the mission sent again, (c) fails it
+    - ``ai_15_when`` it is noticed (n) at once, (p) in the next scheduling pass
     - ``ai_16`` of two connections with one name (a) the newer is the robot, (b) the older, until it drops, (d) the
-      older, and the newer is closed
+      older, and the newer is closed, (n) the one that said the name later
+    - ``ai_16_under_way`` what was sent on a connection that another took over from (l) is lost as if it had dropped,
+      (m) goes on there without its timeouts, and the robot is free
+    - ``ai_16_back`` a connection that another took over from is the robot again (q) when it says its name again,
+      (r) never
     - ``ai_17`` another name on a connection is (a) ignored, (b) a new binding
     - ``ai_18_early`` a status before the name is (a) ignored, (b) kept until the name is known
     - ``ai_18_silent`` a connection without a name is (c) kept, (d) closed after ``name_timeout`` seconds
@@ -52,6 +59,8 @@ class Profile:
     - ``ai_22_upstream`` an upstream that was not submitted is (a) waited for, (b) a reason to refuse, (c) submitted too
     - ``ai_22_twice`` a second submission is (d) ignored, (e) refused
     - ``ai_24`` a timeout of 0 means (a) at once, (b) none
+    - ``ai_24_whole`` a timeout has elapsed (x) when so much time has passed, (w) in the first scheduling pass in which
+      more whole seconds of less than a day have passed
     - ``ai_25`` 64-bit integers are taken (a) as strings and numbers, (b) as strings only
     - ``ai_26_bad`` a line that cannot be read is (e) skipped, (f) the end of its connection
     - ``ai_26_last`` a last line without an end is (c) read, (d) not
@@ -64,11 +73,12 @@ class Profile:
 
     The rest are deviations of the shipped server, each a fact about it and none a reading:
     ``status_channel_follows_channel`` (the default status channel is the mission's with ``_status`` appended),
-    ``header_uuid_as_numbers``, ``whole_second_timeouts`` (seconds are compared whole, and one of a day or more never
-    comes), ``started_upstream_fails`` (an upstream that is STARTED when its downstream is made counts as failed).
+    ``header_uuid_as_numbers``, ``names_wait_for_pass`` (a name is noticed in the next scheduling pass),
+    ``started_upstream_fails`` (an upstream that is STARTED when its downstream is made counts as failed).
     """
 
     ai_03: str = _reading("abc", "a")
+    ai_03_when: str = _reading("np", "n")
     ai_04: str = _reading("ab", "a")
     ai_05: str = _reading("abcd", "a")
     ai_06: str = _reading("abc", "a")
@@ -80,7 +90,10 @@ class Profile:
     ai_12: str = _reading("ab", "a")
     ai_13: str = _reading("ab", "a")
     ai_15: str = _reading("abc", "c")
-    ai_16: str = _reading("abd", "a")
+    ai_15_when: str = _reading("np", "n")
+    ai_16: str = _reading("abdn", "a")
+    ai_16_under_way: str = _reading("lm", "l")
+    ai_16_back: str = _reading("qr", "q")
     ai_17: str = _reading("ab", "a")
     ai_18_early: str = _reading("ab", "a")
     ai_18_silent: str = _reading("cd", "c")
@@ -89,6 +102,7 @@ class Profile:
     ai_22_upstream: str = _reading("abc", "a")
     ai_22_twice: str = _reading("de", "e")
     ai_24: str = _reading("ab", "a")
+    ai_24_whole: str = _reading("xw", "x")
     ai_25: str = _reading("ab", "a")
     ai_26_bad: str = _reading("ef", "e")
     ai_26_last: str = _reading("cd", "c")
@@ -101,7 +115,7 @@ class Profile:
     silence_timeout: float = _seconds(10.0)
     status_channel_follows_channel: bool = False
     header_uuid_as_numbers: bool = False
-    whole_second_timeouts: bool = False
+    names_wait_for_pass: bool = False
     started_upstream_fails: bool = False
 
     def readings(self) -> dict[str, str]:
@@ -136,19 +150,28 @@ DOCUMENTED: Final = Profile()
 infinite timeout nothing else would end it."""
 
 AS_SHIPPED: Final = Profile(
+    ai_03_when="p",
     ai_10="b",
     ai_12="b",
     ai_15="c",
+    ai_15_when="p",
+    ai_16="n",
+    ai_16_under_way="m",
+    ai_16_back="r",
     ai_21="b",
     ai_22_upstream="b",
     ai_22_twice="e",
+    ai_24_whole="w",
     scheduling_period=1.0,
     status_channel_follows_channel=True,
     header_uuid_as_numbers=True,
-    whole_second_timeouts=True,
+    names_wait_for_pass=True,
     started_upstream_fails=True,
 )
-"""What is known of the vendor's own server; where nothing is known, as DOCUMENTED."""
+"""What is known of the vendor's own server; where nothing is known, as DOCUMENTED.
+
+All but submissions and lines waits for the scheduling pass, once a second: names, drops, time-outs, cancellations.
+"""
 
 PROFILES: Final = {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
 """The profiles by the name that a command line takes."""

@@ -29,6 +29,8 @@ class MissionRecord:
     acknowledged: bool = False
     heard: float = 0.0
     due: dict[str, float] = attrs.Factory(dict)  # by clock: start, run, silence
+    connection: "ConnectionRecord | None" = None  # that it was sent on
+    untimed: bool = False  # its timeouts count no more (AI-16.under-way m)
 
 
 @attrs.define(eq=False)
@@ -62,4 +64,6 @@ class ConnectionRecord:
     token: str = ""  # what it said last on the token channel
     leaving: bool = False  # its peer sends nothing more, and is sent nothing
     robot: RobotRecord | None = None
+    displaced: bool = False  # another took its robot over
+    kept: dict[Uuid, MissionRecord] = attrs.Factory(dict)  # what goes on here after that (AI-16.under-way m)
     early: list[Message] = attrs.Factory(list)

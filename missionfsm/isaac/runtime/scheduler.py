@@ -7,7 +7,7 @@ promise together. Mutable and pure.
 import heapq
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Final, Protocol, TypeVar
 
 from missionfsm.isaac.runtime.deadlines import Deadlines
@@ -42,10 +42,19 @@ def upstreams_first(mission: _Mission, upstreams: Callable[[_Mission], list[_Mis
 
 
 class Scheduler:
-    """Missions and robots. `close` is called where a connection has to go, with the reason."""
+    """Missions and robots.
 
-    def __init__(self, profile: Profile, close: Callable[[ConnectionRecord, str], None]) -> None:
+    `close` is called where a connection has to go, with the reason; `notice` at the beginning of every scheduling pass,
+    so that what waits for one (drops, names) happens then.
+    """
+
+    def __init__(
+        self, profile: Profile, close: Callable[[ConnectionRecord, str], None], notice: Callable[[], None]
+    ) -> None:
         self.profile = profile
+        self._notice = notice
+        self._unnoticed = False
+        self._overdue: list[tuple[str, MissionRecord]] = []
         self.now = -math.inf
         self.missions: dict[Uuid, MissionRecord] = {}
         self.attempts: dict[Uuid, MissionRecord] = {}
@@ -81,12 +90,16 @@ class Scheduler:
         while True:
             while (entry := self.deadlines.pop(self.now)) is not None:
                 self._due(entry[1], entry[2])
-            if not self._dirty:
+            if not self._dirty and not self._unnoticed:
                 return
             if self.profile.scheduling_period > 0:
                 self._plan_pass()
                 return
             self._pass()
+
+    def wait_for_pass(self) -> None:
+        """Something has happened that the next scheduling pass notices."""
+        self._unnoticed = True
 
     def _plan_pass(self) -> None:
         if self._pass_at is None:
@@ -95,7 +108,17 @@ class Scheduler:
             self._pass_at = at if at > self.now else self.now + period
             self.deadlines.push(self._pass_at, "pass", None)
 
+    def _pass_now(self) -> None:
+        self._pass_at = self.now
+        self.deadlines.push(self.now, "pass", None)
+
     def _pass(self) -> None:
+        self._unnoticed = False
+        self._notice()
+        overdue, self._overdue = self._overdue, []
+        for kind, mission in overdue:
+            if mission.due.get(kind, math.inf) <= self.now:
+                self.abort(mission, Status.FAILED_TIMEDOUT)
         lanes = tuple(self._dirty)
         self._dirty.clear()
         for lane in lanes:
@@ -116,6 +139,9 @@ class Scheduler:
             self._close(target, "it did not say its name in time")
         elif kind == "silence" and target.heard + self.profile.silence_timeout > self.now:
             self.arm(target, "silence", target.heard + self.profile.silence_timeout)
+        elif kind != "silence" and self.profile.ai_24_whole == "w":
+            self._overdue.append((kind, target))
+            self._pass_now()
         else:
             self.abort(target, Status.FAILED_TIMEDOUT)
 
@@ -165,10 +191,16 @@ class Scheduler:
                 other.doomed = other.doomed or not succeeded
                 if other.number < 0 or other.ended:
                     continue
-                if other.doomed and (other.waiting == 0 or self.profile.ai_36 == "a"):
+                if other.doomed and self.profile.ai_03_when == "p":
+                    self._touch(self._lane(self.robots[other.key], other))
+                elif self._canceled(other):
                     work.append((other, Status.FAILED_UPSTREAM))
                 elif other.waiting == 0:
                     self._ready(other)
+
+    def _canceled(self, mission: MissionRecord) -> bool:
+        """Whether a mission is to be cancelled since an upstream failed."""
+        return mission.doomed and (mission.waiting == 0 or self.profile.ai_36 == "a")
 
     def _end(self, mission: MissionRecord, status: Status) -> None:
         self.change(mission, status)
@@ -183,9 +215,15 @@ class Scheduler:
         self._maybe_idle[robot.key] = None
         lane = self._lane(robot, mission)
         if mission.in_flight:
-            mission.in_flight = False
-            del lane.sent[mission.uuid]
+            self._landed(lane, mission)
         self._touch(lane)
+
+    def _landed(self, lane: LaneRecord, mission: MissionRecord) -> None:
+        """A mission that was sent is under way no more."""
+        mission.in_flight = False
+        lane.sent.pop(mission.uuid, None)
+        if mission.connection is not None:
+            mission.connection.kept.pop(mission.uuid, None)
 
     def change(self, mission: MissionRecord, status: Status) -> None:
         """Give a mission another status; it is said only where it is another."""
@@ -198,7 +236,8 @@ class Scheduler:
     def admit(self, mission: MissionRecord, number: int | None = None) -> None:
         """Take a created mission into its robot's queue, behind all others or at a place that it had."""
         robot = self.enter(mission, self.submitted if number is None else number)
-        if mission.doomed and (mission.waiting == 0 or self.profile.ai_36 == "a"):
+        in_a_pass = self.profile.ai_03_when == "p"
+        if self._canceled(mission) and not in_a_pass:
             self.finish(mission, Status.FAILED_UPSTREAM)
             return
         if self.profile.ai_04 == "a":
@@ -208,9 +247,11 @@ class Scheduler:
             self._arm_timeout(mission, "start", request.start_timeout)
         if self.profile.ai_06 == "c":
             self._arm_timeout(mission, "run", request.timeout)
-        if self.profile.ai_12 == "b":
+        if self.profile.ai_12 == "b" or in_a_pass:
             self._lane(robot, mission).line.append(mission)
-        if mission.waiting == 0:
+        if mission.doomed:
+            self._touch(self._lane(robot, mission))
+        elif mission.waiting == 0:
             self._ready(mission)
 
     def enter(self, mission: MissionRecord, number: int) -> RobotRecord:
@@ -251,13 +292,24 @@ class Scheduler:
         return lane
 
     def _dispatch(self, lane: LaneRecord) -> None:
-        connection = lane.robot.connection
-        while connection is not None and not connection.leaving and (not lane.sent or self.profile.ai_11 == "b"):
-            mission = self._take(lane)
+        while (connection := lane.robot.connection) is not None and connection.open and not connection.leaving:
+            if not lane.sent and self.profile.ai_03_when == "p":
+                self._lapse(lane)
+            mission = None if lane.sent and self.profile.ai_11 != "b" else self._take(lane)
             if mission is None:
                 return
             self._send(lane, connection, mission)
-            connection = lane.robot.connection
+
+    def _lapse(self, lane: LaneRecord) -> None:
+        """AI-03.when p: cancel what is doomed at the head of the queue of a robot that is there and idle."""
+        while lane.line:
+            head = lane.line[0]
+            if head.ended or head.in_flight:
+                lane.line.popleft()
+            elif self._canceled(head):
+                self.finish(head, Status.FAILED_UPSTREAM)
+            else:
+                return
 
     def _take(self, lane: LaneRecord) -> MissionRecord | None:
         if self.profile.ai_12 == "a":
@@ -268,16 +320,18 @@ class Scheduler:
             return None
         while lane.line and lane.line[0].ended:
             lane.line.popleft()
-        return lane.line.popleft() if lane.line and lane.line[0].waiting == 0 else None
+        head = lane.line[0] if lane.line else None
+        return lane.line.popleft() if head is not None and head.waiting == 0 and not head.doomed else None
 
     def _send(self, lane: LaneRecord, connection: ConnectionRecord, mission: MissionRecord) -> None:
         profile, request = self.profile, mission.request
-        at_once = request.start_timeout == 0 and profile.ai_24 == "a" and profile.ai_05 == "a"
+        at_once = request.start_timeout == 0 and (profile.ai_24, profile.ai_24_whole, profile.ai_05) == ("a", "x", "a")
         if at_once and profile.ai_07 != "c":
             # Nothing can be acknowledged before no time has passed; a robot is not set going for that.
             self.finish(mission, Status.FAILED_TIMEDOUT)
             return
         mission.in_flight = mission.was_sent = True
+        mission.connection = connection
         lane.sent[mission.uuid] = mission
         self.effects.append(
             Send(connection.id, request.channel, MissionProto(mission.attempt, request.config), mission.uuid)
@@ -293,10 +347,14 @@ class Scheduler:
     # timeouts
 
     def _arm_timeout(self, mission: MissionRecord, kind: str, seconds: float) -> None:
-        if self.profile.whole_second_timeouts and math.isfinite(seconds):
-            seconds = math.ceil(seconds) if math.ceil(seconds) < _DAY else math.inf
-        if math.isfinite(seconds) and not (seconds == 0 and self.profile.ai_24 == "b"):
+        if not math.isfinite(seconds) or mission.untimed or (seconds == 0 and self.profile.ai_24 == "b"):
+            return
+        if self.profile.ai_24_whole == "x":
             self.arm(mission, kind, self.now + seconds)
+        elif math.floor(seconds) + 1 < _DAY:
+            due = self.now + math.floor(seconds) + 1
+            period = self.profile.scheduling_period
+            self.arm(mission, kind, math.ceil(due / period) * period if period > 0 else due)
 
     def arm(self, mission: MissionRecord, kind: str, due: float) -> None:
         """Let a clock of the mission run out at `due`, whatever was said before."""
@@ -312,7 +370,9 @@ class Scheduler:
 
     def abort(self, mission: MissionRecord, status: Status) -> None:
         """Give a mission up; its robot is not told, for there are no words for it."""
-        connection = self.robots[mission.key].connection if mission.in_flight else None
+        connection = mission.connection if mission.in_flight else None
+        if mission.in_flight and (connection is None or not connection.open):
+            connection = self.robots[mission.key].connection
         self.finish(mission, status)
         if connection is not None and self.profile.ai_08 == "c":
             self._close(connection, f"mission {mission.uuid} was aborted")
@@ -335,18 +395,35 @@ class Scheduler:
             for mission in robot.unfinished.values():
                 if not mission.in_flight:
                     mission.due.pop("start", None)
-        if self.profile.ai_15 == "a":
-            return
-        for lane in tuple(robot.lanes.values()):
-            for mission in reversed(tuple(lane.sent.values())):
-                if self.profile.ai_15 == "c":
-                    self.finish(mission, Status.FAILED_DISCONNECTED)
-                else:
-                    self._send_again_later(lane, mission)
+        self._cut_off([mission for lane in robot.lanes.values() for mission in reversed(lane.sent.values())])
+
+    def left(self, robot: RobotRecord, connection: ConnectionRecord) -> None:
+        """AI-16.under-way m: what was sent on a connection goes on there without its timeouts; its robot is free."""
+        for lane in robot.lanes.values():
+            for mission in lane.sent.values():
+                mission.untimed = True
+                mission.due.clear()
+                connection.kept[mission.uuid] = mission
+            lane.sent.clear()
+            self._touch(lane)
+
+    def ended(self, connection: ConnectionRecord) -> None:
+        """A connection is gone on which missions went on after another took its robot over."""
+        self._cut_off(reversed(tuple(connection.kept.values())))
+
+    def _cut_off(self, missions: Iterable[MissionRecord]) -> None:
+        """The connection of missions that were sent is gone (AI-15)."""
+        for mission in missions:
+            if self.profile.ai_15 == "a":
+                mission.connection = None
+            elif self.profile.ai_15 == "c":
+                self.finish(mission, Status.FAILED_DISCONNECTED)
+            else:
+                self._send_again_later(self._lane(self.robots[mission.key], mission), mission)
 
     def _send_again_later(self, lane: LaneRecord, mission: MissionRecord) -> None:
-        del lane.sent[mission.uuid]
-        mission.in_flight = mission.acknowledged = False
+        self._landed(lane, mission)
+        mission.acknowledged = mission.untimed = False
         if self.profile.ai_05 != "b":
             mission.due.pop("start", None)
         if self.profile.ai_06 != "c":

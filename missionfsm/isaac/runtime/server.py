@@ -73,11 +73,13 @@ class MissionServerCore:
         self.profile = profile
         self.name_channel = name_channel
         self._line_limit = line_limit
-        self._scheduler = Scheduler(profile, self._close)
+        self._scheduler = Scheduler(profile, self._close, self._notice)
         keys = None if tokens is None else {self._scheduler.key(name): token for name, token in tokens.items()}
         self._tokens = keys
         self._connections: dict[int, ConnectionRecord] = {}
         self._arrived = 0
+        self._dropped: list[ConnectionRecord] = []
+        self._named: dict[tuple[ConnectionRecord, str], None] = {}
 
     # what can be asked
 
@@ -255,7 +257,11 @@ class MissionServerCore:
         gone = self._connections.pop(connection, None)
         if gone is not None:
             gone.open = False
-            self._unbind(gone)
+            if self.profile.ai_15_when == "p":
+                self._dropped.append(gone)
+                self._scheduler.wait_for_pass()
+            else:
+                self._unbind(gone)
         return self._scheduler.end()
 
     def leaving(self, connection: int) -> None:
@@ -290,11 +296,30 @@ class MissionServerCore:
 
     def _unbind(self, connection: ConnectionRecord) -> None:
         robot, connection.robot = connection.robot, None
+        self._scheduler.ended(connection)
         if robot is None:
             return
         robot.connection = None
         self._scheduler.effects.append(RobotOffline(robot.name, connection.id))
         self._scheduler.lost(robot)
+
+    def _notice(self) -> None:
+        """A scheduling pass begins: drops and names that waited for it."""
+        dropped, self._dropped = self._dropped, []
+        for gone in dropped:
+            self._unbind(gone)
+        named, self._named = self._named, {}
+        for connection, text in named:
+            if connection.open:
+                self._name(connection, text)
+
+    def _says_name(self, connection: ConnectionRecord, text: str) -> None:
+        known = connection.robot is not None and connection.robot.key == self._scheduler.key(text)
+        if not self.profile.names_wait_for_pass or known:  # robots say it again and again
+            self._name(connection, text)
+        else:
+            self._named[connection, text] = None
+            self._scheduler.wait_for_pass()
 
     def _name(self, connection: ConnectionRecord, text: str) -> None:
         key = self._scheduler.key(text)
@@ -304,6 +329,9 @@ class MissionServerCore:
         bound = connection.robot
         if bound is not None and bound.key == key:
             return  # said again, as robots do
+        if connection.displaced and self.profile.ai_16_back == "r":
+            self._ignore(connection, "another connection took its name over")
+            return
         if bound is not None and self.profile.ai_17 == "a":
             self._ignore(connection, "it has a name already and cannot take another")
             return
@@ -311,20 +339,28 @@ class MissionServerCore:
             self._close(connection, f"it says the name {shown(text)} without its token")
             return
         robot = self._scheduler.robot(text)
+        if robot.connection is not None and not robot.connection.open:
+            self._unbind(robot.connection)  # dropped, and no pass has come since
         other = robot.connection
-        if other is not None and self.profile.ai_16 == "d":
+        if other is None:
+            self._unbind(connection)
+            self._scheduler.effects.append(RobotOnline(text, connection.id))
+            self._bind(connection, robot, text)
+        elif self.profile.ai_16 == "d":
             self._close(connection, "another connection has that name")
-            return
-        if other is not None and (self.profile.ai_16 == "b" or other.number > connection.number):
+        elif self.profile.ai_16 == "n" or (self.profile.ai_16 == "a" and connection.number > other.number):
+            self._take_over(connection, robot, other, text)
+        else:
             self._ignore(connection, "another connection has that name")
-            return
-        said: RobotOnline | RobotTakenOver = RobotOnline(text, connection.id)
-        if other is not None:
-            said = RobotTakenOver(text, other.id, connection.id)
-            other.robot = robot.connection = None
+
+    def _take_over(self, connection: ConnectionRecord, robot: RobotRecord, other: ConnectionRecord, text: str) -> None:
         self._unbind(connection)
-        self._scheduler.effects.append(said)
-        if other is not None:
+        other.robot = robot.connection = None
+        other.displaced = True
+        self._scheduler.effects.append(RobotTakenOver(text, other.id, connection.id))
+        if self.profile.ai_16_under_way == "m":
+            self._scheduler.left(robot, other)
+        else:
             self._scheduler.lost(robot)
         self._bind(connection, robot, text)
 
@@ -349,27 +385,25 @@ class MissionServerCore:
                 self._ignore(source, str(message))
         elif isinstance(message.payload, TextProto):
             if message.header.channel == self.name_channel:
-                self._name(source, message.payload.text)
+                self._says_name(source, message.payload.text)
             elif message.header.channel == TOKEN_CHANNEL and self._tokens is not None:
                 source.token = message.payload.text
             else:
                 self._ignore(source, "a text on a channel that is not the name channel")
         elif isinstance(message.payload, MissionProto):
             self._ignore(source, "a mission from a robot")
-        elif source.robot is not None:
-            self._status(source, source.robot, message.header, message.payload)
+        elif source.robot is not None or source.kept:
+            self._status(source, message.header, message.payload)
         elif self.profile.ai_18_early == "b" and len(source.early) < _EARLY:
             source.early.append(message)
         else:
             self._ignore(source, "a status before the name")
 
-    def _status(
-        self, source: ConnectionRecord, robot: RobotRecord, header: Header, payload: MissionStatusProto
-    ) -> None:
-        mission = self._meant(robot, header, payload)
+    def _status(self, source: ConnectionRecord, header: Header, payload: MissionStatusProto) -> None:
+        mission = self._meant(source, header, payload)
         if mission is None:
             self._ignore(source, "a status of no mission of this robot")
-        elif mission.key != robot.key or mission.status_channel != header.channel or not mission.was_sent:
+        elif not _may_report(source, mission) or mission.status_channel != header.channel or not mission.was_sent:
             self._ignore(source, f"a status of mission {mission.uuid}, which is not waited for here")
         elif not mission.in_flight:
             self._late(source, mission, payload.mission_status)
@@ -386,14 +420,15 @@ class MissionServerCore:
         else:
             self._scheduler.finish(mission, _ENDS[payload.mission_status])
 
-    def _meant(self, robot: RobotRecord, header: Header, payload: MissionStatusProto) -> MissionRecord | None:
+    def _meant(self, source: ConnectionRecord, header: Header, payload: MissionStatusProto) -> MissionRecord | None:
         uuid = header.uuid if self.profile.ai_10 == "c" else payload.uuid
         if uuid is not None:
             found = self._scheduler.attempts.get(uuid) or self._scheduler.missions.get(uuid)
             return None if found is None or found.attempt != uuid else found
         if self.profile.ai_10 != "a":
             return None
-        running = (mission for lane in robot.lanes.values() for mission in lane.sent.values())
+        lanes = () if source.robot is None else source.robot.lanes.values()
+        running = [*source.kept.values(), *(mission for lane in lanes for mission in lane.sent.values())]
         return max(
             (mission for mission in running if mission.status_channel == header.channel),
             key=lambda mission: mission.number,
@@ -407,6 +442,14 @@ class MissionServerCore:
             self._scheduler.change(mission, _ENDS[status])
         else:
             self._ignore(source, f"a status of mission {mission.uuid}, which does not run any more")
+
+
+def _may_report(source: ConnectionRecord, mission: MissionRecord) -> bool:
+    """Whether a connection is listened to about a mission: the one that it goes on on, or else that of its robot."""
+    link = mission.connection
+    if mission.in_flight and link is not None and link.kept.get(mission.uuid) is mission:
+        return link is source
+    return source.robot is not None and mission.key == source.robot.key
 
 
 def _same(wanted: str | None, said: str) -> bool:

@@ -7,7 +7,7 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Heard
-from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started
+from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started, untimed
 from missionfsm.isaac.server.readings import (
     AI_07,
     AI_09,
@@ -172,7 +172,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
     newer = slots.index(link.slot) > slots.index(holder.slot)
     for letter, way in ways(move, AI_16, "a", "b", "d", "n"):
         if letter == "n" and "b" in way.state.letters(AI_39):
-            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=LOOK), link, holder)
+            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=LOOK), link, holder, unnoticed=True)
         elif letter == "n" or (letter == "a" and newer):
             yield from _takes_over(way, link, holder)
         elif letter == "d":
@@ -181,7 +181,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
             yield way
 
 
-def _takes_over(move: Move, link: Link, holder: Link) -> Moves:
+def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False) -> Moves:
     displaced = move.link(holder.slot, serves=False)
     under_way = any(one.status in UNDER_WAY and one.link == holder.slot for one in move.state.missions)
     kept = any(one.status in UNDER_WAY and one.link is None and one.robot == holder.name for one in move.state.missions)
@@ -195,14 +195,14 @@ def _takes_over(move: Move, link: Link, holder: Link) -> Moves:
             for after in lost(way, holder):
                 yield from _served(after, link)
         else:
-            yield from _served(_untimed(way, holder), link)
+            yield from _served(_untied(way, holder) if unnoticed else untimed(way, holder.slot), link)
 
 
-def _untimed(move: Move, holder: Link) -> Move:
-    """What was sent on an older connection goes on there without its timeouts (AI-16.under-way m)."""
+def _untied(move: Move, holder: Link) -> Move:
+    """What was sent on an older connection may time out or not until a pass has noticed that another took over."""
     for index, mission in enumerate(move.state.missions):
         if mission.status in UNDER_WAY and mission.link == holder.slot:
-            move = move.mission(index, start=None, run=None, clocks=())
+            move = move.mission(index, clocks=tuple(evolve(one, hi=None) for one in mission.clocks))
     return move
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server.readings import AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31, AMBIGUITIES
-from missionfsm.isaac.server.state import DROP, SILENT, START, Left, Mission, Move, Server
+from missionfsm.isaac.server.state import DOOM, DROP, SILENT, START, Left, Mission, Move, Server
 from missionfsm.kernel.readings import Ambiguity, Assumption
 
 _ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31))
@@ -50,7 +50,7 @@ def _in_time(server: Server, mission: Mission) -> Mission:
 
 def counts(state: Server, kind: str, since: str, *, whole: bool) -> bool:
     """Whether some reading that is left looks at such a clock (AI-05, AI-06, AI-07, AI-24.whole, AI-31)."""
-    if kind == DROP:
+    if kind in (DROP, DOOM):
         return True
     if kind == SILENT:
         return "a" in state.letters(AI_31)

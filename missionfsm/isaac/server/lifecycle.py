@@ -12,6 +12,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.deciding import counts, split, ways
+from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.readings import (
     AI_03,
     AI_03_WHEN,
@@ -34,6 +35,7 @@ from missionfsm.isaac.server.readings import (
 )
 from missionfsm.isaac.server.state import (
     DAY,
+    DOOM,
     DROP,
     FAILURES,
     LIFECYCLE,
@@ -72,7 +74,8 @@ def looks(move: Move) -> Move:
 
 def _later(clock: Clock) -> Clock:
     """The clock of a server that looks now and then; whole seconds are looked at so anyway."""
-    return clock if clock.hi is None or clock.whole or clock.kind == DROP else evolve(clock, hi=clock.hi + LOOK)
+    in_a_pass = clock.whole or clock.kind in (DROP, DOOM)
+    return clock if clock.hi is None or in_a_pass else evolve(clock, hi=clock.hi + LOOK)
 
 
 def started(move: Move, index: int, kind: str, since: str) -> Move:
@@ -85,11 +88,13 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     clocks = [one for one in mission.clocks if (one.kind, one.since) != (kind, since)]
     if counts(move.state, kind, since, whole=False):
         hi = None if kind == SILENT else time + high + slack(move.state)
-        clocks.append(Clock(kind, since, max(0, time + low - tolerance), hi))
+        clocks.append(Clock(kind, since, max(low, time + low - tolerance), hi))
     seconds = time // MICROSECONDS + 1
     if kind != SILENT and seconds < DAY and counts(move.state, kind, since, whole=True):
         whole = seconds * MICROSECONDS
-        clocks.append(Clock(kind, since, max(0, whole + low - tolerance), whole + high + LOOK + tolerance, whole=True))
+        clocks.append(
+            Clock(kind, since, max(low, whole + low - tolerance), whole + high + LOOK + tolerance, whole=True)
+        )
     return _ticking(move, index, clocks)
 
 
@@ -134,25 +139,41 @@ def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
     return move.to(move.state, *because)
 
 
-def cancellations(move: Move) -> Moves:
-    """A doomed mission is cancelled, or is found to wait (AI-03, AI-36); nothing where no mission is due."""
-    for index, mission in enumerate(move.state.missions):
-        if mission.status is not Status.QUEUED or not mission.doomed:
-            continue
-        reported = Status.FAILED in mission.doomed
-        direct = any(one is not Status.CANCELED for one in mission.doomed)
-        yes, no = split(move, AI_03, "a" + ("b" if reported else "") + ("c" if direct else ""))
-        if yes is not None:
-            now, later = split(yes, AI_36, "a") if mission.waits else (yes, None)
-            at_once, waits = (None, None) if now is None else split(now, AI_03_WHEN, "n")
-            if at_once is not None:
-                yield ends(at_once, index, "cancel", rules.CANCELED.id)
-            if waits is not None and waits is not move:
-                yield waits
-            if later is not None and later is not move:
-                yield later
-        if no is not None and no is not move:
-            yield no
+def cancellations(move: Move, part: Part) -> Moves:
+    """A doomed mission is cancelled, or is found to wait (AI-03, AI-36); nothing where no mission is due.
+
+    They make no difference to one another: the first comes first.
+    """
+    for index in part.missions:
+        due = tuple(_cancellation(move, index))
+        if due:
+            yield from due
+            return
+
+
+def _cancellation(move: Move, index: int) -> Moves:
+    mission = move.state.missions[index]
+    if mission.status is not Status.QUEUED or not mission.doomed or any(one.kind == DOOM for one in mission.clocks):
+        return
+    yes, no = split(move, AI_03, _failures_that_cancel(mission))
+    if yes is not None:
+        now, later = split(yes, AI_36, "a") if mission.waits else (yes, None)
+        at_once, noticed = (None, None) if now is None else split(now, AI_03_WHEN, "n")
+        if at_once is not None:
+            yield ends(at_once, index, "cancel", rules.CANCELED.id)
+        soon, waits = (None, None) if noticed is None else split(noticed, AI_03_WHEN, "q")
+        if soon is not None:
+            yield _to_be_noticed(soon, index, DOOM)
+        yield from (one for one in (waits, later) if one is not None and one is not move)
+    if no is not None and no is not move:
+        yield no
+
+
+def _failures_that_cancel(mission: Mission) -> str:
+    """The letters of AI-03 under which the upstreams that failed cancel a mission."""
+    reported = Status.FAILED in mission.doomed
+    direct = any(one is not Status.CANCELED for one in mission.doomed)
+    return "a" + ("b" if reported else "") + ("c" if direct else "")
 
 
 def lapses(state: Server, link: Link) -> list[Move]:
@@ -164,9 +185,7 @@ def lapses(state: Server, link: Link) -> list[Move]:
     if not queue or not state.missions[queue[0]].doomed or busy(state, link):
         return []
     head = state.missions[queue[0]]
-    reported = Status.FAILED in head.doomed
-    direct = any(one is not Status.CANCELED for one in head.doomed)
-    move, _ = split(Move(state), AI_03, "a" + ("b" if reported else "") + ("c" if direct else ""))
+    move, _ = split(Move(state), AI_03, _failures_that_cancel(head))
     if move is not None and head.waits:
         move, _ = split(move, AI_36, "a")
     return [] if move is None else [ends(move, queue[0], "cancel", rules.CANCELED.id)]
@@ -187,11 +206,17 @@ def busy(state: Server, link: Link) -> set[str]:
     }
 
 
-def dispatches(move: Move) -> Moves:
-    """Every way to send a mission now to a robot that is there; where that is left to later, the decision alone."""
+def dispatches(move: Move, part: Part) -> Moves:
+    """Every way to send a mission now to a robot that is there; where that is left to later, the decision alone.
+
+    Robots make no difference to one another, unless they share missions that name none: the first comes first.
+    """
     for link in move.state.links:
-        if link.serves and link.name is not None:
-            yield from dispatches_to(move, link)
+        if link.serves and link.name is not None and link.slot in part.slots:
+            ways = tuple(dispatches_to(move, link))
+            yield from ways
+            if ways and "b" not in move.state.letters(AI_19):
+                return
 
 
 def dispatches_to(move: Move, link: Link) -> Moves:
@@ -330,10 +355,10 @@ def sends(move: Move, link: Link, index: int) -> Moves:
     yield move.emit(link.slot, index, view).to(move.state, *because)
 
 
-def urgent(move: Move) -> tuple[Move, ...]:
-    """What follows from where things stand, one thing at a time."""
-    due = tuple(cancellations(move))
-    return due or tuple(dispatches(move))
+def urgent(move: Move, part: Part) -> tuple[Move, ...]:
+    """What follows from where things stand in a part of the server, one thing at a time."""
+    due = tuple(cancellations(move, part))
+    return due or tuple(dispatches(move, part))
 
 
 # Clocks that strike.
@@ -358,6 +383,8 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
 
     if clock.kind == DROP:
         return tuple(_noticed(move, index)), ()
+    if clock.kind == DOOM:
+        return (ends(move, index, "cancel", rules.CANCELED.id),), ()
     unlike: Move | None = None
     if clock.kind != SILENT:
         alike, unlike = split(move, AI_24_WHOLE, "w" if clock.whole else "x")
@@ -410,6 +437,14 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
         yield from closed(closing, link)
 
 
+def untimed(move: Move, slot: int) -> Move:
+    """What was sent on an older connection goes on there without its timeouts (AI-16.under-way m)."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.status in UNDER_WAY and mission.link == slot:
+            move = move.mission(index, start=None, run=None, clocks=())
+    return move
+
+
 # Connections that go.
 
 
@@ -437,7 +472,7 @@ def lost(move: Move, link: Link) -> Moves:
             here, later = split(way, AI_15_WHEN, "n")
         for index in affected:
             if later is not None:
-                later = _to_be_noticed(later.mission(index, link=None), index)
+                later = _to_be_noticed(later.mission(index, link=None), index, DROP)
             if here is not None and letter == "a":
                 here = here.mission(index, link=None)
             elif here is not None and letter == "c":
@@ -447,12 +482,13 @@ def lost(move: Move, link: Link) -> Moves:
         yield from (one for one in (here, later) if one is not None)
 
 
-def _to_be_noticed(move: Move, index: int) -> Move:
-    """The next scheduling pass notices that a mission's connection has dropped; one that is to come notices all."""
+def _to_be_noticed(move: Move, index: int, kind: str) -> Move:
+    """The next scheduling pass notices a drop or a failed upstream; one that is to come notices all."""
+    low, high = move.at
     clocks = move.state.missions[index].clocks
-    if any(one.kind == DROP for one in clocks):
+    if any(one.kind == kind for one in clocks):
         return move
-    return _ticking(move, index, (*clocks, Clock(DROP, "drop", 0, move.at[1] + LOOK + move.state.tolerance)))
+    return _ticking(move, index, (*clocks, Clock(kind, kind, low, high + LOOK + move.state.tolerance)))
 
 
 def _was_on(mission: Mission, link: Link) -> bool:

@@ -35,13 +35,19 @@ AI_03 = Ambiguity(
     },
     default="a",
     flagged=_flags("bc"),
+    rule="a-failed-upstream-cancels",
 )
 AI_03_WHEN = Ambiguity(
     "AI-03.when",
     "When is a mission cancelled whose upstream has failed?",
-    {"n": "at once", "p": "in a scheduling pass in which it heads the queue of a robot that is there and idle"},
+    {
+        "n": "at once",
+        "q": "in the next scheduling pass",
+        "p": "in a scheduling pass in which it heads the queue of a robot that is there and idle",
+    },
     default="n",
     flagged=_flags("p"),
+    rule="a-failed-upstream-cancels",
 )
 AI_04 = Ambiguity(
     "AI-04",
@@ -60,6 +66,7 @@ AI_05 = Ambiguity(
     },
     default="a",
     flagged=_flags("bcd"),
+    rule="start-timeout-aborts",
 )
 AI_06 = Ambiguity(
     "AI-06",
@@ -67,6 +74,7 @@ AI_06 = Ambiguity(
     {"a": "from the acknowledgement", "b": "from when the mission is sent", "c": "from its submission"},
     default="a",
     flagged=_flags("c"),
+    rule="/timeout-aborts",
 )
 AI_07 = Ambiguity(
     "AI-07",
@@ -78,6 +86,7 @@ AI_07 = Ambiguity(
     },
     default="a",
     flagged=_flags("bc"),
+    rule="a-final-status-ends-the-mission",
 )
 AI_08 = Ambiguity(
     "AI-08",
@@ -92,6 +101,7 @@ AI_09 = Ambiguity(
     {"a": "nothing", "b": "the last one counts", "c": "the first after an abort counts"},
     default="a",
     flagged=_flags("bc"),
+    rule="an-ended-mission-stays-ended",
 )
 AI_10 = Ambiguity(
     "AI-10",
@@ -109,6 +119,7 @@ AI_11 = Ambiguity(
     {"a": "one", "b": "all that are ready", "c": "one on each channel"},
     default="a",
     flagged=_flags("b"),
+    rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_12 = Ambiguity(
     "AI-12",
@@ -128,6 +139,7 @@ AI_14_STATUS = Ambiguity(
     {"a": '"mission_status"', "b": "its channel's name with _status appended"},
     default="a",
     flagged=_flags("b"),
+    rule="running-acknowledges",
 )
 AI_15 = Ambiguity(
     "AI-15",
@@ -215,6 +227,7 @@ AI_22_STARTED = Ambiguity(
     },
     default="a",
     flagged=_flags("ij"),
+    rule="a-failed-upstream-cancels",
 )
 AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a")
 AI_24_WHOLE = Ambiguity(
@@ -226,6 +239,7 @@ AI_24_WHOLE = Ambiguity(
     },
     default="x",
     flagged=_flags("w"),
+    rule="timeout-aborts",
 )
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
@@ -239,6 +253,7 @@ AI_25_HEADER = Ambiguity(
     {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
     default="s",
     flagged=_flags("n"),
+    rule="64-bit-integers-are-strings",
 )
 AI_26 = Ambiguity(
     "AI-26",
@@ -251,6 +266,7 @@ AI_28_CONFIG = Ambiguity(
     "How does a MissionProto carry its configuration?",
     {"a": "as an object", "b": "as a string that holds JSON"},
     default="b",
+    rule="a-mission-carries-its-configuration",
 )
 AI_31 = Ambiguity(
     "AI-31",
@@ -258,6 +274,7 @@ AI_31 = Ambiguity(
     {"a": "yes, after some time", "b": "no"},
     default="b",
     flagged=_flags("a"),
+    rule="silence-is-no-loss",
 )
 AI_33_NULL = Ambiguity(
     "AI-33.null", "What is a configuration that is null?", {"a": "an empty one", "b": "a reason to refuse"}, default="a"
@@ -280,6 +297,7 @@ AI_38 = Ambiguity(
     {"a": "it is skipped", "d": "its connection is closed"},
     default="a",
     flagged=_flags("d"),
+    rule="what-means-nothing-has-no-effect",
 )
 AI_39 = Ambiguity(
     "AI-39",

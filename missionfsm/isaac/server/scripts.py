@@ -112,6 +112,18 @@ _SCRIPTS = (
     .report(0, 0, "success")
     .report(0, 1, "running")
     .report(0, 1, "failure"),
+    # The last of two upstreams succeeds first, and the first of two.
+    _Script()
+    .submit(A)
+    .submit(B)
+    .submit("carter-03", 0, 1)
+    .submit("carter-04", 1, 0)
+    .robot(0, A)
+    .robot(1, B)
+    .robot(2, "carter-03")
+    .robot(3, "carter-04")
+    .report(1, 1, "success")
+    .report(0, 0, "running"),
     # A failure cancels all that depends on it, and nothing else.
     _Script()
     .submit(A)
@@ -153,6 +165,14 @@ _SCRIPTS = (
     .report(0, 1, "running")
     .report(0, 0, "failure")
     .report(0, 1, "success"),
+    # RUNNING that is said again and again gives no more time.
+    _Script()
+    .submit(A, timeout=4)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .report(0, 0, "running")
+    .report(0, 0, "running")
+    .wait(3),
     # Half of a timeout is not enough.
     _Script().submit(A, timeout=8).robot(0, A).report(0, 0, "running").wait(5).report(0, 0, "running").wait(5),
     # How long an acknowledgement takes shows from when timeout counts.
@@ -174,6 +194,16 @@ _SCRIPTS = (
     .report(0, 0, "success")
     .report(0, 0, "failure")
     .report(0, 0, "running"),
+    # No later word undoes an end, whichever it was.
+    _Script()
+    .submit(A)
+    .submit(A)
+    .submit(B, 0)
+    .robot(0, A)
+    .report(0, 0, "failure")
+    .report(0, 0, "success")
+    .report(0, 1, "success")
+    .report(0, 1, "failure"),
     # A robot that reports nothing for long, though it was acknowledged, is still at it.
     _Script().submit(A).robot(0, A).report(0, 0, "running").wait(60).report(0, 0, "success"),
     # What was queued waits for its robot; what is done is not sent again.
@@ -235,6 +265,8 @@ _SCRIPTS = (
     .report(2, 0, "running")
     .name(2, A)
     .report(2, 0, "success"),
+    # Names that begin alike are two.
+    _Script().submit(A).submit(A[:-1]).robot(0, A[:-1]).wait().robot(1, f"{A}0").wait(),
     # Lines that are no messages are nobody's loss.
     _Script()
     .submit(A)
@@ -285,6 +317,7 @@ _SCRIPTS = (
     .drop(1),
     # An upstream that was sent and not acknowledged when its downstream came.
     _Script().submit(A).robot(0, A).submit(A, 0).wait().report(0, 0, "success").report(0, 1, "running"),
+    _Script().submit(A).robot(0, A).robot(1, B).submit(B, 0).wait().report(0, 0, "success"),
     # Timeouts of 0.
     _Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
     # One upstream fails while the other runs.

@@ -16,6 +16,7 @@ from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, sha
 from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe
+from missionfsm.isaac.server.independence import Part, concerned, parts
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Heard, Passes, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
 from missionfsm.isaac.server.readings import (
@@ -46,9 +47,10 @@ from missionfsm.isaac.server.state import (
     emissions,
     topic,
 )
-from missionfsm.isaac.server.time import at_any_time, passes
+from missionfsm.isaac.server.time import calmed, passes, unseen
 from missionfsm.isaac.shared.line import Said
 from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
@@ -106,12 +108,14 @@ def _submitted(
 ) -> tuple[Step, ...]:
     ask = Ask(request, upstream)
     found: list[Step] = []
+    handles = tuple(None if one is None else 2 * one for one in upstream)
+    quiet = calmed(server, concerned(server, Focus(RETURNED, request, handles)))
     for decision in decide(operation.blocking(server, ask)):
         if decision.code is not None:
             told = tuple(rule.id for rule in decision.rules)
             found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=told))
             continue
-        for move in _taken(server, request, tuple(sorted({one for one in upstream if one is not None}))):
+        for move in _taken(quiet, request, tuple(sorted({one for one in upstream if one is not None}))):
             handle = 2 * len(server.missions) + len(server.links)
             step = _step(server, move, new=(handle, handle + 1), assumes=decision.assumes)
             found.append(evolve(step, answer=Answer(OK), refs=(handle,), kinds=("mission", "uuid")))
@@ -187,7 +191,8 @@ def _line(server: Server, heard: Heard, refs: tuple[int | None, ...]) -> tuple[S
         return ()
     named = _meant(server, refs[1]) if heard.named else None
     header = _meant(server, refs[-1]) if heard.header else None
-    moves = merged(hears(Move(server), server.links[position], heard, named, header))
+    quiet = calmed(server, concerned(server, Focus(DRIVEN, heard, refs)))
+    moves = merged(hears(Move(quiet), quiet.links[position], heard, named, header))
     return tuple(_step(server, move) for move in moves)
 
 
@@ -199,7 +204,8 @@ def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
-    return tuple(_step(server, move) for move in merged(drops(Move(server), server.links[position])))
+    quiet = calmed(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
+    return tuple(_step(server, move) for move in merged(drops(Move(quiet), quiet.links[position])))
 
 
 @functools.lru_cache(maxsize=20_000)
@@ -228,12 +234,50 @@ def _closing(server: Server, at: Hashable) -> tuple[Step, ...]:
 
 
 def _urgent(server: Server) -> tuple[Step, ...]:
+    return next((due for part in parts(server) if (due := _urgent_in(server, part))), ())
+
+
+def _urgent_in(server: Server, part: Part) -> tuple[Step, ...]:
     # Decisions alone are kept apart: one that was undone would be due again.
-    return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server))))
+    return tuple(_step(server, move) for move in dict.fromkeys(urgent(Move(server), part)))
 
 
 def _spontaneous(server: Server) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for move in at_any_time(server))
+    return tuple(_step(server, move) for part in parts(server) for move in unseen(server, part))
+
+
+@functools.lru_cache(maxsize=20_000)
+def _silent_in(server: Server, part: Part) -> tuple[Step, ...]:
+    return (*_urgent_in(server, part), *(_step(server, move) for move in dict.fromkeys(unseen(server, part))))
+
+
+def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
+    """What may have happened before an observation, in the parts that it is about.
+
+    What settled can tell of is urgent. All statuses tell of all parts, and of one after the other: of the first that is
+    not shown as it stands.
+    """
+    if focus.kind == SETTLED:
+        return _urgent(server)
+    if focus.kind == RETURNED and isinstance(focus.what, Statuses):
+        return _silent_before(server, focus)
+    return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part))
+
+
+def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
+    shown = None if focus.answer is None else focus.answer.shape
+    if not isinstance(shown, tuple) or len(shown) != len(server.missions):
+        return ()
+    for part in parts(server):
+        if any(not _may_be_called(server.missions[index], shown[index]) for index in part.missions):
+            return _silent_in(server, part)
+    return ()
+
+
+def _may_be_called(mission: Mission, word: object) -> bool:
+    """Whether a mission that stands where it stands is called so under some reading."""
+    words = {_word(mission, names, waiting) for names in AI_02.readings for waiting in AI_04.readings}
+    return word in words or ("lost" in words and word in ("failed", "aborted"))
 
 
 # What is seen.
@@ -263,13 +307,14 @@ def _shown(server: Server) -> Iterator[Step]:
         found[shape] = (before[0] + names * (names not in before[0]), before[1] + waiting * (waiting not in before[1]))
     handles = tuple(2 * index for index in range(len(server.missions)))
     told = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
+    quiet = calmed(server)
     for shape, letters in sorted(found.items(), key=lambda one: AI_02.default not in one[1][0]):
         assumes = tuple(
             question[tuple(kept)]
             for question, kept in zip((AI_02, AI_04), letters, strict=True)
             if len(kept) < len(question.readings)
         )
-        yield Step(server, answer=Answer(OK, shape), refs=handles, rules=told, assumes=assumes)
+        yield Step(quiet, answer=Answer(OK, shape), refs=handles, rules=told, assumes=assumes)
 
 
 def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
@@ -287,12 +332,29 @@ def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
     ]
     if not wrong:
         return (Match(),)
-    for one, other in wrong:
-        if other == "canceled":
-            says = f"a mission that is {one} is shown as canceled, though no upstream of it has failed"
-            return Mismatch(rules.CANCELED.id, says)
-    one, other = wrong[0]
-    return Mismatch(OPERATIONS["statuses"].promises[0].id, f"a mission that is {one} is shown as {other}")
+    one, other = next((pair for pair in wrong if pair[1] == "canceled"), wrong[0])
+    besides = ", though no upstream of it has failed" if other == "canceled" else ""
+    return Mismatch(_broken(one, other), f"a mission that is {one} is shown as {other}{besides}")
+
+
+_GIVEN_UP = ("aborted", "timed out")
+_REPORTED = ("success", "failed")
+
+
+def _broken(one: str, other: str) -> str:
+    """The rule that a server breaks that shows a mission as `other` where it is `one`."""
+    pair = {one, other}
+    if "canceled" in pair:
+        return rules.CANCELED.id
+    if not pair.isdisjoint(_GIVEN_UP):
+        return (rules.OVERRUN if "running" in pair else rules.ABORTED).id
+    if "lost" in pair:
+        return rules.DROPPED.id
+    if not pair.isdisjoint(_REPORTED):
+        return (rules.LATE if pair <= set(_REPORTED) else rules.FINAL).id
+    if pair == {"started", "running"}:
+        return rules.RUNNING.id
+    return (OPERATIONS["statuses"].promises[0] if pair == {"queued", "created"} else rules.SENT).id
 
 
 def _matches(view: Sends, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:
@@ -355,6 +417,19 @@ POSSIBILITIES = tuple(
 )
 
 
+def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | None, ...]) -> tuple[str, ...]:
+    """The rules that a server breaks that sends a mission now: before its upstreams, to another robot, or twice."""
+    link = next((one for one in server.links if topic(one.slot) == at), None)
+    if link is None or not isinstance(content, Said) or any(ref is not None for ref in refs):
+        return ()
+    alike = [one for one in server.missions if (one.channel, one.config) == (content.channel, content.what)]
+    queued = [one for one in alike if one.status is Status.QUEUED]
+    own = [one for one in queued if link.serves and one.robot == link.name]
+    if any(one.waits or one.doomed for one in own):
+        return (rules.UPSTREAM.id, rules.SENT.id)
+    return (rules.UNNAMED.id,) if queued and not own else ()
+
+
 _DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=True)
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
@@ -378,10 +453,13 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         },
         urgent=_urgent,
         spontaneous=_spontaneous,
+        silent_for=_silent_for,
+        calmed=calmed,
         matches=_matches,
         delivery=lambda _: _DELIVERY,
         closing=_closing,
         unopened=(rules.UNNAMED.id,),
+        unowed=_unowed,
         sequence=lambda _: (),
         names=lambda server: 2 * len(server.missions) + len(server.links),
         request_operation=lambda request: str(request.operation),

@@ -74,7 +74,7 @@ LIFECYCLE: Chart[Status] = Chart(
 """The lifecycle of one mission; being submitted is its start, and AI-09 b and c are no moves but corrections."""
 
 ENDED = frozenset(LIFECYCLE.final)
-START, RUN, SILENT, DROP = "start", "run", "silent", "drop"
+START, RUN, SILENT, DROP, DOOM = "start", "run", "silent", "drop", "doom"
 
 
 @value(cache_hash=True)
@@ -82,9 +82,10 @@ class Clock:
     """A clock of a mission that runs.
 
     Attributes:
-        kind: `START`, `RUN`, `SILENT` or `DROP` (until a connection that dropped is noticed).
-        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send``, ``status`` or ``drop``.
-        lo: microseconds until it may strike.
+        kind: `START`, `RUN`, `SILENT`, or what a scheduling pass has yet to notice: `DROP` (a connection that dropped),
+            `DOOM` (an upstream that failed).
+        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send``, ``status``, ``drop`` or ``doom``.
+        lo: microseconds until it may strike; below 0 where it may have struck so long ago and nothing was seen of it.
         hi: microseconds until it must have struck; None: it never has to.
         whole: whether it counts whole seconds (AI-24.whole w).
     """
@@ -157,6 +158,8 @@ class Link:
         early: statuses that came before the name and are kept (AI-18.early b).
         over: the slot of the connection that it took over from, as long as no pass need have noticed that (AI-39 b).
         fresh: microseconds until a pass must have noticed it.
+        look: how many microseconds ago a scheduling pass may have come that sent or cancelled something here and of
+            which nothing was seen yet (AI-39 b); None: none may have.
     """
 
     slot: int
@@ -165,6 +168,7 @@ class Link:
     early: tuple[Report, ...] = ()
     over: int | None = None
     fresh: int = 0
+    look: int | None = None
 
 
 Left = tuple[tuple[str, str], ...]

@@ -1,8 +1,11 @@
 """Time that passes at the server: clocks strike, and what follows happens when they do.
 
 An exact simulation over intervals: everything that is due has an earliest and a latest moment, and the order in which
-things happen is any that these allow. Where all moments are exact, which they are unless AI-39 is read as b, there is
-one order but for what falls on the same moment.
+things happen is any that these allow, in each part of the server by itself (`missionfsm.isaac.server.independence`).
+Only what must have happened by the end is decided. What may have happened is left open: its clock says since when it
+may have struck, its connection since when a pass may have come. It is decided when something is observed that tells of
+it (`unseen`), or turns out not to have happened before (`calmed`). Where all moments are exact, which they are unless
+AI-39 is read as b, nothing is left open but what falls on the very end.
 """
 
 from __future__ import annotations
@@ -13,61 +16,75 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.lifecycle import lapses, possible, sends, strikes, urgent
-from missionfsm.isaac.server.readings import AI_39
-from missionfsm.isaac.server.state import LOOK, Clock, Link, Move, Server, Status
+from missionfsm.isaac.server.deciding import merged
+from missionfsm.isaac.server.independence import Part, parts
+from missionfsm.isaac.server.lifecycle import lapses, possible, sends, strikes, untimed, urgent
+from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39
+from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Move, Server
 from missionfsm.kernel.values import value
 
-Look = tuple[int, int, int]
-"""AI-39 b: a connection's slot, and since when a mission can be sent on it, at the earliest and at the latest."""
+EVER = 10**15
+"""Longer ago than anything happened, in microseconds."""
 
 
 @value(cache_hash=True)
 class _Here:
-    """A moment on the way: what was done until then, and what the server has yet to look at."""
+    """A moment on the way, in one part: what was done until then, and what the server has yet to look at.
+
+    Attributes:
+        low: the moment at the earliest.
+        looks: slots of connections for which a pass would do something, each with since when, at the earliest and at
+            the latest.
+    """
 
     move: Move
-    looks: tuple[Look, ...]
+    low: int
+    looks: tuple[tuple[int, int, int], ...]
 
 
 def passes(state: Server, time: int) -> tuple[Move, ...]:
     """Everything that may have become of a server when so many microseconds have passed."""
+    begins = [Move(state)]
+    for part in parts(state):
+        begins = [after for move in begins for after in _followed(move, part)]
+    moves = _all_until(begins, state, time, due=False)
+    if any(_falls_on(move.state, time) for move in moves):  # it has happened rather than not
+        moves = _all_until(begins, state, time, due=True) + moves
     found: dict[object, Move] = {}
-    seen: set[_Here] = set()
-    todo = [_Here(Move(state), ())]
+    for move in moves:
+        after = _shifted(move, time)
+        found.setdefault((after.state, after.sent), after)
+    return tuple(found.values())
+
+
+def _all_until(begins: list[Move], state: Server, time: int, *, due: bool) -> list[Move]:
+    moves = begins
+    for part in parts(state):
+        moves = list(merged(after for move in moves for after in _until(move, part, time, due=due)))
+    return moves
+
+
+def _falls_on(state: Server, time: int) -> bool:
+    """Whether a clock that has not struck is due at this very moment at the latest."""
+    return any(clock.hi == time for mission in state.missions for clock in mission.clocks)
+
+
+def _followed(move: Move, part: Part) -> list[Move]:
+    """What follows at once in a part, at the moment of the move."""
+    found: dict[Move, None] = {}
+    todo = [move]
     while todo:
         here = todo.pop()
-        if here in seen:
-            continue
-        seen.add(here)
-        follows = _follows(here.move)
-        if follows:
-            todo += [evolve(here, move=_tidy(one)) for one in reversed(follows)]
-            continue
-        here = _looking(here)
-        latest = _latest(here)
-        later = list(_next(here, min(latest, time)))
-        todo += reversed(later)
-        if latest >= time and all(last + _pass(here) > time for _, _, last in here.looks):
-            after = _shifted(here.move, time)
-            found.setdefault((after.state, after.sent), after)
-    return tuple(sorted(found.values(), key=lambda one: -_done(state, one.state)))
+        follows = _urgent(here.state, here.at, part)
+        if not follows:
+            found[_tidy(here)] = None
+        todo += [Move(one.state, here.sent + one.sent, here.rules + one.rules, one.at) for one in reversed(follows)]
+    return list(found)
 
 
 @functools.lru_cache(maxsize=50_000)
-def _urgent(state: Server, at: tuple[int, int]) -> tuple[Move, ...]:
-    return urgent(Move(state, at=at))
-
-
-def _follows(move: Move) -> tuple[Move, ...]:
-    return tuple(
-        Move(one.state, move.sent + one.sent, move.rules + one.rules, one.at) for one in _urgent(move.state, move.at)
-    )
-
-
-def _done(before: Server, after: Server) -> int:
-    """How many missions have another status: what is due by the very end is done rather than not."""
-    return sum(one.status is not other.status for one, other in zip(before.missions, after.missions, strict=True))
+def _urgent(state: Server, at: tuple[int, int], part: Part) -> tuple[Move, ...]:
+    return urgent(Move(state, at=at), part)
 
 
 def _tidy(move: Move) -> Move:
@@ -75,62 +92,103 @@ def _tidy(move: Move) -> Move:
     return evolve(move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0])))
 
 
-def _looking(here: _Here) -> _Here:
-    """Which connections a scheduling pass would send something on or cancel something for, and since when."""
-    state = here.move.state
-    known = {slot: (first, last) for slot, first, last in here.looks}
-    looks = tuple(
-        (link.slot, *known.get(link.slot, here.move.at))
-        for link in state.links
-        if link.serves and ((state.letters(AI_39) == "b" and possible(state, link)) or lapses(state, link))
-    )
-    return evolve(here, looks=looks)
+def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
+    """What may have become of a part at a time, with all decided that must have happened by then.
 
-
-def _pass(here: _Here) -> int:
-    """How long a scheduling pass is in coming at the latest, in microseconds."""
-    return here.move.state.tolerance + LOOK
-
-
-def _latest(here: _Here) -> float:
-    """Until when something has to have happened, at the latest."""
-    due = [clock.hi for mission in here.move.state.missions for clock in mission.clocks if clock.hi is not None]
-    due += [last + _pass(here) for _, _, last in here.looks]
-    return min(due, default=math.inf)
-
-
-def _next(here: _Here, until: float) -> Iterator[_Here]:
-    """Everything that may happen next, no later than `until`."""
-    low, _ = here.move.at
-    for index, mission in enumerate(here.move.state.missions):
-        for clock in mission.clocks:
-            if clock.lo <= until:
-                yield from _strike(here, index, clock, until)
-    for slot, first, last in here.looks:
-        link = here.move.state.link(slot)
-        when = (max(low, first), int(min(last + _pass(here), until)))
-        if link is None or when[0] > when[1]:
+    Args:
+        due: whether a clock that must have struck by that very moment has; passes have come.
+    """
+    start = _here(evolve(move, at=(0, 0)), -EVER, part, ())
+    seen: set[_Here] = set()
+    todo = [start]
+    while todo:
+        here = todo.pop()
+        if here in seen:
             continue
-        at = evolve(here.move, at=when)
+        seen.add(here)
+        strike, comes = _latest(here, part)
+        if comes > time and (strike > time or (strike == time and not due)):
+            since = {slot: first for slot, first, _ in here.looks}
+            after = here.move
+            for slot in part.slots:
+                link = after.state.link(slot)
+                if link is not None and link.look != since.get(slot):
+                    after = after.link(slot, look=since.get(slot))
+            yield evolve(after, at=(0, 0))
+            continue
+        todo += reversed(list(_next(here, part, int(min(strike, comes)))))
+
+
+def _here(move: Move, low: int, part: Part, looks: tuple[tuple[int, int, int], ...]) -> _Here:
+    """The moment after a move, with the passes that are waited for."""
+    known = {slot: (first, last) for slot, first, last in looks}
+    found = []
+    for slot in part.slots:
+        link = move.state.link(slot)
+        if link is not None and _waits_for_pass(move.state, link):
+            first, last = known.get(slot, move.at)
+            found.append((slot, first if link.look is None else min(first, -link.look), last))
+    return _Here(move, low, tuple(found))
+
+
+def _waits_for_pass(state: Server, link: Link) -> bool:
+    """Whether a scheduling pass would send something on a connection or cancel something for it."""
+    later = state.letters(AI_39) == "b"
+    return link.serves and bool((later and possible(state, link)) or lapses(state, link))
+
+
+def _pass(state: Server) -> int:
+    """How long a scheduling pass is in coming at the latest, in microseconds."""
+    return state.tolerance + LOOK
+
+
+def _latest(here: _Here, part: Part) -> tuple[float, float]:
+    """Until when a clock has to have struck in a part, and a pass to have come, at the latest."""
+    state = here.move.state
+    due = (clock.hi for index in part.missions for clock in state.missions[index].clocks if clock.hi is not None)
+    looks = (last + _pass(state) for _, _, last in here.looks)
+    return min(due, default=math.inf), min(looks, default=math.inf)
+
+
+def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+    """Everything that may happen next in a part, no later than `until`."""
+    for index in part.missions:
+        for clock in here.move.state.missions[index].clocks:
+            if clock.lo <= until:
+                yield from _strike(here, part, index, clock, until)
+    for slot, first, last in here.looks:
+        when = (max(here.low, first), min(last + _pass(here.move.state), until))
+        if when[0] > when[1]:
+            continue
         rest = tuple(one for one in here.looks if one[0] != slot)
-        for lapsed in lapses(here.move.state, link):
-            ended = Move(lapsed.state, at.sent, at.rules + lapsed.rules, when)
-            yield _Here(_tidy(ended), rest)
-        for index, chosen in possible(here.move.state, link) if here.move.state.letters(AI_39) == "b" else ():
-            for after in sends(at.to(chosen.state), link, index):
-                yield _Here(_tidy(after), rest)
+        for after in _looked(evolve(here.move, at=when), slot, part):
+            yield _here(after, when[0], part, rest)
 
 
-def _strike(here: _Here, index: int, clock: Clock, until: float) -> Iterator[_Here]:
-    low, _ = here.move.at
-    last = until if clock.hi is None else min(clock.hi, until)
-    when = (max(low, clock.lo), int(max(low, last)))
-    if when[0] > when[1]:
+def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
+    """What a scheduling pass does for a connection at the moment of the move."""
+    link = move.state.link(slot)
+    if link is None:
         return
+    here = move if link.look is None else move.link(slot, look=None)
+    link = evolve(link, look=None)
+    for lapsed in lapses(here.state, link):
+        yield from _followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
+    for index, chosen in possible(here.state, link) if here.state.letters(AI_39) == "b" else ():
+        for after in sends(here.to(chosen.state), link, index):
+            yield from _followed(after, part)
+
+
+def _strike(here: _Here, part: Part, index: int, clock: Clock, until: int) -> Iterator[_Here]:
+    low = max(here.low, clock.lo)
+    when = (low, max(low, until if clock.hi is None else min(clock.hi, until)))
     aborting, meaningless = strikes(evolve(here.move, at=when), index, clock)
-    yield from (evolve(here, move=_tidy(one)) for one in aborting)
+    for one in aborting:
+        for after in _followed(one, part):
+            yield _here(after, low, part, here.looks)
     if clock.hi is not None and clock.hi <= until:
-        yield from (evolve(here, move=evolve(_tidy(one), at=here.move.at)) for one in meaningless)
+        for one in meaningless:
+            yield from (_here(after, here.low, part, here.looks) for after in _followed(one, part))
 
 
 def _shifted(move: Move, time: int) -> Move:
@@ -139,7 +197,7 @@ def _shifted(move: Move, time: int) -> Move:
         evolve(
             one,
             clocks=tuple(
-                evolve(clock, lo=max(0, clock.lo - time), hi=None if clock.hi is None else max(0, clock.hi - time))
+                evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(0, clock.hi - time))
                 for clock in one.clocks
             ),
         )
@@ -147,23 +205,75 @@ def _shifted(move: Move, time: int) -> Move:
         else one
         for one in move.state.missions
     )
-    links = tuple(_noticed(one, time) if one.fresh else one for one in move.state.links)
-    return evolve(_tidy(move), state=evolve(move.state, missions=missions, links=links), at=(0, 0))
+    after = evolve(_tidy(move), state=evolve(move.state, missions=missions), at=(0, 0))
+    for link in move.state.links:
+        if link.look is not None:
+            after = after.link(link.slot, look=time - link.look)
+        if link.fresh:
+            after = _noticed(after, link, time)
+    return after
 
 
-def _noticed(link: Link, time: int) -> Link:
+def _noticed(move: Move, link: Link, time: int) -> Move:
     """A connection that took over from another, so much later: a pass has noticed it after a while."""
     fresh = max(0, link.fresh - time)
-    return evolve(link, fresh=fresh, over=link.over if fresh else None)
+    after = move.link(link.slot, fresh=fresh, over=link.over if fresh else None)
+    if not fresh and link.over is not None and move.state.letters(AI_16_UNDER_WAY) == "m":
+        return untimed(after, link.over)
+    return after
 
 
-def at_any_time(state: Server) -> tuple[Move, ...]:
-    """Clocks that may strike now, though they need not before more time has passed."""
-    return tuple(
-        move
-        for index, mission in enumerate(state.missions)
-        if mission.status in (Status.QUEUED, Status.STARTED, Status.RUNNING)
-        for clock in mission.clocks
-        if clock.lo == 0
-        for move in strikes(Move(state), index, clock)[0]
+def unseen(state: Server, part: Part) -> Iterator[Move]:
+    """What may have happened in a part by now though it need not: clocks that have struck, passes that have come."""
+    for index in part.missions:
+        for clock in state.missions[index].clocks:
+            if clock.lo <= 0:
+                for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
+                    yield from (_looking(after, part) for after in _followed(one, part))
+    for slot in part.slots:
+        link = state.link(slot)
+        if link is not None and link.look is not None:
+            for one in _looked(Move(state, at=(-link.look, 0)), slot, part):
+                yield _looking(one, part)
+
+
+def _looking(move: Move, part: Part) -> Move:
+    """After something that happened unseen: a pass may have come since."""
+    low = move.at[0]
+    for slot in part.slots:
+        link = move.state.link(slot)
+        if link is None:
+            continue
+        look = None
+        if low < 0 and _waits_for_pass(move.state, link):
+            look = -low if link.look is None else min(link.look, -low)
+        if look != link.look:
+            move = move.link(slot, look=look)
+    return evolve(move, at=(0, 0))
+
+
+def calmed(state: Server, only: tuple[Part, ...] | None = None) -> Server:
+    """The server where nothing that is left open has happened before now, in some of its parts or in all.
+
+    When a drop is noticed is left open: what follows may look as before.
+    """
+    missions = range(len(state.missions)) if only is None else [index for part in only for index in part.missions]
+    late = [
+        index
+        for index in missions
+        if any(clock.lo < 0 and clock.kind != DROP for clock in state.missions[index].clocks)
+        and state.missions[index].status not in ENDED
+    ]
+    slots = None if only is None else {slot for part in only for slot in part.slots}
+    looks = any(link.look is not None and (slots is None or link.slot in slots) for link in state.links)
+    if not late and not looks:
+        return state
+    after = list(state.missions)
+    for index in late:
+        clocks = tuple(evolve(one, lo=0) if one.lo < 0 and one.kind != DROP else one for one in after[index].clocks)
+        after[index] = evolve(after[index], clocks=clocks)
+    links = tuple(
+        evolve(one, look=None) if one.look is not None and (slots is None or one.slot in slots) else one
+        for one in state.links
     )
+    return evolve(state, missions=tuple(after), links=links)

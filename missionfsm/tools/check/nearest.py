@@ -248,19 +248,24 @@ class Nearest:
 
     def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
         """Nothing is owed: the message is the last one again, or shows what was never reached."""
+        own: tuple[str, ...] = ()
+        if self.spec.unowed is not None:
+            refs = tuple(map(here.ref, message.given))
+            own = self.spec.unowed(here.state, channel.topic, message.content, refs)
         if channel.last is None:
-            yield Problem("nothing is owed to it yet", delivery.unowed, UNOWED)
+            yield Problem("nothing is owed to it yet", own or delivery.unowed, UNOWED)
             return
         wrong = self._matched(here, channel, channel.last, message)
         if wrong:
             last = described(self.spec, channel.last.view)
-            rules = (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
+            rules = own or (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
             says = f"nothing changed since it showed {last}: " + "; ".join(one.says for one in wrong)
             yield Problem(says, rules, UNOWED + wrong[0].weight)
         elif delivery.repeats:
             yield from self._readings(here, (delivery.repeats,))
         else:
-            yield Problem("it shows again what it showed last, though nothing changed", delivery.unowed, UNOWED)
+            says = "it shows again what it showed last, though nothing changed"
+            yield Problem(says, own or delivery.unowed, UNOWED)
 
     def _matched(self, here: Explanation, channel: Channel, owed: Owed, message: _Message) -> list[Problem]:
         """What keeps a message from being the showing of what is owed."""

@@ -69,16 +69,17 @@ def _suspect(system: System, history: tuple[JSON, ...], at: int, readings: Mappi
     return Suspect(f"{described(system.spec, request)} was answered {code}", code, rules)
 
 
-def with_suspects(system: System, violation: Violation) -> Violation:
+def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:
     """The violation with a note on answers before it that may be the ones that are wrong.
 
     Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
-    nothing to be wrong about. Where it is what is shown, the rules of the only suspect come first.
+    nothing to be wrong about. Where it is what is shown, the rules of the only suspect come first. `readings` are those
+    that the implementation has to follow.
     """
     if not violation.history:
         return violation
     answered = "return" in violation.history[-1]
-    found = [one for one in suspects(system, violation.history) if not answered or one.code != OK]
+    found = [one for one in suspects(system, violation.history, readings) if not answered or one.code != OK]
     if not found or len(found) > MOST:
         return violation
     notes = tuple(f"without this answer everything is explained: {one.says}" for one in found)

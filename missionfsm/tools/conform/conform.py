@@ -170,7 +170,7 @@ def verdict_of(
         judge = run.found.judge
         assert judge.violation is not None, "what was found was not explained"  # noqa: S101 - shorten keeps it so
         outcome, followed = Outcome.VIOLATES, judge.belief.readings
-        violation = with_suspects(run.system, judge.violation)
+        violation = with_suspects(run.system, judge.violation, run.narrowing.asked_for)
     elif ledger.contradiction is not None:
         if asks_again:
             shorten_evidence(run)

@@ -36,6 +36,12 @@ class Narrowing:
         """The one that judges now."""
         return self.narrow or self.wide
 
+    @property
+    def asked_for(self) -> dict[str, str]:
+        """The letters that were left open from the start, of each question that was not left open whole."""
+        left = {one: one.possible(self.wide.assumed) for one in self.wide.spec.ambiguities}
+        return {one.id: "".join(letters) for one, letters in left.items() if len(letters) < len(one.readings)}
+
     def look(self, conversation: Conversation) -> None:
         """Take into account how many explanations a conversation has."""
         self.widest = max(self.widest, len(conversation.judge.belief.node.explanations))

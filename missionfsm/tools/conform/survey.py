@@ -96,4 +96,4 @@ def _finding(run: Run, violation: Violation, about: frozenset[str]) -> Finding:
     if run.ledger.contradiction is not None or run.last is None:
         return Finding(violation, story(run.system, violation.history), about)
     shown = shortened(run, run.last, known=lambda _: False).judge.violation or violation
-    return Finding(with_suspects(run.system, shown), story(run.system, shown.history), about)
+    return Finding(with_suspects(run.system, shown, run.narrowing.asked_for), story(run.system, shown.history), about)

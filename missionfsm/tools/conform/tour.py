@@ -27,9 +27,9 @@ FAVOURED = 0.5
 
 def some(scripts: Scripts, most: int | None) -> Scripts:
     """All, or at most so many from everywhere among them."""
-    if most is None:
+    if most is None or most >= len(scripts):
         return scripts
-    return scripts[:: max(1, -(-len(scripts) // most))] if most else ()
+    return tuple(scripts[at * len(scripts) // most] for at in range(most))
 
 
 def play(run: Run, most: int | None = None) -> bool:

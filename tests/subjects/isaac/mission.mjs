@@ -72,6 +72,7 @@ function hasFailed({ status }) {
 /** Every upstream has completed successfully; completing alone is not enough (AI-01). */
 export function isReady({ robot, upstream }) {
   if (broken('any-upstream-suffices') && upstream.length > 0) return upstream.some(isCompleted);
+  if (broken('first-upstream-suffices')) return upstream.slice(0, 1).every(isCompleted);
   if (broken('other-robots-upstream-unseen') && upstream.some((mission) => mission.robot !== robot)) return false;
   return upstream.every(isCompleted);
 }

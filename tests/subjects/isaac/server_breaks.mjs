@@ -15,6 +15,7 @@ const CATALOGUE = {
   // Dependencies
   'downstream-early': 'Mission Dependencies: a mission is sent while its upstream is still running',
   'any-upstream-suffices': 'Mission Dependencies: one completed upstream of several is enough to be sent',
+  'first-upstream-suffices': 'Mission Dependencies: only the upstream that is named first is waited for',
   'failed-upstream-counts': 'Mission Dependencies: a mission is sent though its upstream failed',
   'timed-out-upstream-counts': 'Mission Dependencies: a mission is sent though its upstream was aborted',
   'cancelled-upstream-counts': 'Mission Dependencies: a mission is sent though its upstream was cancelled',
@@ -25,6 +26,7 @@ const CATALOGUE = {
   // Identification
   'unnamed-served': 'Robot Identification: a mission is sent on a connection that has not named its robot',
   'any-channel-names': 'Robot Identification: a text on any channel is taken as the name',
+  'name-beginning-suffices': 'Robot Identification: carter-0 gets the missions of carter-01',
   'name-case-ignored': 'Robot Identification: Carter-01 gets the missions of carter-01',
   'wrong-robot': 'Robot Identification: missions go to the newest connection that has a name, whosever it is',
   'namesakes-both-served': 'Robot Identification: of two connections with one name both get the mission',
@@ -52,6 +54,7 @@ const CATALOGUE = {
   'success-ignored': 'Mission Codelet: a SUCCESS goes unnoticed',
   'success-as-failed': 'Mission Codelet: a SUCCESS counts as failure',
   'failure-as-success': 'Mission Codelet: a FAILURE counts as success',
+  'failure-overwritten': 'Mission Codelet (one final status): a later SUCCESS replaces a FAILURE',
   'terminal-overwritten': 'Mission Codelet (one final status): a later final status replaces the first',
   'terminal-revived': 'Mission Codelet (one final status): RUNNING revives a mission that had ended',
   'bad-line-deafens': 'JsonTcpServer Class: after one line that is not JSON no client is heard any more',
@@ -62,6 +65,7 @@ const CATALOGUE = {
   'start-timeout-fixed': 'Sample Usage › start_timeout: is 5 seconds for every mission',
   'start-timeout-despite-acknowledgement': 'Sample Usage › start_timeout: aborts a mission that was acknowledged',
   'timeout-never': 'Sample Usage › timeout: a mission that does not complete is not aborted',
+  'timeout-restarts': 'Sample Usage › timeout: every RUNNING gives the mission its whole time again',
   'timeout-halved': 'Sample Usage › timeout: strikes after half of its time',
   'aborted-resent': 'Sample Usage › start_timeout: a mission that was aborted is sent once more',
   'abort-as-success': 'Sample Usage › timeout: an aborted mission is reported as SUCCESS',

@@ -1,0 +1,185 @@
+"""Missions, robots and clocks that have nothing to do with one another do not multiply, and nothing is lost by that."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import pytest
+from server_history import SERVER, History
+from test_isaac_runtime_profiles import Live
+
+from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
+from missionfsm.isaac.server.independence import Part, concerned, parts
+from missionfsm.isaac.server.inputs import Passes
+from missionfsm.isaac.server.spec import SPEC
+from missionfsm.isaac.server.state import Link, Mission, Server, Status
+from missionfsm.kernel.focus import DRIVEN, RECEIVED, Focus
+from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.transcript import Head
+from missionfsm.tools.check.judge import Judge, check
+
+FULL = attrs.evolve(SERVER, spec=attrs.evolve(SPEC, silent_for=None))
+"""The same server, with everything thought of that may have happened before each observation, in whatever order."""
+
+
+def robots_away(count: int) -> History:
+    history = History()
+    for number in range(1, count + 1):
+        history.submit(number, robot=f"r{number}")
+    return history
+
+
+def fleet(count: int) -> History:
+    """So many robots with a mission each, sent by a server that looks about once a second."""
+    history = robots_away(count)
+    for number in range(1, count + 1):
+        history.robot(number, f"r{number}")
+    history.settles.waits(1)
+    for number in range(count, 0, -1):
+        history.sends(number, number)
+    return history.settles
+
+
+def widest(history: History) -> int:
+    """The most explanations that there are after any of the lines."""
+    judge = Judge(SERVER, Head("isaac.server", {}, ("connect", "line", "disconnect", "advance")))
+    most = 0
+    for line in history.lines:
+        assert judge.feed(line)
+        most = max(most, len(judge.belief.node.explanations))
+    return most
+
+
+def test_independent_missions_do_not_multiply() -> None:
+    """A hundred missions wait for a minute, for one robot or for as many: as many explanations as with ten."""
+    assert widest(robots_away(100).waits(60).settles) == widest(robots_away(10).waits(60).settles)
+    one_robot = History()
+    for number in range(1, 101):
+        one_robot.submit(number)
+    assert widest(one_robot.waits(60).settles) == widest(robots_away(10).waits(60).settles)
+
+
+def test_independent_robots_do_not_multiply() -> None:
+    """Of twelve robots each may have been looked at or not, each mission may have timed out or not."""
+
+    def done(count: int) -> History:
+        history = fleet(count).waits(5.5).settles
+        half = ["FAILED_TIMEDOUT" if number % 2 else "STARTED" for number in range(count)]
+        return history.shows(*half).waits(0.9).settles.shows(*["FAILED_TIMEDOUT"] * count)
+
+    assert widest(done(12)) <= 2 * widest(done(3))
+
+
+def test_parts() -> None:
+    """Missions are together that wait for one another, or have a robot that is there; ended ones are nobody's."""
+
+    def mission(robot: str, *waits: int, status: Status = Status.QUEUED) -> Mission:
+        return Mission(robot, "mission", None, "{}", None, None, waits=waits, status=status)
+
+    server = Server(
+        missions=(
+            mission("a", status=Status.SUCCESS),
+            mission("a"),
+            mission("a"),
+            mission("b"),
+            mission("c"),
+            mission("d", 3),
+            mission("c"),
+        ),
+        links=(Link(0, "c", serves=True), Link(1)),
+    )
+    separate = (Part((1,), ()), Part((2,), ()), Part((3, 5), ()), Part((4, 6), (0,)), Part((), (1,)))
+    assert parts(server) == separate
+    assert concerned(server, Focus(RECEIVED, topics=(("link", 0),))) == (separate[3],)
+    assert concerned(server, Focus(DRIVEN, Passes(1_000_000))) == ()
+
+
+def told(history: History, system: Any, readings: Mapping[str, str]) -> tuple[bool, str]:
+    """Whether a history is explained, and which readings are left."""
+    head = Head("isaac.server", {}, ("connect", "line", "disconnect", "advance"))
+    verdict = check(system, head, history.lines, readings=readings)
+    return verdict.conforms, repr(sorted(verdict.readings.items())) if verdict.conforms else ""
+
+
+def lived(draw: random.Random, profile: Profile) -> Live:
+    """A short life of a server with two robots."""
+    it = Live(profile)
+    connected: list[str] = []
+    for _ in range(draw.randint(5, 9)):
+        what = draw.choice(["mission", "mission", "robot", "report", "report", "wait", "wait", "wait"])
+        if what == "mission" and it.calls < 5:
+            upstream = [1] if it.server._missions and draw.random() < 0.4 else []
+            it.mission(draw.choice("rs"), upstream=upstream, start_timeout=draw.choice([1, 2.5]))
+        elif what == "robot" and len(connected) < 2:
+            connected.append("rs"[len(connected)])
+            it.connects().named(len(connected), connected[-1])
+        elif what == "report" and it.sent:
+            link = draw.randint(1, len(connected))
+            it.says_it(link, draw.randrange(len(it.sent)), draw.choice(["running", "success", "failure"]))
+        else:
+            it.after(draw.choice([0.4, 0.9, 1.3, 2.6]))
+    return it.after(0.7)
+
+
+def spoilt(draw: random.Random, it: History) -> History:
+    """The history with one status shown otherwise, or one line left out or moved."""
+    lines = list(it.lines)
+    shown = [at for at, line in enumerate(lines) if line.get("result", {}).get("missions")]
+    sent = [at for at, line in enumerate(lines) if "connection" in line]
+    if sent and draw.random() < 0.4:
+        lines.pop(draw.choice(sent))
+    else:
+        at = draw.choice(shown)
+        missions = dict(lines[at]["result"]["missions"])
+        missions[draw.choice(list(missions))] = draw.choice(["QUEUED", "STARTED", "RUNNING", "FAILED_TIMEDOUT"])
+        lines[at] = {**lines[at], "result": {"missions": missions}}
+    other = History()
+    other.lines = lines
+    return other
+
+
+def compared(seed: int) -> None:
+    draw = random.Random(seed)
+    profile, readings = draw.choice(
+        [(DOCUMENTED, {"AI-39": "a"}), (attrs.evolve(DOCUMENTED, scheduling_period=1.0), {"AI-39": "b"})]
+    )
+    if draw.random() < 0.3:
+        profile, readings = AS_SHIPPED, dict(SERVER.profiles["as-shipped"])
+    readings = {"AI-05": "a", "AI-06": "a", "AI-07": "a", "AI-08": "a", "AI-31": "b", **readings}
+    it = lived(draw, profile)
+    assert told(it, SERVER, readings) == told(it, FULL, readings)
+    assert told(it, SERVER, readings)[0]
+    if any(line.get("result", {}).get("missions") for line in it.lines):
+        other = spoilt(draw, it)
+        assert told(other, SERVER, readings) == told(other, FULL, readings)
+
+
+def test_what_is_left_out_explains_nothing_more() -> None:
+    """On lives of two robots, also with something wrong, the verdict is that of the full exploration."""
+    for seed in range(20):
+        compared(seed)
+
+
+@pytest.mark.slow
+def test_what_is_left_out_explains_nothing_more_often() -> None:
+    """So it is on many more."""
+    for seed in range(20, 70):
+        compared(seed)
+
+
+def test_the_full_exploration_is_another_one() -> None:
+    """What it is compared with does think of more: twice as many robots, many times as many explanations looked at."""
+    spent = {}
+    for name, spec in (("focused", SPEC), ("full", FULL.spec)):
+        automaton = Automaton(spec, ("connect", "line", "disconnect", "advance"))
+        judge = Judge(attrs.evolve(SERVER, spec=spec), Head("isaac.server", {}, automaton.moves.driven), automaton)
+        assert isinstance(judge.belief, Belief)
+        costs = []
+        for line in fleet(5).waits(5.5).settles.shows(*["FAILED_TIMEDOUT"] * 5).lines:
+            judge.feed(line)
+            costs.append(automaton.moves.spent)
+        spent[name] = max(costs)
+    assert spent["full"] > 4 * spent["focused"]

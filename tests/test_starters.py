@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 import sys
@@ -17,7 +16,6 @@ from missionfsm import conform
 STARTERS = Path(__file__).parent.parent / "examples" / "adapters"
 GSON = Path("/usr/share/java/gson.jar")
 CRATES = Path("/usr/share/cargo/registry")
-NO_CODE = re.compile(r"\s*(//.*|#.*|/\*\*.*)?$")
 
 
 def _built(*command: str | Path, **more: Any) -> None:
@@ -83,7 +81,7 @@ def test_a_starter_conforms(language: str, tmp_path: Path) -> None:
     ],
 )
 def test_a_starter_is_short(path: str, most: int) -> None:
-    """A starter is read in a few minutes: so many lines of code, without blank lines and comments."""
+    """A starter is read in a few minutes: so many lines, blank ones and comments among them."""
     lines = (STARTERS / path).read_text().splitlines()
-    assert sum(not NO_CODE.match(line) for line in lines) < most
+    assert len(lines) < most
     assert max(map(len, lines)) <= 120

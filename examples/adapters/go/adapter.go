@@ -1,6 +1,4 @@
-// A robot in memory behind missionfsm's adapter protocol: put your own in its place.
-//
-//	go build -o adapter examples/adapters/go/adapter.go && missionfsm conform bear.mission -- ./adapter
+// A robot in memory behind missionfsm's adapter protocol: put your own in its place; `go build adapter.go` builds it.
 package main
 
 import (
@@ -14,14 +12,13 @@ const declared = `{"implementation": {"name": "starter in Go", "version": "1"},
 	"drives": ["goalReached", "missionFailed"], "methods": ["CreateMission", "SubscribeMissionStatus"],
 	"worlds": "fixed", "world": {"family": "base", "destinations": ["kitchen", "table-1"]},
 	"requests": "binary"}` // nothing of a wrong type is sent: your gRPC library would not let it in either
-
 type object = map[string]any
 
 var destinations = map[any]bool{"kitchen": true, "table-1": true}
 var ends = map[any]string{"goalReached": "STATE_SUCCEEDED", "missionFailed": "STATE_FAILED"}
-var missions, current = []object{}, -1  // in their order; the index of the one that runs, -1 for none
-var streams = map[any]string{}          // each stream, with what it was shown last
-var streamNumber, sequenceNumber = 0, 0 // none comes twice, not even after a reset
+var missions, current = []object{}, -1 // in their order; the index of the one that runs, -1 for none
+var streams = map[any]string{}         // each stream, with what it was shown last
+var streamNumber, sequence = 0, 0      // none comes twice, not even after a reset
 
 func at(value any, path ...string) any { // what stands in an object of objects, or nil
 	for _, name := range path {
@@ -68,8 +65,7 @@ func answer(method any, params any) object {
 		return create(at(params, "mission", "baseMission"))
 	case "SubscribeMissionStatus":
 		streamNumber++
-		streams[float64(streamNumber)] = "" // a number is a float64 in JSON
-		result["stream"] = streamNumber
+		result["stream"], streams[float64(streamNumber)] = streamNumber, "" // a number is a float64 in JSON
 	case "drive":
 		if result["happened"] = current >= 0; current >= 0 {
 			missions[current]["state"], current = ends[at(params, "event")], -1
@@ -94,10 +90,9 @@ func main() {
 		states := object{"missions": missions, "currentMissionIndex": current}
 		for stream, shown := range streams {
 			if now := fmt.Sprint(states); now != shown {
-				streams[stream], sequenceNumber = now, sequenceNumber+1
-				metadata := object{"timestamp": time.Now().Format(time.RFC3339Nano), "sequenceNumber": sequenceNumber}
-				params := object{"stream": stream, "message": object{"metadata": metadata, "missionStates": states}}
-				out.Encode(object{"jsonrpc": "2.0", "method": "message", "params": params})
+				streams[stream], sequence = now, sequence+1
+				message := object{"metadata": object{"timestamp": time.Now(), "sequenceNumber": sequence}, "missionStates": states}
+				out.Encode(object{"jsonrpc": "2.0", "method": "message", "params": object{"stream": stream, "message": message}})
 			}
 		}
 	}

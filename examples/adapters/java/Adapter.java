@@ -1,21 +1,12 @@
 // A robot in memory behind missionfsm's adapter protocol: put your own in its place.
-//
 // javac -cp /usr/share/java/gson.jar -d build examples/adapters/java/Adapter.java
 // missionfsm conform bear.mission -- java -cp /usr/share/java/gson.jar:build Adapter
 
-import com.google.gson.Gson;
-import com.google.gson.JsonElement;
-import com.google.gson.JsonObject;
-import java.io.BufferedReader;
-import java.io.InputStreamReader;
-import java.io.PrintStream;
+import com.google.gson.*;
+import java.io.*;
 import java.nio.charset.StandardCharsets;
 import java.time.Instant;
-import java.util.ArrayList;
-import java.util.List;
-import java.util.Map;
-import java.util.Set;
-import java.util.TreeMap;
+import java.util.*;
 
 /** Missions in their order, of which the first that has not ended runs. */
 public final class Adapter {
@@ -39,81 +30,73 @@ public final class Adapter {
     static int streamNumber; // none comes twice, not even after a reset
     static int sequenceNumber; // likewise
 
-    /** The call is answered with a status. */
-    static final class Refused extends Exception {
-        final String status;
-
-        Refused(String status, String message) {
-            super(message);
-            this.status = status;
-        }
-    }
-
-    public static void main(String[] args) throws Exception {
+    public static void main(String[] args) throws IOException {
         var in = new BufferedReader(new InputStreamReader(System.in, StandardCharsets.UTF_8));
         for (String line = in.readLine(); line != null; line = in.readLine()) {
             JsonObject asked = JSON.fromJson(line, JsonObject.class);
-            JsonObject reply = object("jsonrpc", "2.0", "id", asked.get("id"));
-            try {
-                reply.add("result", answer(asked.get("method").getAsString(), asked.getAsJsonObject("params")));
-            } catch (Refused refused) {
-                reply.add("error", object("code", CODES.get(refused.status), "message", refused.getMessage(),
-                    "data", object("status", refused.status)));
-            }
+            JsonObject reply = answer(asked.get("method").getAsString(), asked.getAsJsonObject("params"));
+            reply.addProperty("jsonrpc", "2.0");
+            reply.add("id", asked.get("id"));
             OUT.println(reply);
             show();
         }
     }
 
-    static JsonObject answer(String method, JsonObject params) throws Refused {
+    static JsonObject answer(String method, JsonObject params) {
+        JsonObject result = object();
         switch (method) {
-            case "initialize":
-                return JSON.fromJson(DECLARED, JsonObject.class);
-            case "reset":
+            case "initialize" -> result = JSON.fromJson(DECLARED, JsonObject.class);
+            case "reset" -> {
                 missions.clear();
                 streams.clear();
-                return object();
-            case "settle": // nothing is under way: what was caused has been written
-                return object();
-            case "cancel":
-                streams.remove(params.get("stream").getAsInt());
-                return object();
-            case "drive":
+            }
+            case "settle" -> { } // nothing is under way: what was caused has been written
+            case "cancel" -> streams.remove(params.get("stream").getAsInt());
+            case "drive" -> {
                 JsonObject mission = current();
                 if (mission != null) {
                     mission.addProperty("state", ENDS.get(params.get("event").getAsString()));
                 }
-                return object("happened", mission != null);
-            case "SubscribeMissionStatus":
+                result.addProperty("happened", mission != null);
+            }
+            case "SubscribeMissionStatus" -> {
                 streams.put(++streamNumber, "");
-                return object("stream", streamNumber);
-            case "CreateMission":
-            case "AppendMission":
+                result.addProperty("stream", streamNumber);
+            }
+            case "CreateMission", "AppendMission" -> {
                 return assign(params, method.equals("CreateMission"));
-            default:
-                throw new Refused("METHOD_NOT_FOUND", "there is no " + method);
+            }
+            default -> {
+                return refusal("METHOD_NOT_FOUND", "there is no " + method);
+            }
         }
+        return object("result", result);
     }
 
-    static JsonObject assign(JsonObject request, boolean first) throws Refused {
+    static JsonObject refusal(String status, String message) {
+        var data = object("status", status);
+        return object("error", object("code", CODES.get(status), "message", message, "data", data));
+    }
+
+    static JsonObject assign(JsonObject request, boolean first) {
         JsonObject base = inside(inside(request, "mission"), "baseMission");
         String kind = base.keySet().stream().findFirst().orElse("");
         JsonObject wanted = inside(base, kind);
         List<JsonElement> goals =
             wanted.has("goals") ? wanted.getAsJsonArray("goals").asList() : List.of(inside(wanted, "goal"));
         if (goals.isEmpty() || !goals.stream().allMatch(goal -> isGoal(goal.getAsJsonObject()))) {
-            throw new Refused("INVALID_ARGUMENT", "what is needed is a base mission, with goals that are on the map");
+            return refusal("INVALID_ARGUMENT", "what is needed is a base mission, with goals that are on the map");
         }
         if (first && current() != null) {
-            throw new Refused("FAILED_PRECONDITION", "a mission is running or waiting");
+            return refusal("FAILED_PRECONDITION", "a mission is running or waiting");
         }
         if (!first && missions.isEmpty()) {
-            throw new Refused("FAILED_PRECONDITION", "there is no mission to append to");
+            return refusal("FAILED_PRECONDITION", "there is no mission to append to");
         }
         String name = "mission-" + (missions.size() + 1);
         missions.add(object("missionId", name, "state", "STATE_DEFAULT", "goals", goals,
             "missionType", object("baseType", TYPES.get(kind))));
-        return object("missionId", name);
+        return object("result", object("missionId", name));
     }
 
     static boolean isGoal(JsonObject goal) {

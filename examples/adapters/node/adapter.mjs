@@ -1,5 +1,4 @@
 // A robot in memory behind missionfsm's adapter protocol: put your own in its place.
-//
 // missionfsm conform bear.mission -- node examples/adapters/node/adapter.mjs
 
 import { createInterface } from 'node:readline';

@@ -96,10 +96,7 @@ impl Robot {
                 }
                 return Ok(json!({"happened": current.is_some()}));
             }
-            "reset" => {
-                self.missions.clear();
-                self.streams.clear();
-            }
+            "reset" => (self.missions, self.streams) = Default::default(),
             "cancel" => {
                 self.streams.remove(&params["stream"].as_u64().unwrap_or(0));
             }

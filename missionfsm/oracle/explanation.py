@@ -9,6 +9,7 @@ become later; and it is what keeps the number of explanations small.
 from __future__ import annotations
 
 import itertools
+import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.history import Answer
@@ -75,6 +76,9 @@ class Channel:
     last: Owed | None = None
     owed: tuple[Owed, ...] = ()
 
+
+UNNAMED = sys.maxsize
+"""Where channels stand whose names nobody has seen."""
 
 Lost = tuple[tuple[Hashable, Names, int], ...]
 """Calls that will never be answered and have not taken effect: (request, args, how many), in the order of the first."""
@@ -189,8 +193,26 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
     )
 
 
+def _in_order(channels: tuple[Channel, ...]) -> tuple[Channel, ...]:
+    """Channels in the order of their names, those without an observed one last."""
+    before = UNNAMED
+    for channel in reversed(channels):
+        place = channel.name if channel.name > GONE else UNNAMED
+        if place > before:
+            return tuple(sorted(channels, key=lambda one: one.name if one.name > GONE else UNNAMED))
+        before = place
+    return channels
+
+
 def tidy(explanation: Explanation) -> Explanation:
-    """Unseen names numbered by first mention: explanations that differ only in names nobody has seen become one."""
+    """The explanation in the one form of all that differ in nothing that anybody can tell.
+
+    Unseen names are numbered by first mention, and channels stand in the order of their names: in which order they were
+    opened makes no difference, and of many that open at once there are many orders.
+    """
+    channels = _in_order(explanation.channels)
+    if channels is not explanation.channels:
+        explanation = explanation.but(channels=channels)
     lowest = GONE
     for name in mentioned(explanation):
         if name < lowest:

@@ -189,14 +189,19 @@ class Search:
         """
         found = self._first_unexplained()
         while found is not None and found not in self.beyond and self.oracle.reckons:
+            if self.oracle.is_hopeless(*self._symbols[found], leniently=True):
+                break
             self.beyond.add(found)
             found = self._first_unexplained()
         return found
 
     def _first_unexplained(self) -> int | None:
-        if self.explain(len(self._symbols)):
-            return None
-        good, bad, stride = self.reached, len(self._symbols), 1
+        symbols = ((at, symbol) for at, symbol in enumerate(self._symbols) if at not in self.beyond)
+        hopeless = (at for at, symbol in symbols if self.oracle.is_hopeless(*symbol))
+        bad, stride = next(hopeless, len(self._symbols)), 1
+        if self.explain(bad):
+            return None if bad == len(self._symbols) else bad
+        good = self.reached
         while good + 1 < bad:
             middle = min(good + stride, (good + bad) // 2) if stride else (good + bad) // 2
             if self.explain(middle):

@@ -12,6 +12,7 @@ from typing import Any
 
 from attrs import evolve
 
+from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Refs
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
@@ -100,6 +101,21 @@ class Oracle:
             assumed = self._sequence(relations)
             if assumed is not None:
                 yield middle.unforeseen(self.moves, explanations, assumed, kind, *what)
+
+    def is_hopeless(self, kind: type, *what: Any, leniently: bool = False) -> bool:  # noqa: ANN401 - as above
+        """Whether an event is wrong whatever came before it: then nobody has to look at all of that.
+
+        The number of a message goes against those before, or an answer cannot be read.
+
+        Args:
+            leniently: whether a message may come twice.
+        """
+        if kind is Returned:
+            return isinstance(what[0].shape, Garbled) and not (self.spec.anywhere or self.spec.others)
+        if kind is not Received or (leniently and self.spec.transport and REDELIVERED in what[2]):
+            return False
+        relations = [one for one in what[2] if one not in ("equal", REDELIVERED)]
+        return self._sequence(relations) is None
 
     def _leniently(
         self,

@@ -10,17 +10,19 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from missionfsm.app.serve import serve
 from missionfsm.systems import system
+from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.mutate.teeth import mutants
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grpc"))
 from broken import Searcher
-from onwire import accepted, alternatives
+from onwire import accepted, alternatives, proxied
 
 EVERY = int(os.environ.get("EVERY", "1"))
 
@@ -39,14 +41,15 @@ def test_breaks_that_binary_carries_are_found_over_grpc(name: str) -> None:
     assert found == carried
 
 
+@pytest.mark.parametrize("judged", [accepted, proxied], ids=["alone", "proxied"])
 @pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
-def test_every_single_reading_is_accepted_over_grpc(name: str) -> None:
+def test_every_single_reading_is_accepted_over_grpc(name: str, judged: Callable[[str, str], Verdict]) -> None:
     """The reference under each alternative reading conforms over gRPC; which took longest is told."""
     taken = {}
     for reading in alternatives(system(name))[::EVERY]:
         begun = time.perf_counter()
         with serve(name, readings=dict([reading])) as robot:
-            verdict = accepted(name, robot.target)
+            verdict = judged(name, robot.target)
         taken["=".join(reading)] = time.perf_counter() - begun
         assert verdict.violation is None, f"{reading}: {verdict}"
     slowest = ", ".join(f"{reading} {taken[reading]:.1f} s" for reading in sorted(taken, key=taken.__getitem__)[:-6:-1])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import concurrent.futures
 import json
 import threading
@@ -13,11 +12,9 @@ from typing import Any
 
 import grpc
 import pytest
+from relay import METHODS, WAIT, Relay
 
-from missionfsm.adapters.grpc.client import Target
-from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
-from missionfsm.adapters.grpc.proxy import Proxy, read_line
-from missionfsm.adapters.grpc.server import Security
+from missionfsm.adapters.grpc.descriptors import decode, path
 from missionfsm.app.asked import judged_system
 from missionfsm.app.recorded import check_file
 from missionfsm.app.recorder import Recorder
@@ -29,39 +26,6 @@ from missionfsm.tools.check.judge import check
 
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
-WAIT = 10.0
-"""Seconds after which an answer that does not come fails a test."""
-METHODS = methods("bear.mission")
-
-
-class Relay:
-    """A proxy that runs in a loop of its own."""
-
-    def __init__(self, target: str, record: Any, tls: tuple[str, str] | None = None) -> None:
-        self.loop = asyncio.new_event_loop()
-        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
-        self.thread.start()
-        certificate, key = tls or ("", "")
-        self.proxy = Proxy(
-            "bear.mission",
-            Target(target, certificate=certificate),
-            lambda line: record(read_line(line)),
-            security=Security(certificate, key),
-        )
-        asyncio.run_coroutine_threadsafe(self.proxy.start("127.0.0.1", 0), self.loop).result(WAIT)
-        self.channel = Target(f"localhost:{self.proxy.port}", certificate=certificate).channel()
-
-    def call(self, name: str, request: JSON = None, **options: Any) -> JSON:
-        method = METHODS[name]
-        ask = self.channel.unary_unary(path(method))
-        return decode(method.response, ask(encode(method.request, request or {}), **{"timeout": WAIT, **options}))
-
-    def close(self) -> None:
-        self.channel.close()
-        asyncio.run_coroutine_threadsafe(self.proxy.stop(), self.loop).result(WAIT)
-        self.loop.call_soon_threadsafe(self.loop.stop)
-        self.thread.join()
-        self.loop.close()
 
 
 @pytest.fixture

@@ -1,0 +1,49 @@
+"""A proxy in this process, between a robot that is served here and a client that tests use."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import Any
+
+from missionfsm.adapters.grpc.client import Target
+from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
+from missionfsm.adapters.grpc.proxy import Proxy, read_line
+from missionfsm.adapters.grpc.server import Security
+from missionfsm.kernel.codec import JSON
+
+WAIT = 10.0
+"""Seconds after which an answer that does not come fails a test."""
+METHODS = methods("bear.mission")
+
+
+class Relay:
+    """A proxy that runs in a loop of its own."""
+
+    def __init__(
+        self, target: str, record: Any, tls: tuple[str, str] | None = None, system: str = "bear.mission"
+    ) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
+        certificate, key = tls or ("", "")
+        self.proxy = Proxy(
+            system,
+            Target(target, certificate=certificate),
+            lambda line: record(read_line(line)),
+            security=Security(certificate, key),
+        )
+        asyncio.run_coroutine_threadsafe(self.proxy.start("127.0.0.1", 0), self.loop).result(WAIT)
+        self.channel = Target(f"localhost:{self.proxy.port}", certificate=certificate).channel()
+
+    def call(self, name: str, request: JSON = None, **options: Any) -> JSON:
+        method = METHODS[name]
+        ask = self.channel.unary_unary(path(method))
+        return decode(method.response, ask(encode(method.request, request or {}), **{"timeout": WAIT, **options}))
+
+    def close(self) -> None:
+        self.channel.close()
+        asyncio.run_coroutine_threadsafe(self.proxy.stop(), self.loop).result(WAIT)
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self.thread.join()
+        self.loop.close()

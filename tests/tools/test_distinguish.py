@@ -65,6 +65,7 @@ def test_nothing_can_be_left_out_of_an_experiment() -> None:
         assert not shorter.right or set(trial.against) & set(left)
 
 
+@pytest.mark.long
 def test_a_verdict_tells_the_experiments_for_what_is_open() -> None:
     """With few conversations much is open; what would tell it apart is in the verdict, as text and as JSON."""
     verdict = conform(MISSION, Reference(MISSION, {}), examples=1, tours=2, steps=10, seed=1)
@@ -76,7 +77,7 @@ def test_a_verdict_tells_the_experiments_for_what_is_open() -> None:
     assert verdict.to_json()["experiments"][0] == one.to_json()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "letter"), ALTERNATIVES, ids=str)
 def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     """The reference under each single alternative reading: every other reading that any experiment tells is ruled out.
@@ -96,7 +97,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     assert told & set(run.ledger.readings[name]) == set()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "letter"), [("AM-09", "b"), ("AM-17.patrol.servi-delivery-patrol", "b")])
 def test_a_run_decides_what_it_can(name: str, letter: str) -> None:
     """After a whole run with experiments nothing is open that one for the reading really followed would decide."""

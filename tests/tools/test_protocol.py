@@ -60,7 +60,7 @@ SUBSETS = [(), DRIVES, ("fault",), ("goalReached", "world"), ("missionFailed", "
 def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
     """Whatever drives an adapter has: none other is sent, and no second fault while one waits, to a right one."""
     adapter = Strict(Reference(MISSION, {}), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=5, tours=20, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
 
 
@@ -68,7 +68,7 @@ def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
 def test_a_story_is_made_short_with_what_is_declared(drives: tuple[str, ...]) -> None:
     """A violation is found and made short without a drive that the adapter has not."""
     adapter = Strict(answering("NOT_FOUND", BUSY), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=5, tours=20, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
 
 
@@ -107,7 +107,7 @@ def test_an_adapter_that_fails_later_loses_no_violation() -> None:
 
     adapter = Strict(subject, {"drives": list(DRIVES)})
     adapter.subject = type("Dying", (), {"exchange": staticmethod(exchange)})()
-    verdict = conform(MISSION, adapter, examples=5, tours=20, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
     assert any("the adapter is gone" in note for note in verdict.notes)
 

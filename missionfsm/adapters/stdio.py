@@ -18,7 +18,7 @@ from typing import IO, Any
 import orjson
 
 from missionfsm.adapters.jsonlines import TooDeepError, loads
-from missionfsm.adapters.processes import end_group
+from missionfsm.adapters.processes import end_group, refuse_where_there_are_no_sessions
 from missionfsm.adapters.stderrlog import Log
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
@@ -127,6 +127,7 @@ class Child:
         self._stopped = stopped
         self._trace = trace
         self._asked = ""
+        refuse_where_there_are_no_sessions()
         pipe = subprocess.PIPE
         try:
             self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose

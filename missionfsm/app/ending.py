@@ -14,7 +14,7 @@ def told_to_end(end: Callable[[signal.Signals], object]) -> Iterator[None]:
     loop = asyncio.get_running_loop()
     taken: list[signal.Signals] = []
     with contextlib.suppress(ValueError, RuntimeError, NotImplementedError):  # another thread, or no such thing here
-        for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for one in (getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)):
             loop.add_signal_handler(one, end, one)
             taken.append(one)
     try:

@@ -9,6 +9,7 @@ become later; and it is what keeps the number of explanations small.
 from __future__ import annotations
 
 import itertools
+import operator
 import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
@@ -193,15 +194,23 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
     )
 
 
-def _in_order(channels: tuple[Channel, ...]) -> tuple[Channel, ...]:
-    """Channels in the order of their names, those without an observed one last."""
-    before = UNNAMED
-    for channel in reversed(channels):
-        place = channel.name if channel.name > GONE else UNNAMED
-        if place > before:
-            return tuple(sorted(channels, key=lambda one: one.name if one.name > GONE else UNNAMED))
-        before = place
-    return channels
+def _in_order(explanation: Explanation) -> Explanation:
+    """The explanation with its channels in the order of their names, and those without an observed one last.
+
+    These stand in the order of the calls that opened them.
+    """
+    channels = explanation.channels
+    unseen = sum(channel.name < GONE for channel in channels) > 1
+    openers = (call.done.names if call.done else () for call in explanation.calls) if unseen else ()
+    places = {name: UNNAMED + position for position, names in enumerate(openers) for name in names}
+
+    def place(channel: Channel) -> int:
+        return channel.name if channel.name > GONE else places.get(channel.name, UNNAMED)
+
+    order = list(map(place, channels))
+    if all(map(operator.le, order, order[1:])):
+        return explanation
+    return explanation.but(channels=tuple(sorted(channels, key=place)))
 
 
 def tidy(explanation: Explanation) -> Explanation:
@@ -210,9 +219,8 @@ def tidy(explanation: Explanation) -> Explanation:
     Unseen names are numbered by first mention, and channels stand in the order of their names: in which order they were
     opened makes no difference, and of many that open at once there are many orders.
     """
-    channels = _in_order(explanation.channels)
-    if channels is not explanation.channels:
-        explanation = explanation.but(channels=channels)
+    if len(explanation.channels) > 1:
+        explanation = _in_order(explanation)
     lowest = GONE
     for name in mentioned(explanation):
         if name < lowest:

@@ -55,18 +55,18 @@ class Recording:
         """What the clients ask next, each one thing."""
         return [self._draw.choice(CALLS) for _ in range(CLIENTS)]
 
-    def over(self) -> None:
+    def over(self, clients: int) -> None:
         """Every client leaves."""
-        self.round([("cancel", {"stream": stream}) for stream in range(1, CLIENTS + 1)])
+        self.round([("cancel", {"stream": stream}) for stream in range(1, clients + 1)])
 
 
-def recorded(seed: int) -> list[JSON]:
-    """A busy recording from its beginning to its end."""
+def recorded(seed: int, clients: int = CLIENTS) -> list[JSON]:
+    """A busy recording from its beginning to its end; so many clients watch."""
     found = Recording(seed)
-    found.round([("SubscribeMissionStatus", {})] * CLIENTS)
+    found.round([("SubscribeMissionStatus", {})] * clients)
     for _ in range(ROUNDS):
         found.round(found.calls(), drives=1)
-    found.over()
+    found.over(clients)
     return found.lines
 
 
@@ -100,6 +100,17 @@ def test_an_answer_that_cannot_be_read_is_found_among_many() -> None:
     lines = recorded(2)
     at, line = next((at, line) for at, line in enumerate(lines) if "missionId" in line.get("result", {}))
     lines[at] = {**line, "result": {}}
+    found = verdict(lines)
+    assert found.violation is not None
+    assert found.violation.at == at + 2
+
+
+def test_the_first_message_may_be_wrong_while_all_subscribe() -> None:
+    """Where all subscribe at once and the first message shows what never was, that is decided: no order explains it."""
+    lines = recorded(3, 5)
+    at, line = next((at, line) for at, line in enumerate(lines) if "message" in line)
+    states = {**line["message"]["missionStates"], "currentMissionIndex": 0}
+    lines[at] = {**line, "message": {**line["message"], "missionStates": states}}
     found = verdict(lines)
     assert found.violation is not None
     assert found.violation.at == at + 2

@@ -62,7 +62,8 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
         anywhere: whether the log begins while the system is in use.
         others: whether others use it as well.
     """
-    middle, decided, rebuilt, foresees = spec.middle, spec.decided, spec.rebuilt, spec.foresees
+    middle, decided, rebuilt = spec.middle, spec.decided, spec.rebuilt
+    foresees, succeeds = spec.foresees, spec.succeeds
     if middle is None or not (anywhere or others):
         return spec
     if middle.glimpses is None:
@@ -92,6 +93,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
         names=lambda state: 0 if isinstance(state, Unknown) else spec.names(state),
         describe=lambda one: str(one) if isinstance(one, Unknown) else "anything" if one is ANY else spec.describe(one),
         foresees=foresees and (lambda state, *more: isinstance(state, Unknown) or foresees(state, *more)),
+        succeeds=succeeds and (lambda state, *more: isinstance(state, Unknown) or succeeds(state, *more)),
         decided=decided and (lambda assumed: in_the_middle(decided(assumed), anywhere=anywhere, others=others)),
         rebuilt=rebuilt and (lambda operations: in_the_middle(rebuilt(operations), anywhere=anywhere, others=others)),
         restarted=spec.restarted

@@ -363,6 +363,8 @@ class Spec:
             shown as the content, by calls of those operations and whatever steps else; None where nothing is known of
             that. Names are numbers; one below -1 was not
             seen yet and may be any. It has to be true wherever it is possible: it only saves a search the trouble.
+        succeeds: (state, its names, request, its names, names of the answer) to whether the state may come to one in
+            which the request is answered OK so; None where nothing is known of that. As for `foresees`.
         abstraction: how a search and an exploration look at its states.
         waived: what its documents say and no rule checks.
         closing: (state, topic) to the ways in which the system may at any time close the channel of that topic,
@@ -408,6 +410,7 @@ class Spec:
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...], frozenset[str]], bool] | None = None
+    succeeds: Callable[[State, tuple[int, ...], Any, tuple[int, ...], tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = Abstraction()
     parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()

@@ -15,6 +15,7 @@ from typing import Any
 
 from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Mismatch, Spec
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
@@ -73,14 +74,16 @@ class Lookahead:
         self._passed: dict[Any, Narrowed | None] = {}
         self._shows: dict[Any, bool] = {}
         self._ended: dict[int, int] = {}
-        called: dict[int, int] = {}
+        self._answered: dict[int, int] = {}
+        called: dict[int, tuple[int, Hashable, Names]] = {}
         for position, (kind, *what) in enumerate(symbols[:horizon]):
             if kind is Called:
-                called[what[-1]] = position
+                called[what[-1]] = position, *what[:2]
             elif kind is Returned:
                 answer, names, call = what
                 if call > GONE and position not in beyond:
                     self.answers[call] = answer, names
+                    self._answered[call] = position
             elif kind is Received:
                 content, names, relations, channel = what
                 if channel > GONE and channel not in self._ended and REDELIVERED not in relations:
@@ -95,9 +98,16 @@ class Lookahead:
         first = ((*self._messages[channel], call) for call, channel in opened if channel in self._messages)
         # Of streams that are opened: when the call was sent, what it is, and when which message came first.
         self._openings = sorted(
-            ((at, called.get(call, -1), call, message) for (at, *_), (message, *_), call in first),
+            ((at, called[call][0] if call in called else -1, call, message) for (at, *_), (message, *_), call in first),
             key=operator.itemgetter(0),
         )
+        # Calls that will succeed: when each was sent, and what it was.
+        self._successes = [
+            (at, call, request, args)
+            for call, (at, request, args) in called.items()
+            if call in self.answers and self.answers[call][0].code == OK
+        ]
+        self._sent = [at for at, *_ in self._successes]
 
     def answer(self, call: int) -> tuple[Answer, Names] | None:
         """What a call in flight comes back with, and with which names; None where it is not known."""
@@ -117,6 +127,8 @@ class Lookahead:
         if not (self._messages or self._settled or self._last):
             return explanation
         if self._openings and not self._leads_to_openings(explanation):
+            return None
+        if self.spec.succeeds is not None and not self._leads_to_successes(explanation):
             return None
         channels = explanation.channels
         known = [one.name for one in channels if one.name > GONE]
@@ -151,6 +163,24 @@ class Lookahead:
             if ahead and not self._foresees(explanation, message):
                 return False
         return True
+
+    def _leads_to_successes(self, explanation: Explanation) -> bool:
+        """Whether the next calls that are known to succeed may come to."""
+        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        for call in explanation.calls:
+            if call.done is None and not call.ready and self._answered.get(call.name, cut) < cut:
+                answer, names = self.answers[call.name]
+                if answer.code == OK and not self._succeeds(explanation, call.request, call.args, names):
+                    return False
+        first = bisect.bisect_left(self._sent, self.at)
+        return all(
+            self._answered[call] >= cut or self._succeeds(explanation, request, args, self.answers[call][1])
+            for _, call, request, args in self._successes[first : first + NEXT]
+        )
+
+    def _succeeds(self, explanation: Explanation, request: Hashable, args: Names, names: Names) -> bool:
+        succeeds = self.spec.succeeds
+        return succeeds is None or succeeds(explanation.state, explanation.names, request, args, names)
 
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
         positions, messages = self._messages.get(channel.name, _NO_MESSAGES)

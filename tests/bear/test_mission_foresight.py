@@ -16,16 +16,17 @@ from traffic import readings_at_random
 
 from missionfsm.app import recorded
 from missionfsm.app.recorded import check_file
-from missionfsm.bear.mission.foresight import foresees
+from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.state import Robot
 from missionfsm.bear.mission.stream import Listing, listing
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
+from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Step
 from missionfsm.oracle import window
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.explore.explore import Labels, steps
+from missionfsm.tools.explore.explore import Labels, references, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
@@ -54,6 +55,17 @@ def lives(random: Random, length: int) -> Iterator[tuple[Named, list[Named]]]:
         yield (robot, names), [*seen, (listing(robot), names)]
 
 
+def successes(robot: Robot, names: tuple[int, ...]) -> Iterator[tuple[Any, tuple[int, ...], tuple[int, ...]]]:
+    """The requests that are answered OK in a state, each with its names and those of the answer."""
+    for request, free in LABELS.requests:
+        for refs in references(SPEC, robot, free):
+            known = tuple(names[ref] for ref in refs if ref is not None and ref >= 0)
+            for step in SPEC.outcomes(robot, request, refs) if len(known) == len(refs) else ():
+                if step.answer is not None and step.answer.code == OK and not step.opens:
+                    pool = [*names, *range(10_000, 10_100)]
+                    yield request, known, tuple(pool[ref] for ref in step.refs)
+
+
 def content(view: Listing, choice: int) -> Any:
     """The content of the message that shows a view under some readings."""
     missions = [f"m{number}" for number in range(len(view.missions))]
@@ -77,6 +89,31 @@ def test_what_comes_to_be_shown_is_foreseen(seed: int) -> None:
 
 
 CALLS = ("AppendMission", "SkipGoal", "ClearMissionStatus")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_comes_to_succeed_is_foreseen(seed: int) -> None:
+    """A robot foresees every call that succeeds in its future, with the names of its answer."""
+    random = Random(seed)
+    past: list[Named] = []
+    for (robot, names), _ in lives(random, 25):
+        past.append((robot, names))
+        for request, args, answered in successes(robot, names):
+            for before, known in past:
+                assert succeeds(before, known, request, args, answered), (before, known, request, args, answered)
+
+
+def test_what_cannot_succeed_any_more_is_not_foreseen() -> None:
+    """No call makes a mission that is listed already, or skips or moves one that has ended."""
+    _, robot = _queue()
+    made, skipped, cleared = (
+        MISSION.codec.request(method, {}) for method in ("AppendMission", "SkipGoal", "ClearMissionStatus")
+    )
+    assert [succeeds(robot, (0, 1, 2), made, (), (name,)) for name in (1, 3)] == [False, True]
+    assert [succeeds(robot, (0, 1, 2), skipped, (), (name,)) for name in (0, 1, 3)] == [False, True, True]
+    assert succeeds(robot, (0, 1, 2), cleared, (), (0,))
+
+
 ORDERS = {
     "another comes before one that has started": (("B", "A"), False),
     "one that waits has vanished though nothing failed": (("A", "C"), False),
@@ -141,7 +178,7 @@ def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.Monkey
 
     def blind(*name: Any, **how: Any) -> Any:
         found = as_it_is(*name, **how)
-        return evolve(found, spec=evolve(found.spec, foresees=None, decided=None))
+        return evolve(found, spec=evolve(found.spec, foresees=None, succeeds=None, decided=None))
 
     monkeypatch.setattr(recorded, "judged_system", blind)
     for lines, verdict in zip((right, wrong), led, strict=True):

@@ -3,7 +3,7 @@
 Whatever happens to a robot, the missions that it lists keep their order. Those that have ended are forgotten together,
 before those that wait; those that wait vanish together, after all others, and only where a mission has failed or was
 cancelled, or a workflow takes their place. What is new comes last; only a charge may come before missions that wait,
-and nothing before one that has started.
+and nothing before one that has started. No call makes a mission that is there already or moves one that has ended.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Container, Sequence
 
 from attrs import frozen
 
+from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Kind, Mission, Robot
 from missionfsm.bear.mission.stream import Seen, has_goals
 from missionfsm.bear.wire.messages import MissionState, State
@@ -30,6 +31,32 @@ def foresees(
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
     return later.all_kept() or later.some_forgotten()
+
+
+def succeeds(
+    robot: Robot, names: tuple[int, ...], request: Request, args: tuple[int, ...], answered: tuple[int, ...]
+) -> bool:
+    """Whether the robot may come to answer a request with success and these names; see `Spec.succeeds`."""
+    operation = request.operation
+    if operation in _MAKES:
+        return all(name not in names for name in answered)
+    if operation in ("SkipGoal", "UpdateMission"):
+        ended = names[: len(robot.done)]
+        return not any(name in ended for name in (*args, *answered))
+    return True
+
+
+_MAKES = frozenset(
+    {
+        "CreateMission",
+        "CreateMissionBatch",
+        "CreateMissionWorkflow",
+        "AppendMission",
+        "AppendMissionBatch",
+        "ChargeRobot",
+    }
+)
+"""Operations that are answered with the names of new missions."""
 
 
 @frozen
@@ -125,7 +152,9 @@ class _Later:
         if name == len(self.names) or not survived:
             return True
         replaced = "CreateMissionWorkflow" in self.calls and (self.robot.halted or place < len(self.shown))
-        return replaced or any(one.state in _BROKEN_OFF for one in self.missions[max(0, place - 1) :])
+        # The queue vanishes with the mission that has run last before it: the last one listed, or a charge behind it.
+        last = slice(place - 1, len(self.shown) if "ChargeRobot" in self.calls else place)
+        return replaced or any(one.state in _BROKEN_OFF for one in self.missions[last])
 
 
-__all__ = ["foresees"]
+__all__ = ["foresees", "succeeds"]

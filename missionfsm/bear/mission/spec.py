@@ -21,7 +21,7 @@ from missionfsm.bear.mission.effects import (
     target,
 )
 from missionfsm.bear.mission.events import Happening, by_itself, due, happens
-from missionfsm.bear.mission.foresight import foresees
+from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
@@ -386,6 +386,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         foresees=foresees,
+        succeeds=succeeds,
         abstraction=Abstraction(
             situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
             shape=_shape,

@@ -161,7 +161,8 @@ def test_it_tells_what_is_followed(conforming: Path, open_page: Opener) -> None:
     """Of what conforms every ambiguity that mattered is told, with the readings that are left."""
     verdict = json.loads(conforming.with_suffix(".json").read_text())
     page = open_page(conforming).page
-    assert page.locator(".verdict strong").inner_text() == verdict["verdict"] == "conforms"
+    assert page.locator(".verdict strong").inner_text() == verdict["headline"]
+    assert verdict["verdict"] == "conforms"
     assert page.locator(".row.wrong").count() == 0
     told = page.evaluate("""Object.fromEntries([...document.querySelectorAll(".question")].map((one) => [
         one.querySelector("strong").textContent,
@@ -169,6 +170,16 @@ def test_it_tells_what_is_followed(conforming: Path, open_page: Opener) -> None:
     ]))""")
     assert told == verdict["readings"]
     assert len(told) > 3
+
+
+def test_what_conforms_fits_two_screens_of_a_phone(conforming: Path, open_page: Opener) -> None:
+    """Readings, rules and the map are folded away, and a link to one of them unfolds it."""
+    page = open_page(conforming, "phone").page
+    screen, height = page.evaluate("[innerHeight, document.documentElement.scrollHeight]")
+    assert height <= 2 * screen
+    assert page.locator("details.part[open]").count() == 0
+    page.locator("nav a[href^='#map']").click()
+    assert page.locator("details.part[open] .map").count() == 1
 
 
 def test_what_was_sent_is_text(open_page: Opener, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def holds(machine: type[RuleBasedStateMachine], share: int) -> None:
     )
 
 
-def fails(machine: type[RuleBasedStateMachine], examples: int = 200) -> None:
+def fails(machine: type[RuleBasedStateMachine], examples: int = 600) -> None:
     """Run a machine against something broken: it has to fail, by an assertion, within some examples."""
     with pytest.raises(AssertionError):
         run_state_machine_as_test(

@@ -1,0 +1,154 @@
+"""The house is kept: no function grows beyond what one reads at once, and nothing lies about that nobody uses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import radon.complexity
+import vulture
+
+import missionfsm
+
+ROOT = Path(missionfsm.__file__).parent
+
+MOST = 15
+"""Ways through a function, as radon counts them."""
+
+COMPLEX = {
+    # The engine: paths that every event takes, each kept in one piece for its speed (tests/bench).
+    "oracle": {
+        "belief.Automaton.arrive",
+        "belief.Belief.symbol",
+        "explanation.take",
+        "line_cache.Texts._remember",
+        "lookahead.Lookahead.__init__",
+        "lookahead.Lookahead._leading",
+        "lookahead.Lookahead.narrowed",
+        "transition.Oracle._ended",
+        "transition.Oracle._nothing_owed",
+        "transition.Oracle._received",
+        "transition._pairings",
+    },
+    "tools.reference": {"model.Model._take"},
+    # Readers of what others wrote: a case for each thing that may be wrong with it.
+    "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
+    "app": {"recorded._Judges._take", "watched._unwrapped"},
+    "bear.mission": {
+        "codec.answer",
+        "glimpse.samples",
+        "state.apply",
+        # A code for each situation of a call: the rows of a table.
+        "operations._rank_charge",
+        "operations._rank_format_and_state",
+    },
+    "bear.status": {"stream._matched", "stream._part", "stream._whole_shown"},
+    "isaac.shared": {"line._named"},
+    "kernel": {"middle.in_the_middle", "rules.decide"},
+    # What a mission server may do next: a case for each reading.
+    "isaac.robot": {"effects._concluded"},
+    "isaac.runtime": {"server.MissionServerCore._name"},
+    "isaac.server": {
+        "independence.concerned",
+        "independence.parts",
+        "lifecycle._cancellation",
+        "lifecycle._choices",
+        "lifecycle.dispatches_to",
+        "lifecycle.lost",
+        "lifecycle.strikes",
+        "spec._unowed",
+        "time.calmed",
+    },
+    # Commands: an option after the other.
+    "cli": {"defaults.defaults", "diagram.diagram", "isaac.dispatch", "judging.check", "judging.conform"},
+    # To be taken apart.
+    "pages": {"actions.Doings._filled", "graph.Graph._made"},
+    "tools.check": {
+        "explain._against_answer",
+        "explain._against_message",
+        "explain._failed_wrongly",
+        "verdict.Verdict.told",
+    },
+    "tools.conform": {
+        "conform.verdict_of",
+        "distinguish._Search._moves",
+        "guide.Guide.proposals",
+        "handshake.handshake",
+        "smoke._Smoke.run",
+        "tour._Tour._conversation",
+    },
+    "tools.draw": {"diagram._drawn", "plantuml._body"},
+    "tools.explore": {"explore.explore"},
+}
+"""For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""
+
+CALLED_BY_OTHERS = {
+    # Python and its standard library
+    "__dir__",
+    "__getattr__",
+    "connection_lost",
+    "data_received",
+    "do_GET",
+    "eof_received",
+    "handle_error",
+    "log_message",
+    "pause_writing",
+    "readinto",
+    "resume_writing",
+    # pytest, Hypothesis, Typer, grpcio
+    "Suite",
+    "_describe",
+    "format_epilog",
+    "intercept_service",
+    "pytest_addoption",
+    "pytest_collect_file",
+    "pytest_generate_tests",
+    "reportinfo",
+    "runtest",
+    "teardown",
+    "walk_what_was_walked_least",
+    # the templates of pages
+    "sentences",
+    "slug",
+    "worst",
+    # a call of the Robot Status page, made by its name
+    "navigation_status",
+}
+"""What nobody calls by its name in this project."""
+
+
+def of(path: Path) -> str:
+    """The module in a file, without the name of the whole."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+@pytest.mark.long
+def test_no_function_is_too_complex() -> None:
+    """Functions with more than 15 ways through them are those that are listed, and none of those is simpler by now."""
+    listed = {f"{package}.{name}" for package, names in COMPLEX.items() for name in names}
+    found = {
+        f"{of(path)}.{block.fullname}"
+        for path in ROOT.rglob("*.py")
+        for block in radon.complexity.cc_visit(path.read_text(encoding="utf-8"))
+        if hasattr(block, "is_method") and block.complexity > MOST
+    }
+    assert sorted(found - listed) == []
+    assert sorted(listed - found) == []
+
+
+@pytest.mark.long
+def test_everything_is_used() -> None:
+    """Every function, method, property and class is used by the project, its tests and examples, or by a framework.
+
+    Fields of values are left out: they are read by cattrs, attrs and templates.
+    """
+    looked = vulture.Vulture()
+    looked.scavenge([str(ROOT), str(ROOT.parent / "tests"), str(ROOT.parent / "examples")])
+    found = {
+        f"{of(item.filename)}: {item.name}"
+        for item in looked.get_unused_code(min_confidence=60)
+        if item.typ not in ("attribute", "variable")
+        and item.filename.is_relative_to(ROOT)
+        and item.name not in CALLED_BY_OTHERS
+    }
+    assert sorted(found) == []

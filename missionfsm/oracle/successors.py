@@ -40,8 +40,9 @@ Seen = dict[Place, list[tuple[int, Lost]]]
 """At each point: what was assumed there, with which lost calls left."""
 
 LAG = 6
-"""How many changes that nobody drove every channel may owe before the oracle stops to imagine further ones: one that is
-slow keeps nobody from imagining what the others show. Messages that are known to come do not count."""
+"""How many changes that nobody drove a channel may owe before the oracle stops to imagine further ones.
+
+Messages that are known to come do not count."""
 
 BUDGET = 20_000
 """How many explanations one event may cost before the run is given up as inconclusive."""
@@ -308,10 +309,14 @@ class Moves:
                 yield from self._take_effect(explanation, position, besides)
 
     def _may_go_on(self, explanation: Explanation) -> bool:
-        """Whether some subscriber, if there are any, is near enough to the state for more to be imagined."""
+        """Whether the subscribers, if there are any, are near enough to the state for more to be imagined.
+
+        Where it is known what comes, one of them suffices: a slow one hides nothing that a quick one shows. Where it is
+        not, all of them have to be: what each may come to show multiplies.
+        """
         if self.ahead:
             return not explanation.channels or any(self.ahead.lag(channel) < LAG for channel in explanation.channels)
-        return not explanation.channels or any(len(channel.owed) < LAG for channel in explanation.channels)
+        return all(len(channel.owed) < LAG for channel in explanation.channels)
 
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
         self.spend(weight(explanation) - 1)

@@ -68,7 +68,7 @@ def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
 def test_a_story_is_made_short_with_what_is_declared(drives: tuple[str, ...]) -> None:
     """A violation is found and made short without a drive that the adapter has not."""
     adapter = Strict(answering("NOT_FOUND", BUSY), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, examples=5, tours=20, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
 
 

@@ -7,6 +7,7 @@ import functools
 import pytest
 from broken import Searcher
 from commandline import CommandLine
+from relay import Relay
 
 from missionfsm.adapters.grpc.client import GrpcSubject, Target
 from missionfsm.app.serve import serve
@@ -19,7 +20,6 @@ BREAKS = (
     "bear.mission/UpdateMission/NOT_FOUND/the-mission-is-still-queued is answered FAILED_PRECONDITION",
     "bear.mission/lifecycle/goals-are-taken-up-in-order skips one",
     "bear.status/GetRobotStatus/PERMISSION_DENIED/the-robot-is-somebody-elses is dropped",
-    "bear.status/SubscribeRobotStatus/the-latest-state-comes-first is not shown",
 )
 """One of every kind; tests/bench/test_bench_breaks.py has all of them."""
 
@@ -49,6 +49,17 @@ def test_a_break_is_asked_for_by_its_rule() -> None:
         subject = GrpcSubject("bear.mission", Target(robot.target, settle=0.02))
         assert broken.rule in searcher("bear.mission").search(broken, subject)
         subject.close()
+
+
+def test_a_break_is_found_through_a_proxy() -> None:
+    """What stands between the tester and a broken robot neither hides the break nor makes another of it."""
+    broken = mutant(BREAKS[1])
+    with serve("bear.mission", broken=broken.rule) as robot:
+        relay = Relay(robot.target, lambda _: None)
+        subject = GrpcSubject("bear.mission", Target(f"localhost:{relay.proxy.port}", settle=0.02))
+        assert broken.rule in searcher("bear.mission").search(broken, subject)
+        subject.close()
+        relay.close()
 
 
 def test_a_break_that_does_not_exist_is_told_with_the_nearest(command_line: CommandLine) -> None:

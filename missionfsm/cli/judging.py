@@ -318,7 +318,9 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
                 if bridge:
                     verdict = bridge.judge(steps, **asked)
                 else:
-                    verdict = judge(judged, child, plan=plan, distinguish=distinguish, **calls, **asked)
+                    # What nobody is told need not be thought about: it takes as long as a third of the run.
+                    advice = verbose or json is not None or html is not None
+                    verdict = judge(judged, child, plan=plan, distinguish=distinguish, advice=advice, **calls, **asked)
         except ValueError as error:
             stop(str(error), BAD_INPUT)
         finally:

@@ -9,6 +9,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
 from missionfsm.kernel.codec import JSON, Codec
+from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.picture import Plan, Sketch
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.shapes import Shapes
@@ -53,6 +54,7 @@ class System:
         reaching: id or name of a rule to the readings under which its condition can come about at all.
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
+        matrix: in which situations what should have been asked; None where nobody says so.
         profiles: choices of readings by name: ambiguity id to the letters that are left.
     """
 
@@ -68,6 +70,7 @@ class System:
     plans: tuple[Plan, ...] = ()
     shapes: Callable[[], Shapes] = Shapes
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
+    matrix: Matrix | None = None
 
     def chosen(self, profile: str | None, readings: Mapping[str, str]) -> Mapping[str, str]:
         """The readings of a profile, if one is named, but for those that are given. ValueError for one that is not."""

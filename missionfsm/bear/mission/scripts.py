@@ -15,15 +15,17 @@ _SETTLE = Line("settle")
 _SUBSCRIBE = Line("SubscribeMissionStatus", {})
 
 
-def _drive(event: str, **fields: JSON) -> tuple[Line, ...]:
+def drive(event: str, **fields: JSON) -> tuple[Line, ...]:
+    """Something happens, and all that it causes."""
     return (Line("drive", {"event": event, **fields}), _SETTLE)
 
 
-def _call(method: str, params: JSON = None) -> tuple[Line, ...]:
+def call(method: str, params: JSON = None) -> tuple[Line, ...]:
+    """A call, and all that it causes."""
     return (Line(method, params or {}), _SETTLE)
 
 
-def _command(mission: int, command: str) -> tuple[Line, ...]:
+def commanded(mission: int, command: str) -> tuple[Line, ...]:
     """A command to the how-many-th mission that was created, from 0."""
     params = {"missionCommand": {"missionId": ANY_NAME, "command": command}}
     return (Line("UpdateMission", params, ((0, mission),)), _SETTLE)
@@ -37,21 +39,22 @@ def _several(which: str) -> JSON:
     return {"mission": of_family("servi", which, *TABLES)}
 
 
-_CREATED = (_SUBSCRIBE, *_call("CreateMission", _several("deliveryMission")))
-_BEHIND = _call("AppendMission", _SINGLE)
+_BEGUN = (_SUBSCRIBE, *call("CreateMission", _several("deliveryMission")))
+CREATED = call("CreateMission", _SINGLE)
+APPENDED = call("AppendMission", _SINGLE)
 
 _ALIVE: tuple[tuple[Line, ...], ...] = (
-    _CREATED,
-    (*_CREATED, *_drive("goalReached")),
-    (*_CREATED, *_command(0, PAUSE)),
+    _BEGUN,
+    (*_BEGUN, *drive("goalReached")),
+    (*_BEGUN, *commanded(0, PAUSE)),
 )
 """Ways to a first mission that has not ended."""
 
 _ENDED: tuple[tuple[Line, ...], ...] = (
-    (*_CREATED, *_drive("missionSucceeded")),
-    (*_CREATED, *_drive("missionFailed")),
-    (*_CREATED, *_command(0, CANCEL)),
-    (*_CREATED, *_drive("goalReached"), *_command(0, FINISH)),
+    (*_BEGUN, *drive("missionSucceeded")),
+    (*_BEGUN, *drive("missionFailed")),
+    (*_BEGUN, *commanded(0, CANCEL)),
+    (*_BEGUN, *drive("goalReached"), *commanded(0, FINISH)),
 )
 """Ways to a first mission that has ended."""
 
@@ -59,51 +62,51 @@ _ENDED: tuple[tuple[Line, ...], ...] = (
 def _commands() -> Iterator[tuple[Line, ...]]:
     for way in _ALIVE:
         for command in COMMANDS:
-            yield (*way, *_command(0, command), *_drive("goalReached"))
-            yield (*way, *_BEHIND, *_command(0, command), *_drive("goalReached"))
-            yield (*way, *_BEHIND, *_command(1, command), *_drive("missionSucceeded"), *_drive("goalReached"))
+            yield (*way, *commanded(0, command), *drive("goalReached"))
+            yield (*way, *APPENDED, *commanded(0, command), *drive("goalReached"))
+            yield (*way, *APPENDED, *commanded(1, command), *drive("missionSucceeded"), *drive("goalReached"))
     for way in _ENDED:
         for command in COMMANDS:
-            yield (*way, *_command(0, command), *_call("CreateMission", _SINGLE))
-            yield (*way, *_call("CreateMission", _SINGLE), *_command(0, command), *_drive("goalReached"))
+            yield (*way, *commanded(0, command), *call("CreateMission", _SINGLE))
+            yield (*way, *call("CreateMission", _SINGLE), *commanded(0, command), *drive("goalReached"))
 
 
 def _patrols() -> Iterator[tuple[Line, ...]]:
     """A patrol goes round until it is told otherwise, and what is appended waits for that."""
     for which in ("deliveryPatrolMission", "bussingPatrolMission"):
-        begun = (_SUBSCRIBE, *_call("CreateMission", _several(which)))
-        round_once = (*_drive("goalReached"), *_drive("goalReached"), *_drive("goalReached"))
-        yield (*begun, *round_once, *_drive("goalReached"), *_call("SkipGoal"), *_call("SkipGoal"))
-        yield (*begun, *_BEHIND, *round_once, *_call("SkipGoal"), *round_once, *_command(0, FINISH))
+        begun = (_SUBSCRIBE, *call("CreateMission", _several(which)))
+        round_once = (*drive("goalReached"), *drive("goalReached"), *drive("goalReached"))
+        yield (*begun, *round_once, *drive("goalReached"), *call("SkipGoal"), *call("SkipGoal"))
+        yield (*begun, *APPENDED, *round_once, *call("SkipGoal"), *round_once, *commanded(0, FINISH))
         for command in COMMANDS:
-            yield (*begun, *round_once, *_command(0, command), *_drive("goalReached"), *_call("SkipGoal"))
+            yield (*begun, *round_once, *commanded(0, command), *drive("goalReached"), *call("SkipGoal"))
 
 
 def _choices() -> Iterator[tuple[Line, ...]]:
     """Which goal is taken where some are not free: at the start, after a skip, and when that changes on the way."""
     for taken in (["table-1"], ["table-2"], ["table-1", "table-2"]):
-        occupied = _drive("world", occupied=taken)
-        yield (_SUBSCRIBE, *occupied, *_call("CreateMission", _AUTO), *_call("SkipGoal"), *_call("SkipGoal"))
-        yield (_SUBSCRIBE, *_call("CreateMission", _AUTO), *occupied, *_call("SkipGoal"), *_drive("goalReached"))
-        behind = (*_call("CreateMission", _SINGLE), *_call("AppendMission", _AUTO))
-        yield (_SUBSCRIBE, *behind, *occupied, *_drive("missionSucceeded"), *_call("SkipGoal"))
+        occupied = drive("world", occupied=taken)
+        yield (_SUBSCRIBE, *occupied, *call("CreateMission", _AUTO), *call("SkipGoal"), *call("SkipGoal"))
+        yield (_SUBSCRIBE, *call("CreateMission", _AUTO), *occupied, *call("SkipGoal"), *drive("goalReached"))
+        behind = (*call("CreateMission", _SINGLE), *call("AppendMission", _AUTO))
+        yield (_SUBSCRIBE, *behind, *occupied, *drive("missionSucceeded"), *call("SkipGoal"))
 
 
 def _again() -> Iterator[tuple[Line, ...]]:
     """What was done once is done once more: pauses, skips, and calls that fail on the way."""
     four = of_family("servi", "deliveryMission", *TABLES, TABLES[0])
-    begun = (_SUBSCRIBE, *_call("CreateMission", {"mission": four}))
-    pause, resume, skip, reached = _command(0, PAUSE), _command(0, RESUME), _call("SkipGoal"), _drive("goalReached")
+    begun = (_SUBSCRIBE, *call("CreateMission", {"mission": four}))
+    pause, resume, skip, reached = commanded(0, PAUSE), commanded(0, RESUME), call("SkipGoal"), drive("goalReached")
     yield (*begun, *pause, *resume, *pause, *resume, *reached, *pause, *resume, *reached, *reached, *reached)
     yield (*begun, *skip, *skip, *skip, *skip)
     yield (*begun, *reached, *pause, *skip, *resume, *skip, *reached, *reached)
     for status in ("INTERNAL", "DEADLINE_EXCEEDED"):
-        fault = _drive("fault", status=status, applied=False)
+        fault = drive("fault", status=status, applied=False)
         for command in COMMANDS:
-            yield (*begun, *reached, *fault, *_command(0, command), *_command(0, command), *reached)
+            yield (*begun, *reached, *fault, *commanded(0, command), *commanded(0, command), *reached)
         batch = {"missions": [_SINGLE, {"mission": four}, _SINGLE]}
-        yield (*begun, *fault, *_call("AppendMissionBatch", batch), *_drive("missionSucceeded"), *reached)
-        yield (_SUBSCRIBE, *fault, *_call("CreateMissionBatch", batch), *reached, *reached)
+        yield (*begun, *fault, *call("AppendMissionBatch", batch), *drive("missionSucceeded"), *reached)
+        yield (_SUBSCRIBE, *fault, *call("CreateMissionBatch", batch), *reached, *reached)
 
 
 def _impossible() -> Iterator[tuple[Line, ...]]:
@@ -111,17 +114,17 @@ def _impossible() -> Iterator[tuple[Line, ...]]:
     foreign = of_family("carti", "traverseMission", *TABLES)
     nowhere = of_family("servi", "deliveryMission", *TABLES, "nowhere")
     for mission in (foreign, nowhere):
-        on = (*_drive("goalReached") * 4, *_drive("missionSucceeded"))
+        on = (*drive("goalReached") * 4, *drive("missionSucceeded"))
         batch = {"missions": [_SINGLE, {"mission": mission}]}
-        yield (_SUBSCRIBE, *_call("CreateMission", {"mission": mission}), *on)
-        yield (_SUBSCRIBE, *_call("CreateMissionBatch", batch), *_drive("missionSucceeded"), *on)
-        begun = (_SUBSCRIBE, *_call("CreateMission", _SINGLE))
-        yield (*begun, *_call("AppendMission", {"mission": mission}), *_drive("missionSucceeded"), *on)
+        yield (_SUBSCRIBE, *call("CreateMission", {"mission": mission}), *on)
+        yield (_SUBSCRIBE, *call("CreateMissionBatch", batch), *drive("missionSucceeded"), *on)
+        begun = (_SUBSCRIBE, *call("CreateMission", _SINGLE))
+        yield (*begun, *call("AppendMission", {"mission": mission}), *drive("missionSucceeded"), *on)
         yield (
             *begun,
-            *_call("AppendMissionBatch", batch),
-            *_drive("missionSucceeded"),
-            *_drive("missionSucceeded"),
+            *call("AppendMissionBatch", batch),
+            *drive("missionSucceeded"),
+            *drive("missionSucceeded"),
             *on,
         )
 

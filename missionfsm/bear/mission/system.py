@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from missionfsm.bear.mission.codec import CODEC
+from missionfsm.bear.mission.matrix import MATRIX
 from missionfsm.bear.mission.mutations import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission.pictures import SKETCHES
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
@@ -208,6 +209,11 @@ _DRIVES: tuple[JSON, ...] = (
     {"event": "fault", "status": "DEADLINE_EXCEEDED", "applied": False},
     {"event": "fault", "status": "DEADLINE_EXCEEDED", "applied": True},
 )
+_MAPS: tuple[JSON, ...] = (
+    {"event": "world", "destinations": [TABLES[0], TABLES[2]]},
+    {"event": "world", "destinations": list(TABLES)},
+)
+"""Other maps, where the bound `maps` asks for them."""
 _WORLDS: tuple[JSON, ...] = (
     {"family": "servi"},
     {"family": "base"},
@@ -226,7 +232,7 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     return Alphabet(
         prompts=tuple(_prompts(family, bounds)),
         plain=tuple(_plain(family, bounds)),
-        drives=_DRIVES,
+        drives=(*_DRIVES, *_MAPS[: bounds.get("maps", 0)]),
         plain_drives=_DRIVES[:3],
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
@@ -246,4 +252,5 @@ SYSTEM = System(
     reaching=REACHING,
     sketches=SKETCHES,
     shapes=shapes,
+    matrix=MATRIX,
 )

@@ -81,6 +81,40 @@ class Untested:
         return f"{told}, so that {count} could not be tested"
 
 
+OFTEN = 3
+"""How often every kind of action should be met in every situation."""
+
+
+@frozen
+class Reached:
+    """How often a run met each kind of action in each situation, where the system says which there are.
+
+    Attributes:
+        cells: how many pairs of a situation and a kind of action could be met.
+        holes: those that were met less often than `OFTEN`, to how often.
+        never: situations that never came about.
+    """
+
+    cells: int
+    holes: Mapping[str, int] = field(factory=dict)
+    never: tuple[str, ...] = ()
+
+    def to_json(self) -> JSON:
+        """The reach as the command line writes it."""
+        return {"cells": self.cells, "holes": dict(self.holes), "never": list(self.never)}
+
+    def lines(self, *, all_names: bool = False) -> list[str]:
+        """What the run came to, and where it did not."""
+        met = self.cells - len(self.holes)
+        told = [f"situations × actions: {met} of {self.cells} met {OFTEN} times or more"]
+        if self.never:
+            told.append(f"  never came about: {_few(self.never, all_names=all_names)}")
+        if self.holes:
+            holes = (f"{cell} ({times})" for cell, times in sorted(self.holes.items(), key=lambda one: one[1]))
+            told.append(f"  too seldom: {_few(holes, all_names=all_names)}")
+        return told
+
+
 NOT_TRIED, NOT_THERE, NEVER_SUCCEEDED = "was not tried", "is not there", "never succeeded"
 """Why nothing is known of a call."""
 _SAID = {NOT_TRIED: "not tried", NOT_THERE: "not there"}
@@ -113,4 +147,4 @@ def _few(names: Iterable[str], *, all_names: bool) -> str:
     return f"{', '.join(listed[:NAMED])} and {len(listed) - NAMED} more"
 
 
-__all__ = ["NEVER_SUCCEEDED", "NOT_THERE", "NOT_TRIED", "Untested", "departing", "readings_line"]
+__all__ = ["NEVER_SUCCEEDED", "NOT_THERE", "NOT_TRIED", "OFTEN", "Reached", "Untested", "departing", "readings_line"]

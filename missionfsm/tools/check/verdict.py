@@ -9,7 +9,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import printable
-from missionfsm.tools.check.basis import Untested, readings_line
+from missionfsm.tools.check.basis import Reached, Untested, readings_line
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -142,6 +142,8 @@ class Verdict:
         stale: ids of rules whose violation was expected and was not met.
         rare: ids of rules that were exercised less often than they should be, to the reason.
         notes: what else there is to know about how the run went.
+        reach: in which situations what was asked; None where the system does not say which there are.
+        advised: whether it was thought about experiments and about what came up seldom.
     """
 
     outcome: Outcome
@@ -165,6 +167,8 @@ class Verdict:
     stale: tuple[str, ...] = ()
     rare: Mapping[str, str] = field(factory=dict)
     notes: tuple[str, ...] = ()
+    reach: Reached | None = None
+    advised: bool = True
 
     @property
     def conforms(self) -> bool:
@@ -196,6 +200,7 @@ class Verdict:
             "known": dict(self.known),
             "stale": list(self.stale),
             "notes": list(self.notes),
+            "reach": self.reach and self.reach.to_json(),
             "because": self.because,
             "story": self.story.splitlines(),
             "violation": None
@@ -265,6 +270,8 @@ class Verdict:
         total = len(self.exercised) + len(self.uncovered)
         if total:
             lines += ["", f"rules exercised: {len(self.exercised)} of {total}"]
+        if self.reach is not None:
+            lines += self.reach.lines(all_names=verbose)
         if verbose:
             lines += self._rarely()
         elif folded := self._folded():
@@ -292,10 +299,15 @@ class Verdict:
         decided = sum(len(letters) == 1 for letters in self.readings.values())
         parts = (
             f"what decided {decided} readings" if decided else "",
-            "what would decide the others" if self.experiments else "",
+            "what would decide the others" if self.experiments or self._unadvised else "",
             f"{len(self.rare)} rules that came up seldom" if self.rare else "",
         )
         return ", ".join(filter(None, parts))
+
+    @property
+    def _unadvised(self) -> bool:
+        """Whether nobody thought about readings that are still open."""
+        return not self.advised and any(len(letters) > 1 for letters in self.readings.values())
 
     def _rarely(self) -> list[str]:
         """The rules that came up least, but for those that belong to readings that are not followed."""

@@ -23,12 +23,16 @@ from missionfsm.tools.conform.distinguish import proposed
 from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.shortening import shorten, shorten_evidence
-from missionfsm.tools.conform.tour import play, some, tour
+from missionfsm.tools.conform.tour import fill, play, some, tour
 from missionfsm.tools.explore.undriven import missed_without
 
 EXAMPLES, TOURS, STEPS = 100, 60, 40
 """Conversations that are drawn, conversations before those that walk where the run has been least, and the calls and
 drives in each, at most, unless a run is told otherwise."""
+
+FILLS, LED = 500, 0.4
+"""Where a system says what its situations are: conversations that go where it was asked too seldom, at most; and the
+part of the tours that is left, since those are led and need not find it."""
 
 AGAIN = 0.6
 """How often what the surroundings did happens once more at once: goal after goal, say."""
@@ -43,12 +47,14 @@ class Plan:
         tours: that walk where the run has been least.
         scripts: of those that the system's alphabet has written down, at most.
         steps: calls and drives in each, at most.
+        fills: those that go where it was asked too seldom, at most, in a system that says what its situations are.
     """
 
     examples: int = EXAMPLES
     tours: int = TOURS
     scripts: int = EXAMPLES + TOURS
     steps: int = STEPS
+    fills: int = FILLS
 
     @classmethod
     def sharing(cls, conversations: int, steps: int = STEPS) -> Plan:
@@ -56,11 +62,16 @@ class Plan:
         whole = cls()
         total = whole.scripts + whole.tours + whole.examples
         scripts, examples = (conversations * part // total for part in (whole.scripts, whole.examples))
-        return cls(examples, conversations - scripts - examples, scripts, steps)
+        tours = conversations - scripts - examples
+        return cls(examples, tours, scripts, steps, tours - round(LED * tours))
+
+    def led(self, system: System) -> tuple[int, int]:
+        """How many tours there are of a system, and how many conversations go where it was asked too seldom."""
+        return (self.tours, 0) if system.matrix is None else (round(LED * self.tours), self.fills)
 
     def conversations(self, system: System) -> int:
-        """How many there are of a system, where nothing is found."""
-        return len(some(system.alphabet({}, BOUNDS).scripts, self.scripts)) + self.tours + self.examples
+        """How many there are of a system at most, where nothing is found."""
+        return len(some(system.alphabet({}, BOUNDS).scripts, self.scripts)) + sum(self.led(system)) + self.examples
 
 
 def conform(  # noqa: PLR0913 - every one has a default
@@ -106,7 +117,9 @@ def conform(  # noqa: PLR0913 - every one has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Expected(expected)
-    plan = plan or Plan(examples, tours, examples + tours, steps)
+    plan = plan or Plan(
+        examples, tours, examples + tours, steps, FILLS if tours >= TOURS else tours - round(LED * tours)
+    )
     run = Run.of(
         system,
         subject,
@@ -137,7 +150,13 @@ def conform(  # noqa: PLR0913 - every one has a default
 def search(run: Run, plan: Plan, seed: int) -> None:
     """Have all conversations, or until something is found, or no more should be done."""
     chance = random.Random(seed)  # noqa: S311 - no secret
-    if play(run, plan.scripts) and tour(run, chance, plan.tours, plan.steps, again=AGAIN) and plan.examples:
+    tours, fills = plan.led(run.system)
+    if (
+        play(run, plan.scripts)
+        and tour(run, chance, tours, plan.steps, again=AGAIN)
+        and fill(run, chance, fills, plan.steps)
+        and plan.examples
+    ):
         draw(run, plan.examples, plan.steps, seed)
 
 
@@ -199,6 +218,8 @@ def verdict_of(
         rare=rare(run.system, exercised, ledger.steps, followed) if advice and not run.enough() else {},
         known={rule: times for rule, times in known.met.items() if times},
         notes=tuple(ledger.notes),
+        advised=advice,
+        reach=run.reach.reached() if run.reach is not None and not _has_found(run) and not run.enough() else None,
     )
     # A search that was stopped says nothing of what it did not come to.
     return verdict if run.enough() else held_against(verdict, known.stale)

@@ -20,6 +20,7 @@ from missionfsm.tools.conform.guide import Guide, Proposal
 from missionfsm.tools.conform.handshake import AdapterInfo, handshake, offered
 from missionfsm.tools.conform.ledger import Ledger
 from missionfsm.tools.conform.narrowing import Narrowing
+from missionfsm.tools.conform.reach import Reach
 
 BOUNDS = Bounds(4, goals=3)
 """What a run tries, unless it is told otherwise."""
@@ -34,6 +35,7 @@ class Run:
         expects: whether a violation is known; the search goes on after such a one, in another conversation.
         enough: whether no more should be done.
         last: the conversation that was begun last; `found` the one that could not be explained.
+        reach: in which situations what was asked; None where the system does not say which there are.
         over: whether the last conversation ended in a violation that is known; what is done in it then is nothing.
     """
 
@@ -45,6 +47,7 @@ class Run:
     expects: Callable[[Violation], bool] | None = None
     enough: Callable[[], bool] = lambda: False
     ledger: Ledger = field(init=False)
+    reach: Reach | None = field(init=False)
     last: Conversation | None = None
     found: Conversation | None = None
     over: bool = False
@@ -52,6 +55,8 @@ class Run:
 
     def __attrs_post_init__(self) -> None:
         self.ledger = Ledger(self.system)
+        matrix = self.system.matrix
+        self.reach = Reach(self.system, matrix, self.guide.worlds) if matrix is not None else None
 
     @classmethod
     def of(  # noqa: PLR0913 - every one but the first two has a default
@@ -154,6 +159,8 @@ class Run:
             return True
         last = self.conversation
         self.ledger.steps += action.method != SETTLE
+        if self.reach is not None and last.right and last.may(action):
+            self.reach.note(last, action)
         if last.perform(action):
             self.narrowing.look(last)
             return True

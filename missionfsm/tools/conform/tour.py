@@ -10,6 +10,7 @@ from attrs import define
 from missionfsm.kernel.alphabet import Line
 from missionfsm.tools.conform.actions import WRONG_NAME, NameRef
 from missionfsm.tools.conform.guide import Proposal
+from missionfsm.tools.conform.reach import Reach
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.placeholders import kind_of, slots
 
@@ -65,6 +66,54 @@ def _named(run: Run, wanted: dict[int, str], picks: tuple[tuple[int, int], ...])
         known = [given for given, name in run.conversation.given.items() if kind_of(name) == wanted.get(slot)]
         if position < len(known):
             yield slot, known[position]
+
+
+def fill(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
+    """Conversations that go where it was asked too seldom, in every world; whether all could be explained.
+
+    Each is led into a situation, and goes on as long as there is something to do where it comes to.
+
+    Args:
+        conversations: how many of them, at most.
+        steps: calls and drives in each after that, at most.
+    """
+    reach = run.reach
+    if reach is None:
+        return True
+    left = iter(range(conversations))
+    for world in range(len(run.guide.worlds)):
+        for situation, ways in reach.matrix.ways.items():
+            turn = in_vain = 0
+            # The first time nobody knows what could be done there; after that, as long as something is lacking.
+            while in_vain < len(ways) and (not turn or reach.lacks(situation)):
+                if run.enough() or next(left, None) is None:
+                    return True
+                done = _filled(run, reach, draw, world, ways[turn % len(ways)], steps)
+                if done is None:
+                    return False
+                turn, in_vain = turn + 1, 0 if done else in_vain + 1
+    return True
+
+
+def _filled(  # noqa: PLR0913 - what one conversation needs
+    run: Run, reach: Reach, draw: random.Random, world: int, way: tuple[Line, ...], steps: int
+) -> int | None:
+    """How much was done where it was done too seldom; None where something cannot be explained."""
+    run.start(run.guide.worlds[world])
+    streams = run.system.codec.streams
+    if len(streams) == 1 and not run.act(streams[0], {}):
+        return None
+    if not all(_follow(run, line) for line in way):
+        return None
+    before = reach.met
+    for _ in range(steps):
+        candidates = [] if run.over or run.enough() else reach.candidates(run.conversation, world)
+        if not candidates:
+            break
+        one = candidates[draw.randrange(len(candidates))]
+        if not (run.act(one.method, one.params, one.name, one.picks) and run.settle()):
+            return None
+    return reach.met - before if run.gather() else None
 
 
 def look(run: Run, world: int) -> bool:

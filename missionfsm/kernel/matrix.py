@@ -1,0 +1,30 @@
+"""In which situations a tester should have asked what: every cell of situation × action several times in a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from attrs import frozen
+
+from missionfsm.kernel.alphabet import Bounds, Line
+
+
+@frozen(eq=False)
+class Matrix:
+    """The situations of a system and the kinds of actions that matter in each.
+
+    It decides where a tester looks and what it says of where it has been; what is right it does not change.
+
+    Attributes:
+        situation: state to the name of the situation that it is in; None for one that nobody counts.
+        columns: (state, request or event, positions of its names among those of the state) to the names of the kinds of
+            actions that it is an example of; none for what does not matter.
+        ways: name of a situation to scripts that lead there from the start, in any world.
+        bounds: how large what is asked may be.
+    """
+
+    situation: Callable[[Any], str | None]
+    columns: Callable[[Any, Any, tuple[int | None, ...]], tuple[str, ...]]
+    ways: Mapping[str, tuple[tuple[Line, ...], ...]]
+    bounds: Bounds

@@ -1,0 +1,192 @@
+"""Where a run has been: in which situations it asked what, and how it goes where it has been too seldom.
+
+A system says what its situations are and which kinds of actions matter (`missionfsm.kernel.matrix`). Every cell of
+situation × kind that comes up in some conversation is to be met `OFTEN` times.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from typing import Any
+
+from attrs import define, field, frozen
+
+from missionfsm.kernel.alphabet import ANY_NAME
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.system import System
+from missionfsm.oracle.explanation import Explanation
+from missionfsm.tools.check.basis import OFTEN, Reached
+from missionfsm.tools.conform.actions import CANCEL, Action, Bindings, NameRef, filled
+from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.conform.guide import Guide, rested
+from missionfsm.tools.placeholders import is_template, kind_of
+
+ALIKE = 8
+"""In how many explanations the situation has to be the same to be sure of it; nobody looks at more."""
+
+Cell = tuple[str, str]
+"""A situation and a kind of action."""
+
+
+@frozen
+class Candidate:
+    """Something that could be done now, and the cells that it would meet."""
+
+    method: str
+    params: JSON
+    name: NameRef | str | None
+    picks: Bindings
+    cells: tuple[Cell, ...]
+
+
+@define(eq=False)
+class Reach:
+    """Which cells a run has met, and how often.
+
+    Attributes:
+        matrix: what the system says of its situations.
+        times: cell to how often it was met; those that could have been met and were not stand at 0.
+        guide: what is worth trying, as large as the matrix says.
+    """
+
+    system: System
+    matrix: Matrix
+    worlds: tuple[JSON, ...]
+    times: dict[Cell, int] = field(factory=dict)
+    _read: dict[tuple[str, str], Any] = field(factory=dict)
+    _guide: Guide | None = None
+
+    @property
+    def guide(self) -> Guide:
+        """What is worth trying, in each world."""
+        if self._guide is None:
+            self._guide = Guide(self.system, self.worlds, self.matrix.bounds)
+        return self._guide
+
+    def situation(self, conversation: Conversation) -> tuple[str | None, Explanation]:
+        """The situation in which a conversation stands, as far as that is sure, and how it is explained."""
+        judge = conversation.judge
+        moves = judge.automaton.moves
+        explanations = judge.belief.node.explanations
+        here = rested(moves, explanations[0])
+        name = self.matrix.situation(here.state)
+        if len(explanations) > ALIKE or any(
+            self.matrix.situation(rested(moves, one).state) != name for one in explanations[1:]
+        ):
+            return None, here
+        return name, here
+
+    def note(self, conversation: Conversation, action: Action) -> None:
+        """An action is about to be done."""
+        if action.method != CANCEL.method and (
+            action.method not in (*self.system.codec.methods, "drive") or is_template(action.params)
+        ):
+            return  # what templates say depends on the names in them
+        situation, here = self.situation(conversation)
+        if situation is None:
+            return
+        if action.method == CANCEL.method:
+            columns: tuple[str, ...] = (CANCEL.method,)
+        else:
+            refs: tuple[int | None, ...] = ()
+            if action.name is not None and ANY_NAME in repr(action.params):
+                refs = (_position(conversation, here, action.name),)
+            what = self._what(action)
+            if action.method == "drive" and not self.system.spec.drives[what.name].steps(here.state, what, ()):
+                return  # it cannot happen there
+            columns = self.matrix.columns(here.state, what, refs)
+        for column in columns:
+            self.times[situation, column] = self.times.get((situation, column), 0) + 1
+
+    def _what(self, action: Action) -> Any:  # noqa: ANN401 - of any system
+        """The request or event that an action says, but for the names in it."""
+        key = (action.method, repr(action.params))
+        if key not in self._read:
+            codec = self.system.codec
+            if action.method == "drive":
+                self._read[key] = codec.drive(action.params)[0]
+            else:
+                rest = codec.split(action.method, filled(action.params, "any"))[1]
+                self._read[key] = codec.request(action.method, rest)
+        return self._read[key]
+
+    def candidates(self, conversation: Conversation, world: int) -> list[Candidate]:
+        """What could be done now in cells that were met too seldom, those that were met least often."""
+        situation, here = self.situation(conversation)
+        if situation is None:
+            return []
+        found: list[Candidate] = []
+        for one in self._possible(conversation, here, world, situation):
+            for cell in one.cells:
+                self.times.setdefault(cell, 0)
+            if any(self.times[cell] < OFTEN for cell in one.cells):
+                found.append(one)
+        seldom = min((self._least(one) for one in found), default=0)
+        return [one for one in found if self._least(one) == seldom]
+
+    def _least(self, one: Candidate) -> int:
+        return min(self.times[cell] for cell in one.cells)
+
+    def lacks(self, situation: str) -> bool:
+        """Whether a cell of a situation was met too seldom, as far as is known."""
+        return any(where == situation and times < OFTEN for (where, _), times in self.times.items())
+
+    def _possible(
+        self, conversation: Conversation, here: Explanation, world: int, situation: str
+    ) -> Iterator[Candidate]:
+        absent = conversation.partner.absent
+        belief, given = conversation.judge.belief, {name: one for one, name in conversation.given.items()}
+        names = [
+            (position, given[belief.name(number)])
+            for position, number in enumerate(here.names)
+            if belief.name(number) in given
+        ]
+        columns = functools.partial(self.matrix.columns, here.state)
+        for method, calls in self.guide.calls[world].items():
+            for call in calls if method not in absent else ():
+                for where, name in names if call.named else ((None, None),):
+                    kinds = columns(call.request, (where,) if call.named else ())
+                    if kinds:
+                        cells = tuple((situation, kind) for kind in kinds)
+                        yield Candidate(method, call.prompt.params, name, (), cells)
+        explanations = conversation.judge.belief.node.explanations
+        for event, drive in ((event, drive) for some in self.guide.events[world].values() for drive, event in some):
+            cells = tuple((situation, kind) for kind in columns(event, ()))
+            does = self.system.spec.drives[event.name]
+            if (
+                any(self.times.get(cell, 0) < OFTEN for cell in cells)
+                and not any(does.waits(one.state) for one in explanations)
+                and does.steps(here.state, event, ())
+            ):
+                yield Candidate("drive", drive, None, (), cells)
+        streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
+        if streams:
+            cell = (situation, CANCEL.method)
+            yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), (cell,))
+
+    @property
+    def met(self) -> int:
+        """How many of the times that cells are to be met they were."""
+        return sum(min(times, OFTEN) for times in self.times.values())
+
+    def reached(self) -> Reached:
+        """What it came to."""
+        met = {situation for situation, _ in self.times}
+        return Reached(
+            len(self.times),
+            {
+                f"{situation} × {kind}": times
+                for (situation, kind), times in sorted(self.times.items())
+                if times < OFTEN
+            },
+            tuple(situation for situation in self.matrix.ways if situation not in met),
+        )
+
+
+def _position(conversation: Conversation, here: Explanation, name: NameRef | str) -> int | None:
+    """Where the thing that a name is of stands among those of the state."""
+    wanted = conversation.given.get(name) if isinstance(name, NameRef) else name
+    belief = conversation.judge.belief
+    return next((place for place, number in enumerate(here.names) if belief.name(number) == wanted), None)

@@ -1,0 +1,106 @@
+"""A run asks everything that matters in every situation, and says where it did not."""
+
+from __future__ import annotations
+
+import itertools
+import random
+
+import pytest
+
+from missionfsm.bear.mission.matrix import MATRIX
+from missionfsm.systems import system
+from missionfsm.tools.check.basis import OFTEN, Reached
+from missionfsm.tools.conform.conform import FILLS, Plan, conform
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import fill
+from missionfsm.tools.reference.subject import Reference
+
+MISSION = system("bear.mission")
+KINDS = {
+    "base": ("base navigate", "base navigate-auto"),
+    "servi": (
+        *("base navigate", "base navigate-auto", "servi delivery", "servi delivery patrol", "servi bussing"),
+        *("servi bussing patrol", "servi navigate", "servi navigate-auto"),
+    ),
+    "carti": (
+        *("base navigate", "base navigate-auto", "carti traverse", "carti traverse patrol", "carti navigate"),
+        "carti navigate-auto",
+    ),
+}
+WORKFLOWS = {
+    "servi": ("delivery", "delivery patrol", "bussing", "bussing patrol", "birthday", "hosting", "hosting patrol"),
+    "carti": ("traverse", "traverse patrol"),
+}
+
+
+def columns() -> set[str]:
+    """What the page lets one ask of a robot in any situation, written out."""
+    some = {
+        *("SubscribeMissionStatus", "ChargeRobot", "ClearMissionStatus", "SkipGoal", "cancel"),
+        *(f"{call} changes" for call in ("blocked", "occupied", "charging location", "contact dock", "destinations")),
+        *(
+            f"{status} {when} its effect"
+            for status in ("INTERNAL", "DEADLINE_EXCEEDED")
+            for when in ("after", "instead of")
+        ),
+        *(
+            f"CreateMissionWorkflow of {family} {kind} to a {family} robot"
+            for family in WORKFLOWS
+            for kind in WORKFLOWS[family]
+        ),
+        *(f"CreateMissionWorkflow with 4 goals to a {family} robot" for family in WORKFLOWS),
+        *("CreateMissionWorkflow whose last goal is wrong", "CreateMissionWorkflow with two members in one wrapper"),
+    }
+    for call in ("CreateMission", "AppendMission"):
+        some |= {f"{call} of {kind} to a {family} robot" for family, kinds in KINDS.items() for kind in kinds}
+        some |= {f"{call} with 4 goals to a {family} robot" for family in KINDS}
+        some |= {f"{call} whose last goal is wrong", f"{call} with two members in one wrapper"}
+        some |= {f"{call}Batch of {size}" for size in (1, 2, 3, 4)}
+        some |= {f"{call}Batch whose last mission is wrong", f"{call}Batch with two members in one wrapper"}
+    return some
+
+
+@pytest.mark.long
+def test_a_run_asks_everything_in_every_situation() -> None:
+    """Before anything is toured or drawn every cell is met three times: all that the page lets one ask, everywhere."""
+    run = Run.of(MISSION, Reference(MISSION))
+    assert run.reach is not None
+    assert fill(run, random.Random(1), FILLS, 40)
+    assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
+    assert set(itertools.product(MATRIX.ways, columns())) - set(run.reach.times) == set()
+    assert run.reach.reached() == Reached(len(run.reach.times))
+
+
+def test_what_was_met_too_seldom_is_told() -> None:
+    """The rarest come first, the whole list where it is wanted, and situations that never came about."""
+    holes = {f"paused × {name}": times for name, times in (("a", 2), ("b", 0), ("c", 1), ("d", 1), ("e", 1), ("f", 1))}
+    reached = Reached(40, holes, ("cleared",))
+    assert reached.lines() == [
+        f"situations × actions: 34 of 40 met {OFTEN} times or more",
+        "  never came about: cleared",
+        "  too seldom: paused × b (0), paused × c (1), paused × d (1), paused × e (1) and 2 more",
+    ]
+    assert reached.lines(all_names=True)[-1].count("paused") == len(holes)
+    assert reached.to_json() == {"cells": 40, "holes": holes, "never": ["cleared"]}
+
+
+def test_a_system_that_names_no_situation_has_no_matrix() -> None:
+    """Nothing is told of situations that nobody names."""
+    status = system("bear.status")
+    verdict = conform(status, Reference(status), plan=Plan(1, 1, 1, 5), seed=1, advice=False)
+    assert (verdict.reach, verdict.to_json()["reach"]) == (None, None)
+    assert "situations" not in str(verdict)
+
+
+def test_a_run_led_nowhere_says_so() -> None:
+    """Of a robot whose list cannot be cleared the run says that no situation after a clear came about."""
+    without = conform(
+        MISSION,
+        Reference(MISSION),
+        plan=Plan(0, 1, 0, 5, fills=30),
+        without=["ClearMissionStatus"],
+        seed=1,
+        advice=False,
+    )
+    assert without.reach is not None
+    assert "cleared" in without.reach.never

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Sequence
 
 from attrs import frozen
@@ -22,8 +23,9 @@ from missionfsm.pages.outline import (
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
 from missionfsm.tools.check.narrate import as_pytest
-from missionfsm.tools.check.verdict import Broken, Experiment, Outcome, Verdict
+from missionfsm.tools.check.verdict import Broken, Experiment, Outcome, Side, Verdict
 
+_NUMBER = re.compile(r"\d+")
 _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
 
 
@@ -96,10 +98,25 @@ class Topic:
 
 
 @frozen
+class Conversation:
+    """One of several conversations that contradict one another.
+
+    Attributes:
+        says: what it shows.
+        alike: the rows that all of them begin with; `apart`: those from where they part.
+    """
+
+    says: str
+    alike: tuple[Row, ...]
+    apart: tuple[Row, ...]
+
+
+@frozen
 class Story:
     """A verdict as the page tells it.
 
     Attributes:
+        sides: the conversations that contradict one another, where that is what is wrong.
         earlier: the rows that are folded away.
         history: the history as text, to be copied; `test`: as a pytest module.
     """
@@ -110,6 +127,7 @@ class Story:
     asked: tuple[Asked, ...]
     history: str
     test: str
+    sides: tuple[Conversation, ...] = ()
 
     @property
     def against(self) -> tuple[Broken, ...]:
@@ -176,7 +194,21 @@ def _story(system: System, judged: Judged) -> Story:
         readings_asked(system.spec, judged.verdict),
         "".join(f"{_line(line)}\n" for line in history),
         as_pytest(history, "the_recorded_conversation_is_explained") if history else "",
+        _parted(system, violation.sides) if violation else (),
     )
+
+
+def _parted(system: System, sides: Sequence[Side]) -> tuple[Conversation, ...]:
+    """Conversations with what they begin with alike; names that somebody chose do not count."""
+    by_look: dict[tuple[tuple[str, str], ...], tuple[list[str], tuple[Row, ...]]] = {}
+    for side in sides:
+        told = rows(system, side.history, violation=False)
+        look = tuple((row.kind, _NUMBER.sub("0", row.words)) for row in told)
+        by_look.setdefault(look, ([], told))[0].append(side.says)
+    alike = 0
+    while all(alike < len(look) - 1 for look in by_look) and len({look[alike] for look in by_look}) == 1:
+        alike += 1
+    return tuple(Conversation("; ".join(says), told[:alike], told[alike:]) for says, told in by_look.values())
 
 
 def _line(line: JSON) -> str:

@@ -14,6 +14,8 @@ from commandline import CommandLine
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.transcript import head
+from missionfsm.pages.report import Judged, report
+from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
 from missionfsm.tools.check.suspects import suspects
@@ -227,6 +229,11 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     assert [note.partition(" is ruled out: ")[0] for note in notes] == ["a", "b", "c"]
     assert any("showed []" in note for note in notes)
     assert any("showed [DEFAULT]" in note for note in notes)
+    assert [side.says.partition(":")[0] for side in verdict.violation.sides] == ["not a", "not b", "not c"]
+    page = report([Judged(verdict)], system)
+    # Those that look alike but for the names in them are one, and what all begin with is folded away.
+    assert page.count('<div class="side">') == 2
+    assert (page.count("2 lines that both begin with"), page.count("Here the conversations part:")) == (1, 1)
 
 
 def test_a_violation_is_recorded_in_the_form_that_is_asked_for(tmp_path: Path, command_line: CommandLine) -> None:

@@ -56,6 +56,14 @@ class Allowed:
 
 
 @frozen
+class Side:
+    """One of the conversations that together fit no single reading: what it shows, and its lines."""
+
+    says: str
+    history: tuple[JSON, ...]
+
+
+@frozen
 class Violation:
     """An event that nothing explains.
 
@@ -66,6 +74,7 @@ class Violation:
         notes: why explanations died, one line each.
         history: the shortest history known that shows it, as lines of the history format.
         at: where it is: the number of the event, or of the line in a file, from 1.
+        sides: the conversations that contradict one another, where no single one of them is wrong.
     """
 
     rules: tuple[Broken, ...]
@@ -75,6 +84,7 @@ class Violation:
     history: tuple[JSON, ...] = ()
     at: int = 0
     where: str = ""
+    sides: tuple[Side, ...] = ()
 
     @property
     def explanation(self) -> str:

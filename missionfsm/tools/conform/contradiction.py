@@ -8,7 +8,7 @@ from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Spec
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import rules_in_words
-from missionfsm.tools.check.verdict import Allowed, Violation
+from missionfsm.tools.check.verdict import Allowed, Side, Violation
 
 
 def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]) -> Violation:
@@ -19,6 +19,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     """
     expected, notes, rules = [], [], list[str]()
     last: Judge | None = None
+    shown: dict[int, tuple[Judge, list[str]]] = {}
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
@@ -29,10 +30,14 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         rules += ruling.rules
         notes.append(f"{letter} is ruled out: {ruling}")
         last = judge
+        assert judge is not None, "an event was ruled on by a judge"  # noqa: S101
+        shown.setdefault(id(judge), (judge, []))[1].append(f"not {letter}: {ruling}")
+    sides = tuple(Side("; ".join(says), judge.history) for judge, says in shown.values())
     return Violation(
         rules_in_words(spec, rules),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
         tuple(notes),
         last.history if last else (),
+        sides=sides if len(sides) > 1 else (),
     )

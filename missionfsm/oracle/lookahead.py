@@ -20,8 +20,11 @@ from missionfsm.kernel.spec import Mismatch, Spec
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 
-NEXT = 12
+NEXT = 64
 """How many of the messages that a stream shows next are compared with what it owes."""
+
+NEXT_CALLS = 12
+"""How many of the calls that are sent next and succeed are looked at."""
 
 Symbol = tuple[Any, ...]
 """An event with numbers for names, as the belief automaton knows it: its class and its fields."""
@@ -175,7 +178,7 @@ class Lookahead:
         first = bisect.bisect_left(self._sent, self.at)
         return all(
             self._answered[call] >= cut or self._succeeds(explanation, request, args, self.answers[call][1])
-            for _, call, request, args in self._successes[first : first + NEXT]
+            for _, call, request, args in self._successes[first : first + NEXT_CALLS]
         )
 
     def _succeeds(self, explanation: Explanation, request: Hashable, args: Names, names: Names) -> bool:

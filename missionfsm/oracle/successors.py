@@ -67,7 +67,7 @@ FocusOf = Callable[[Explanation], Focus]
 class Moves:
     """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
 
-    It holds caches and nothing that could change an answer.
+    It holds caches and nothing that could change an answer. While it is `live`, nobody can be asked what comes later.
 
     Args:
         spec: the system.
@@ -90,6 +90,7 @@ class Moves:
         self._focused: dict[Any, tuple[Step, ...]] = {}
         self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
         self.ahead: Lookahead | None = None
+        self.live = True
         self.spent = 0
         self.most = budget
 
@@ -311,12 +312,13 @@ class Moves:
     def _may_go_on(self, explanation: Explanation) -> bool:
         """Whether the subscribers, if there are any, are near enough to the state for more to be imagined.
 
-        Where it is known what comes, one of them suffices: a slow one hides nothing that a quick one shows. Where it is
-        not, all of them have to be: what each may come to show multiplies.
+        Where it is known what comes, or where that can be asked for, one of them suffices: a slow one hides nothing
+        that a quick one shows. Live, all of them have to be: what each may come to show multiplies.
         """
         if self.ahead:
             return not explanation.channels or any(self.ahead.lag(channel) < LAG for channel in explanation.channels)
-        return all(len(channel.owed) < LAG for channel in explanation.channels)
+        near = (len(channel.owed) < LAG for channel in explanation.channels)
+        return all(near) if self.live else any(near) or not explanation.channels
 
     def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
         self.spend(weight(explanation) - 1)

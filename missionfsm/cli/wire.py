@@ -203,7 +203,8 @@ def proxy(  # noqa: PLR0913 - options of the command
             asyncio.run(_relayed(relay, host, listen, f"to {grpc}; Ctrl-C ends it"))
         judged = recorder.close()
     if judged is None:
-        stop("nothing was judged", FAILED)
+        later = f": missionfsm check {record}" if record else ""
+        stop(f"the judge has come to no verdict in time{later}", FAILED)
     typer.echo(judged.text)
     troubles = Troubles()
     with troubles.kept():

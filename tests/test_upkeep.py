@@ -77,7 +77,6 @@ COMPLEX = {
         "smoke._Smoke.run",
         "tour._Tour._conversation",
     },
-    "tools.draw": {"diagram._drawn", "plantuml._body"},
     "tools.explore": {"explore.explore"},
 }
 """For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from attrs import evolve, frozen
 
@@ -182,9 +182,6 @@ def _without(shown: Quotient, nodes: frozenset[str], moves: frozenset[Move]) -> 
 def _drawn(title: str, sides: Mapping[Side, Quotient], *, refusals: bool) -> Diagram:
     moves = [(side, move) for side, shown in sides.items() for move in shown.moves]
     left = {move.source for _, move in moves if move.source != move.target}
-    # Where two readings differ in what is refused, that is what there is to tell.
-    common = sides[Side.BOTH].nodes
-    apart = {(side, node) for side in sides if side is not Side.BOTH for node in common}
     nodes = tuple(
         Node(identifier(name), tuple(name.split(", ")), start=name in shown.starts, end=name not in left, side=side)
         for side, shown in sides.items()
@@ -193,15 +190,11 @@ def _drawn(title: str, sides: Mapping[Side, Quotient], *, refusals: bool) -> Dia
     labels = tuple(dict.fromkeys(label for shown in sides.values() for label in shown.labels))
     rank = {str(move): (labels.index(move.label), str(move)) for _, move in moves}
     arrows: dict[tuple[Side, str, str], set[str]] = {}
-    stays: dict[tuple[Side, str, str], set[str]] = {}
     for side, move in moves:
         source, target = identifier(move.source), identifier(move.target)
-        told = (refusals or (side, move.source) in apart) if move.refused else move.source in left
         if source != target:
             arrows.setdefault((side, source, target), set()).add(str(move))
-        elif told:
-            code = move.code if move.refused else ""
-            stays.setdefault((side, code, move.label if code else str(move)), set()).add(source)
+    stays = _staying(sides, left, refusals=refusals)
     return Diagram(
         title,
         nodes,
@@ -212,6 +205,22 @@ def _drawn(title: str, sides: Mapping[Side, Quotient], *, refusals: bool) -> Dia
         stays=tuple(_stays(stays, nodes)),
         sure=False,
     )
+
+
+def _staying(
+    sides: Mapping[Side, Quotient], left: Collection[str], *, refusals: bool
+) -> Mapping[tuple[Side, str, str], set[str]]:
+    """What leaves the robot where it is and is worth telling: by side, code and label, the nodes in which it does."""
+    # Where two readings differ in what is refused, that is what there is to tell.
+    common = sides[Side.BOTH].nodes
+    apart = {(side, node) for side in sides if side is not Side.BOTH for node in common}
+    stays: dict[tuple[Side, str, str], set[str]] = {}
+    for side, move in ((side, move) for side, shown in sides.items() for move in shown.moves):
+        told = (refusals or (side, move.source) in apart) if move.refused else move.source in left
+        if told and identifier(move.source) == identifier(move.target):
+            code = move.code if move.refused else ""
+            stays.setdefault((side, code, move.label if code else str(move)), set()).add(identifier(move.source))
+    return stays
 
 
 def _stays(stays: Mapping[tuple[Side, str, str], set[str]], nodes: tuple[Node, ...]) -> Iterable[Stay]:

@@ -30,14 +30,22 @@ def _body(diagram: Diagram) -> Iterator[str]:
         yield f'{"state" if diagram.machine else "rectangle"} "{_lines(node.lines)}" as {node.id}{colour}'
     if diagram.machine:
         yield from (f"[*] --> {node.id}" for node in diagram.nodes if node.start)
+    yield from _arrows(diagram)
+    if diagram.machine:
+        yield from (f"{node.id} --> [*]" for node in diagram.nodes if node.end)
+    yield from _legend(diagram)
+
+
+def _arrows(diagram: Diagram) -> Iterator[str]:
     for arrow in diagram.arrows:
         only = diagram.only(arrow.side)
         lines = (f"{only}:", *arrow.lines) if only else arrow.lines
         shaft = f"-[{COLOURS.get(arrow.side, FADED)}]->" if diagram.versus else "-->"
         label = f" : {_lines(lines)}" if lines else ""
         yield f"{arrow.source} {shaft} {arrow.target}{label}"
-    if diagram.machine:
-        yield from (f"{node.id} --> [*]" for node in diagram.nodes if node.end)
+
+
+def _legend(diagram: Diagram) -> Iterator[str]:
     told = [*diagram.remarks]
     told += [": ".join(ENDS)] if diagram.ends else []
     told += (": ".join((*diagram.told(stay), ", ".join(stay.lines))) for stay in diagram.stays)

@@ -24,3 +24,18 @@ def test_a_busy_log_conforms(tmp_path: Path, seed: int, habits: Habits) -> None:
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in busy(seed, 40, habits, choice)))
     ((_, verdict),) = check_file(str(path))
     assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_a_busy_log_that_is_cut_anywhere_is_no_violation(tmp_path: Path, seed: int) -> None:
+    """However much is missing at the beginning of a busy log, what is left is never a violation."""
+    first, *lines = busy(seed, 40, Habits(), readings_at_random(seed) if seed % 2 else None)
+    wrong = {}
+    for cut in range(1 + seed, len(lines), 6):
+        path = tmp_path / "log"
+        left = [{**first, "begins": "anywhere"}, *lines[cut:]]
+        path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in left))
+        ((_, verdict),) = check_file(str(path))
+        if verdict.violation is not None:
+            wrong[cut] = str(verdict)
+    assert wrong == {}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import collections
 import contextlib
-import importlib.resources
 import logging
 import signal
 import ssl
@@ -13,11 +12,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import attrs
-import orjson
 
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
-from missionfsm.adapters.isaac.statuspage import StatusPage
+from missionfsm.adapters.isaac.statuspage import StatusPage, answers
 from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
 from missionfsm.app.ending import told_to_end
 from missionfsm.isaac.runtime.graph import topological_order
@@ -170,30 +168,9 @@ class Dispatch:
 
     def _page(self, server: TcpMissionServer, port: int) -> StatusPage:
         try:
-            return StatusPage(port, self._answers(server))
+            return StatusPage(port, answers(lambda: self.status(server)))
         except OSError as error:
             raise UnreadableError(f"--http: cannot listen on {LOOPBACK}:{port}: {error.strerror or error}") from None
-
-    def _answers(self, server: TcpMissionServer) -> dict[str, tuple[str, Callable[[], bytes]]]:
-        template = importlib.resources.files("missionfsm.pages").joinpath("templates", "dispatch.html").read_bytes()
-
-        def status() -> bytes:
-            return orjson.dumps(self.status(server))
-
-        def metrics() -> bytes:
-            now = self.status(server)
-            lines = ["# HELP missionfsm_missions Missions of the file, by status.", "# TYPE missionfsm_missions gauge"]
-            lines += [f'missionfsm_missions{{status="{one}"}} {count}' for one, count in now["counts"].items()]
-            lines += ["# HELP missionfsm_robots_connected Robots that are connected."]
-            lines += ["# TYPE missionfsm_robots_connected gauge"]
-            lines += [f"missionfsm_robots_connected {sum(one['peer'] is not None for one in now['robots'])}", ""]
-            return "\n".join(lines).encode()
-
-        return {
-            "/": ("text/html; charset=utf-8", lambda: template),
-            "/status.json": ("application/json", status),
-            "/metrics": ("text/plain; version=0.0.4; charset=utf-8", metrics),
-        }
 
     def status(self, server: TcpMissionServer) -> dict[str, Any]:
         """Where everything stands, as JSON: missions in the order of the file, robots, how many have which status."""
@@ -202,10 +179,7 @@ class Dispatch:
             {"mission": number, "robot": entry.robot, "status": status.value, "upstream": list(entry.upstream)}
             for number, (entry, status) in enumerate(zip(self.file.missions, self.statuses, strict=True))
         ]
-        robots = [
-            {"robot": robot.robot, "peer": None if robot.connection is None else server.peer(robot.connection)}
-            for robot in server.core.robots()
-        ]
+        robots = [{"robot": name, "peer": peer} for name, peer in server.robots()]
         return {"counts": {one.value: counts[one] for one in Status}, "robots": robots, "missions": missions}
 
     def _observe(self, effect: Effect) -> None:

@@ -111,7 +111,8 @@ class Automaton:
 
     def start(self, world: object, *, used: bool = False) -> Node:
         """The node in which an instance in this world is that is fresh, or that was used and then cleared."""
-        state = (self.spec.used if used and self.spec.used else self.spec.initial)(world)
+        spec = self.moves.spec
+        state = (spec.used if used and spec.used else spec.initial)(world)
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)
 

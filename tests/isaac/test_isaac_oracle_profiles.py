@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import attrs
 import pytest
 from commandline import CommandLine
 from server_history import SERVER, History
 
+from missionfsm.adapters.isaac.subjects import ServerSubject
+from missionfsm.isaac.runtime.profile import DOCUMENTED
 from missionfsm.systems import names, system
+from missionfsm.tools.conform.conform import Plan, conform
 
 
 def right(begun: History, seconds: float, *ends: tuple[str, ...]) -> dict[str, list[tuple[str, ...]]]:
@@ -89,6 +95,14 @@ def test_the_connection_that_said_the_name_later_is_served() -> None:
     assert right(begun, 30, ("RUNNING", "FAILED_TIMEDOUT"))["as-shipped"] == [("RUNNING", "FAILED_TIMEDOUT")]
 
 
+def test_a_pass_may_do_several_things() -> None:
+    """As shipped one pass may time a mission out and cancel all that waits for it in an idle robot's queue."""
+    begun = sent(1.3, start_timeout=3).submit(2, robot="s", upstream=[1]).submit(3, robot="s", upstream=[2])
+    begun = begun.robot(2, "s").settles.waits(1.3).settles
+    ends = [("FAILED_TIMEDOUT", *rest) for rest in (("QUEUED", "QUEUED"), ("FAILED_UPSTREAM", "FAILED_UPSTREAM"))]
+    assert right(begun, 4, *ends)["as-shipped"] == ends
+
+
 def test_a_cancellation_that_the_next_pass_notices() -> None:
     """It need not come at once, whoever is there, but within a second of time that passes (AI-03.when q)."""
     begun = History().submit(1).submit(2, robot="s", upstream=[1]).robot(1).waits(1).sends(1, 1).settles
@@ -117,6 +131,19 @@ def test_the_known_fault_is_named_with_the_upstream_rule() -> None:
         verdict = begun.judged(readings=SERVER.profiles["documented"])
         assert verdict.violation is not None
         assert "isaac.server/dependencies/a-failed-upstream-cancels" in [one.id for one in verdict.violation.rules]
+
+
+@pytest.mark.parametrize(
+    ("late", "lines"), [({}, 6), ({"ai_03_when": "q", "scheduling_period": 1.0}, 8)], ids=["at once", "in a pass"]
+)
+def test_the_known_fault_is_found_in_a_short_story(late: dict[str, Any], lines: int) -> None:
+    """The tester finds it under documented and names the upstream's rule, whenever the cancellation comes."""
+    faulty = ServerSubject(attrs.evolve(DOCUMENTED, started_upstream_fails=True, **late))
+    readings = SERVER.profiles["documented"]
+    verdict = conform(SERVER, faulty, plan=Plan(0, 0, 40, 20), seed=1, advice=False, readings=readings)
+    assert verdict.violation is not None
+    assert [one.id for one in verdict.violation.rules] == ["isaac.server/dependencies/a-failed-upstream-cancels"]
+    assert len(verdict.story.splitlines()) == lines
 
 
 def test_profiles_of_systems() -> None:

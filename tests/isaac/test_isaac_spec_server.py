@@ -190,7 +190,7 @@ def _difference(profile: Profile) -> str:
 
 
 PROFILES = [
-    attrs.evolve(DOCUMENTED, **{field.name: letter}, scheduling_period=float(letter == "p"))
+    attrs.evolve(DOCUMENTED, **{field.name: letter}, scheduling_period=float(letter in "pq"))
     for field in attrs.fields(Profile)
     for letter in field.metadata.get("letters", "")
     if letter != getattr(DOCUMENTED, field.name) and (field.name, letter) != ("ai_37", "c")

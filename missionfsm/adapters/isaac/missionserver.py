@@ -12,10 +12,12 @@ have an event loop, :class:`AsyncMissionServer` is the same on that loop::
 """
 
 import asyncio
+import collections
 import contextlib
 import queue
+import ssl
 import threading
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
@@ -26,6 +28,7 @@ import attrs
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
 from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError, not_submitted
+from missionfsm.adapters.isaac.statuspage import StatusPage, answers
 from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer
 from missionfsm.isaac.runtime.missions import Effect, Refused, StatusChanged
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
@@ -50,6 +53,9 @@ class _Settings:
     line_limit: int
     journal: str | Path | None
     resume: str
+    tokens: Mapping[str, str] | None
+    tls: ssl.SSLContext | None
+    http: int | None
 
 
 class AsyncMissionServer:
@@ -63,6 +69,9 @@ class AsyncMissionServer:
         line_limit: bytes of the longest line that is read or sent; a mission that needs more is refused.
         journal: a file in which everything that was accepted survives the server. What it has is in `missions`.
         resume: what becomes of a mission that was under way when the last server died: "rerun" or "fail".
+        tokens: for each robot's name the token that a connection says before it; None lets anybody be anybody.
+        tls: how the server shows who it is; everything is encrypted then (`missionfsm.adapters.isaac.secrets`).
+        http: the port of loopback on which a page shows where all stands, read only; 0 is any free one (`http_port`).
     """
 
     def __init__(  # noqa: PLR0913 - all but the page's two by keyword
@@ -75,8 +84,12 @@ class AsyncMissionServer:
         line_limit: int = MAX_LINE,
         journal: str | Path | None = None,
         resume: str = "fail",
+        tokens: Mapping[str, str] | None = None,
+        tls: ssl.SSLContext | None = None,
+        http: int | None = None,
     ) -> None:
-        self._settings = _Settings(port, name_channel, host, profile, line_limit, journal, resume)
+        self._settings = _Settings(port, name_channel, host, profile, line_limit, journal, resume, tokens, tls, http)
+        self._page: StatusPage | None = None
         self._tcp: TcpMissionServer | None = None
         self._journal: Journal | None = None
         self._missions: WeakValueDictionary[Uuid, Mission] = WeakValueDictionary()
@@ -102,10 +115,14 @@ class AsyncMissionServer:
             line_limit=settings.line_limit,
             journal=self._journal,
             resume=settings.resume,
+            tokens=settings.tokens,
+            tls=settings.tls,
             observer=self._observe,
         )
         self._tcp.failed.add_done_callback(lambda _: self._changed.set())
         await self._tcp.start()
+        if settings.http is not None:
+            self._page = StatusPage(settings.http, answers(self._standing))
 
     async def close(self) -> None:
         """Stop listening and drop all robots; missions keep their status, and nobody waits for them any more."""
@@ -114,6 +131,9 @@ class AsyncMissionServer:
         for followers in self._followers.values():
             for follower in followers:
                 follower.put_nowait(None)
+        if self._page is not None:
+            await asyncio.to_thread(self._page.close)  # a page that is being made is made on this loop
+            self._page = None
         if self._tcp is not None:
             await self._tcp.close()
         if self._journal is not None:
@@ -132,6 +152,29 @@ class AsyncMissionServer:
     def port(self) -> int:
         """The port that is listened on."""
         return self._running().port
+
+    @property
+    def http_port(self) -> int | None:
+        """The port of the status page, if there is one."""
+        return None if self._page is None else self._page.port
+
+    def _standing(self) -> dict[str, Any]:
+        """Where everything stands, for the status page: missions in the order of creation, without forgotten ones."""
+        tcp = self._running()
+        stands = [tcp.core.snapshot(uuid) for uuid, _ in tcp.core.statuses()]
+        numbers = {one.uuid: number for number, one in enumerate(stands)}
+        counts = collections.Counter(one.status for one in stands)
+        missions = [
+            {
+                "mission": numbers[one.uuid],
+                "robot": one.request.robot,
+                "status": one.status.value,
+                "upstream": [numbers[upstream] for upstream in one.request.upstream if upstream in numbers],
+            }
+            for one in stands
+        ]
+        robots = [{"robot": name, "peer": peer} for name, peer in tcp.robots()]
+        return {"counts": {one.value: counts[one] for one in MissionStatus}, "robots": robots, "missions": missions}
 
     @property
     def missions(self) -> tuple[Mission, ...]:
@@ -271,14 +314,31 @@ class MissionServer:
         line_limit: int = MAX_LINE,
         journal: str | Path | None = None,
         resume: str = "fail",
+        tokens: Mapping[str, str] | None = None,
+        tls: ssl.SSLContext | None = None,
+        http: int | None = None,
     ) -> None:
+        def made() -> AsyncMissionServer:
+            return AsyncMissionServer(
+                port,
+                name_channel,
+                host=host,
+                profile=profile,
+                line_limit=line_limit,
+                journal=journal,
+                resume=resume,
+                tokens=tokens,
+                tls=tls,
+                http=http,
+            )
+
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="missionfsm-server", daemon=True)
         self._lock = threading.Lock()
         self._closed = False
         self._thread.start()
         try:
-            self._server = self._call(self._make(port, name_channel, host, profile, line_limit, journal, resume))
+            self._server = self._call(self._start(made))
         except BaseException:
             self._stop()
             raise
@@ -287,6 +347,11 @@ class MissionServer:
     def port(self) -> int:
         """The port that is listened on."""
         return self._server.port
+
+    @property
+    def http_port(self) -> int | None:
+        """The port of the status page, if there is one."""
+        return self._server.http_port
 
     def submit(self, mission: Mission) -> None:
         """Run the mission when its upstreams have succeeded and its robot is there. MissionRefusedError if refused."""
@@ -374,18 +439,8 @@ class MissionServer:
         self.close()
 
     @staticmethod
-    async def _make(  # noqa: PLR0913 - the arguments
-        port: int,
-        name_channel: str,
-        host: str,
-        profile: Profile,
-        line_limit: int,
-        journal: str | Path | None,
-        resume: str,
-    ) -> AsyncMissionServer:
-        server = AsyncMissionServer(
-            port, name_channel, host=host, profile=profile, line_limit=line_limit, journal=journal, resume=resume
-        )
+    async def _start(made: Callable[[], AsyncMissionServer]) -> AsyncMissionServer:
+        server = made()
         try:
             await server.start()
         except BaseException:

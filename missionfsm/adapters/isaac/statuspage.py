@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import concurrent.futures
 import http.server
+import importlib.resources
+import json
 import threading
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
-from typing import Final
+from typing import Any, Final
 
 from missionfsm.adapters.isaac.tcp import LOOPBACK
 
@@ -22,6 +24,31 @@ _HEADERS: Final = {
     "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
     "connect-src 'self'; img-src data:; frame-ancestors 'none'",
 }
+
+
+def answers(standing: Callable[[], dict[str, Any]]) -> dict[str, tuple[str, Answer]]:
+    """The page with the graph of missions, the same as JSON, and metrics for Prometheus.
+
+    Args:
+        standing: where everything stands: `missions` (mission, robot, status, upstream), `robots` (robot, peer) and
+            `counts`, how many missions have which status.
+    """
+    template = importlib.resources.files("missionfsm").joinpath("pages", "templates", "dispatch.html").read_bytes()
+
+    def metrics() -> bytes:
+        now = standing()
+        lines = ["# HELP missionfsm_missions Missions of the file, by status.", "# TYPE missionfsm_missions gauge"]
+        lines += [f'missionfsm_missions{{status="{one}"}} {count}' for one, count in now["counts"].items()]
+        lines += ["# HELP missionfsm_robots_connected Robots that are connected."]
+        lines += ["# TYPE missionfsm_robots_connected gauge"]
+        lines += [f"missionfsm_robots_connected {sum(one['peer'] is not None for one in now['robots'])}", ""]
+        return "\n".join(lines).encode()
+
+    return {
+        "/": ("text/html; charset=utf-8", lambda: template),
+        "/status.json": ("application/json", lambda: json.dumps(standing()).encode()),
+        "/metrics": ("text/plain; version=0.0.4; charset=utf-8", metrics),
+    }
 
 
 class StatusPage:

@@ -151,6 +151,11 @@ class TcpMissionServer:
         """The other end of a connection as host:port, as long as somebody may speak of it."""
         return self._peers.get(connection, "somebody")
 
+    def robots(self) -> list[tuple[str, str | None]]:
+        """Every robot that is connected or has missions to do, and its other end if it is connected."""
+        found = self.core.robots()
+        return [(one.robot, None if one.connection is None else self.peer(one.connection)) for one in found]
+
     def create(self, request: MissionRequest, uuid: Uuid) -> Refused | None:
         """Make a mission known; see `MissionServerCore.create`."""
         refused = self.core.create(request, uuid)

@@ -29,8 +29,8 @@ class Profile:
 
     - ``ai_03`` a failure cancels (a) everything downstream, (b) direct downstream, and only where the robot reported
       it, (c) direct downstream alone
-    - ``ai_03_when`` it does so (n) at once, (p) in a scheduling pass in which the downstream heads the queue of a robot
-      that is there and idle
+    - ``ai_03_when`` it does so (n) at once, (q) in the next scheduling pass, (p) in one in which the downstream heads
+      the queue of a robot that is there and idle
     - ``ai_04`` a submitted mission that waits for upstreams is (a) QUEUED, (b) CREATED
     - ``ai_05`` start_timeout counts from (a) dispatch, (b) submission, (c) upstreams done, (d) the robot's connection
     - ``ai_06`` timeout counts from (a) acknowledgement, (b) dispatch, (c) submission
@@ -78,7 +78,7 @@ class Profile:
     """
 
     ai_03: str = _reading("abc", "a")
-    ai_03_when: str = _reading("np", "n")
+    ai_03_when: str = _reading("nqp", "n")
     ai_04: str = _reading("ab", "a")
     ai_05: str = _reading("abcd", "a")
     ai_06: str = _reading("abc", "a")

@@ -55,6 +55,7 @@ class Scheduler:
         self._notice = notice
         self._unnoticed = False
         self._overdue: list[tuple[str, MissionRecord]] = []
+        self._condemned: list[MissionRecord] = []
         self.now = -math.inf
         self.missions: dict[Uuid, MissionRecord] = {}
         self.attempts: dict[Uuid, MissionRecord] = {}
@@ -115,6 +116,10 @@ class Scheduler:
     def _pass(self) -> None:
         self._unnoticed = False
         self._notice()
+        condemned, self._condemned = self._condemned, []
+        for mission in condemned:
+            if not mission.ended and self._canceled(mission):
+                self.finish(mission, Status.FAILED_UPSTREAM)
         overdue, self._overdue = self._overdue, []
         for kind, mission in overdue:
             if mission.due.get(kind, math.inf) <= self.now:
@@ -191,12 +196,20 @@ class Scheduler:
                 other.doomed = other.doomed or not succeeded
                 if other.number < 0 or other.ended:
                     continue
-                if other.doomed and self.profile.ai_03_when == "p":
-                    self._touch(self._lane(self.robots[other.key], other))
+                if other.doomed and self.profile.ai_03_when != "n":
+                    self._condemn(self._lane(self.robots[other.key], other), other)
                 elif self._canceled(other):
                     work.append((other, Status.FAILED_UPSTREAM))
                 elif other.waiting == 0:
                     self._ready(other)
+
+    def _condemn(self, lane: LaneRecord, mission: MissionRecord) -> None:
+        """A mission is to be cancelled in a pass: in one in which it heads its queue (p), or in the next (q)."""
+        if self.profile.ai_03_when == "p":
+            self._touch(lane)
+        else:
+            self._condemned.append(mission)
+            self.wait_for_pass()
 
     def _canceled(self, mission: MissionRecord) -> bool:
         """Whether a mission is to be cancelled since an upstream failed."""
@@ -236,8 +249,7 @@ class Scheduler:
     def admit(self, mission: MissionRecord, number: int | None = None) -> None:
         """Take a created mission into its robot's queue, behind all others or at a place that it had."""
         robot = self.enter(mission, self.submitted if number is None else number)
-        in_a_pass = self.profile.ai_03_when == "p"
-        if self._canceled(mission) and not in_a_pass:
+        if self._canceled(mission) and self.profile.ai_03_when == "n":
             self.finish(mission, Status.FAILED_UPSTREAM)
             return
         if self.profile.ai_04 == "a":
@@ -247,10 +259,10 @@ class Scheduler:
             self._arm_timeout(mission, "start", request.start_timeout)
         if self.profile.ai_06 == "c":
             self._arm_timeout(mission, "run", request.timeout)
-        if self.profile.ai_12 == "b" or in_a_pass:
+        if self.profile.ai_12 == "b" or self.profile.ai_03_when == "p":
             self._lane(robot, mission).line.append(mission)
-        if mission.doomed:
-            self._touch(self._lane(robot, mission))
+        if mission.doomed and self.profile.ai_03_when != "n":
+            self._condemn(self._lane(robot, mission), mission)
         elif mission.waiting == 0:
             self._ready(mission)
 

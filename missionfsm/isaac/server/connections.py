@@ -257,6 +257,7 @@ def _believed(move: Move, slot: int, report: Report) -> Moves:
         ("a", by_payload),
         ("b", () if report.named is None else by_payload),
         ("c", () if report.header is None else (report.header,)),
+        ("d", current),
     ):
         meant = tuple(index for index in found if index >= 0 and _may_report(move.state, link, index))
         targets[meant] = targets.get(meant, "") + letter

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server.readings import AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31, AMBIGUITIES
-from missionfsm.isaac.server.state import DOOM, DROP, SILENT, START, Left, Mission, Move, Server
+from missionfsm.isaac.server.state import DOOM, DROP, SILENT, START, WAITS, Left, Mission, Move, Server
 from missionfsm.kernel.readings import Ambiguity, Assumption
 
 _ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31))
@@ -60,6 +60,8 @@ def counts(state: Server, kind: str, since: str, *, whole: bool) -> bool:
         return {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[since] in state.letters(AI_05)
     if since == "send":
         return "b" in state.letters(AI_06) or ("a" in state.letters(AI_06) and "c" in state.letters(AI_07))
+    if since == WAITS:
+        return "d" in state.letters(AI_06)
     return {"status": "a", "submit": "c"}[since] in state.letters(AI_06)
 
 

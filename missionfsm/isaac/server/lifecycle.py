@@ -45,6 +45,7 @@ from missionfsm.isaac.server.state import (
     SILENT,
     START,
     UNDER_WAY,
+    WAITS,
     Clock,
     Link,
     Mission,
@@ -347,7 +348,8 @@ def sends(move: Move, link: Link, index: int) -> Moves:
             return
         move = chosen.mission(index, robot=link.name)
     move = becomes(move, index, "send").mission(index, link=link.slot, sent=True)
-    move = started(started(move, index, START, "send"), index, RUN, "send")
+    for kind, since in ((START, "send"), (RUN, "send"), (RUN, WAITS)):
+        move = started(move, index, kind, since)
     because = [rules.SENT.id, rules.UNNAMED.id]
     if mission.depends:
         because.append(rules.UPSTREAM.id)
@@ -401,6 +403,8 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
         if by_send is not None:
             aborting.append(by_send)
         ask(not_by_send, (AI_06, "a"), (AI_07, "c"))
+    elif clock.since == WAITS:
+        ask(move, (AI_06, "d"))
     elif clock.since == "status":
         ask(move, (AI_06, "a"), (AI_07, "ab"))
     else:
@@ -502,6 +506,7 @@ def _again(move: Move, index: int) -> Move:
         (START, "ready"),
         (START, "connect"),
         (RUN, "send"),
+        (RUN, WAITS),
         (RUN, "status"),
         (SILENT, "status"),
         (DROP, "drop"),

@@ -71,7 +71,12 @@ AI_05 = Ambiguity(
 AI_06 = Ambiguity(
     "AI-06",
     "From when does timeout count?",
-    {"a": "from the acknowledgement", "b": "from when the mission is sent", "c": "from its submission"},
+    {
+        "a": "from the acknowledgement",
+        "b": "from when the mission is sent",
+        "c": "from its submission",
+        "d": "from when the mission is sent, though it aborts only what was acknowledged",
+    },
     default="a",
     flagged=_flags("c"),
     rule="/timeout-aborts",
@@ -110,6 +115,7 @@ AI_10 = Ambiguity(
         "a": "by the mission that it names, or else to the robot's current one on that channel",
         "b": "only by the mission that its payload names",
         "c": "only by the identifier in its header",
+        "d": "by its channel alone: it is about the robot's current one there",
     },
     default="a",
 )

@@ -47,12 +47,12 @@ from missionfsm.isaac.server.state import (
     emissions,
     topic,
 )
-from missionfsm.isaac.server.time import calmed, passes, unseen
+from missionfsm.isaac.server.time import calmed, passes, settled, unseen
 from missionfsm.isaac.shared.line import Said
 from missionfsm.kernel.codec import Garbled
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.readings import ANYTHING, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
 
@@ -434,12 +434,17 @@ _DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 
-def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
-    """The mission server with the rules of these operations."""
+def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int = ANYTHING) -> Spec:
+    """The mission server with the rules of these operations, and with these readings decided from the start."""
+    left = tuple(
+        (one.id, "".join(letters))
+        for one in sorted(AMBIGUITIES, key=lambda one: one.id)
+        if len(letters := one.possible(decided)) < len(one.readings)
+    )
     return Spec(
         system=SYSTEM,
         title="a mission server",
-        initial=lambda world: Server(world.name_channel, tolerance=world.tolerance),
+        initial=lambda world: Server(world.name_channel, left=left, tolerance=world.tolerance),
         operations=operations,
         outcomes=functools.partial(_outcomes, operations),
         drives={
@@ -454,7 +459,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         urgent=_urgent,
         spontaneous=_spontaneous,
         silent_for=_silent_for,
-        calmed=calmed,
+        calmed=settled,
         matches=_matches,
         delivery=lambda _: _DELIVERY,
         closing=_closing,
@@ -471,6 +476,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         possibilities=POSSIBILITIES,
         answers=_agrees,
         abstraction=Abstraction(shape=shape, idle_shape=idle_shape, size=size, extent=extent, outline=outline),
+        decided=functools.partial(specification, operations),
         rebuilt=specification,
     )
 

@@ -74,6 +74,7 @@ LIFECYCLE: Chart[Status] = Chart(
 """The lifecycle of one mission; being submitted is its start, and AI-09 b and c are no moves but corrections."""
 
 ENDED = frozenset(LIFECYCLE.final)
+WAITS = "send acknowledged"
 START, RUN, SILENT, DROP, DOOM = "start", "run", "silent", "drop", "doom"
 
 
@@ -84,7 +85,8 @@ class Clock:
     Attributes:
         kind: `START`, `RUN`, `SILENT`, or what a scheduling pass has yet to notice: `DROP` (a connection that dropped),
             `DOOM` (an upstream that failed).
-        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send``, ``status``, ``drop`` or ``doom``.
+        since: from what it counts: ``submit``, ``ready``, ``connect``, ``send``, ``status``, ``drop`` or ``doom``; from
+            ``send acknowledged`` it counts as from ``send``, and strikes once there is an acknowledgement (AI-06 d).
         lo: microseconds until it may strike; below 0 where it may have struck so long ago and nothing was seen of it.
         hi: microseconds until it must have struck; None: it never has to.
         whole: whether it counts whole seconds (AI-24.whole w).
@@ -129,6 +131,13 @@ class Mission:
     fated: tuple[int, ...] = ()
 
     @property
+    def ticking(self) -> tuple[Clock, ...]:
+        """The clocks that may strike as it stands."""
+        if self.status is not Status.STARTED:
+            return self.clocks
+        return tuple(one for one in self.clocks if one.since != WAITS)
+
+    @property
     def ready(self) -> bool:
         """Whether nothing but its robot keeps it from being sent."""
         return self.status is Status.QUEUED and not self.waits and not self.doomed
@@ -159,7 +168,7 @@ class Link:
         over: the slot of the connection that it took over from, as long as no pass need have noticed that (AI-39 b).
         fresh: microseconds until a pass must have noticed it.
         look: how many microseconds ago a scheduling pass may have come that sent or cancelled something here and of
-            which nothing was seen yet (AI-39 b); None: none may have.
+            which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
     """
 
     slot: int

@@ -66,7 +66,7 @@ def _all_until(begins: list[Move], state: Server, time: int, *, due: bool) -> li
 
 def _falls_on(state: Server, time: int) -> bool:
     """Whether a clock that has not struck is due at this very moment at the latest."""
-    return any(clock.hi == time for mission in state.missions for clock in mission.clocks)
+    return any(clock.hi == time for mission in state.missions for clock in mission.ticking)
 
 
 def _followed(move: Move, part: Part) -> list[Move]:
@@ -145,7 +145,7 @@ def _pass(state: Server) -> int:
 def _latest(here: _Here, part: Part) -> tuple[float, float]:
     """Until when a clock has to have struck in a part, and a pass to have come, at the latest."""
     state = here.move.state
-    due = (clock.hi for index in part.missions for clock in state.missions[index].clocks if clock.hi is not None)
+    due = (clock.hi for index in part.missions for clock in state.missions[index].ticking if clock.hi is not None)
     looks = (last + _pass(state) for _, _, last in here.looks)
     return min(due, default=math.inf), min(looks, default=math.inf)
 
@@ -153,7 +153,7 @@ def _latest(here: _Here, part: Part) -> tuple[float, float]:
 def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
     """Everything that may happen next in a part, no later than `until`."""
     for index in part.missions:
-        for clock in here.move.state.missions[index].clocks:
+        for clock in here.move.state.missions[index].ticking:
             if clock.lo <= until:
                 yield from _strike(here, part, index, clock, until)
     for slot, first, last in here.looks:
@@ -171,10 +171,11 @@ def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
     if link is None:
         return
     here = move if link.look is None else move.link(slot, look=None)
+    may_send = link.look != 0 and here.state.letters(AI_39) == "b"
     link = evolve(link, look=None)
     for lapsed in lapses(here.state, link):
         yield from _followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
-    for index, chosen in possible(here.state, link) if here.state.letters(AI_39) == "b" else ():
+    for index, chosen in possible(here.state, link) if may_send else ():
         for after in sends(here.to(chosen.state), link, index):
             yield from _followed(after, part)
 
@@ -226,7 +227,7 @@ def _noticed(move: Move, link: Link, time: int) -> Move:
 def unseen(state: Server, part: Part) -> Iterator[Move]:
     """What may have happened in a part by now though it need not: clocks that have struck, passes that have come."""
     for index in part.missions:
-        for clock in state.missions[index].clocks:
+        for clock in state.missions[index].ticking:
             if clock.lo <= 0:
                 for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
                     yield from (_looking(after, part) for after in _followed(one, part))
@@ -245,11 +246,20 @@ def _looking(move: Move, part: Part) -> Move:
         if link is None:
             continue
         look = None
-        if low < 0 and _waits_for_pass(move.state, link):
+        if _waits_for_pass(move.state, link) if low < 0 else lapses(move.state, link):
             look = -low if link.look is None else min(link.look, -low)
         if look != link.look:
             move = move.link(slot, look=look)
     return evolve(move, at=(0, 0))
+
+
+def settled(state: Server) -> Server:
+    """The server once all has been seen that was sent: what was cancelled in a pass would not have been."""
+    after = calmed(state)
+    for link in state.links:
+        if link.look is not None and lapses(after, link):
+            after = Move(after).link(link.slot, look=0).state
+    return after
 
 
 def calmed(state: Server, only: tuple[Part, ...] | None = None) -> Server:

@@ -138,7 +138,7 @@ def test_the_built_in_reference_conforms(command_line: CommandLine) -> None:
     """``conform`` without a command judges the reference behind the adapter protocol, and says so on stdout alone."""
     ended = command_line("conform", "bear.mission", "--examples", 3, "--steps", 10, "--seed", 1)
     assert (ended.status, ended.err) == (0, "")
-    assert ended.out.startswith("conforms: bear.mission missionfsm reference 1, ")
+    assert ended.out.startswith("conforms in part: bear.mission missionfsm reference 1, ")
 
 
 def test_an_adapter_that_refuses_everything_is_inconclusive(command_line: CommandLine, tmp_path: Path) -> None:

@@ -287,7 +287,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             {"--only": only, "--without": without, "--trace": trace, "--distinguish": distinguish}, "over TCP"
         )
     else:
-        refuse_options({"--tolerance": tolerance, "--missions": missions}, "without --tcp or --tcp-listen")
+        refuse_options({"--tolerance": tolerance}, "without --tcp or --tcp-listen")
     with one_line_errors(), interruptible() as interruption, tracing(trace) as traced:
 
         def enough() -> bool:

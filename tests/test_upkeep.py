@@ -37,6 +37,7 @@ COMPLEX = {
     "bear.mission": {
         "codec.answer",
         "glimpse.samples",
+        "matrix._of_missions",
         "state.apply",
         # A code for each situation of a call: the rows of a table.
         "operations._rank_charge",
@@ -74,6 +75,7 @@ COMPLEX = {
         "distinguish._Search._moves",
         "guide.Guide.proposals",
         "handshake.handshake",
+        "reach.Reach._possible",
         "smoke._Smoke.run",
         "tour._Tour._conversation",
     },

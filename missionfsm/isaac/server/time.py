@@ -137,6 +137,13 @@ def _waits_for_pass(state: Server, link: Link) -> bool:
     return link.serves and bool((later and possible(state, link)) or lapses(state, link))
 
 
+def _waits_quietly(state: Server, link: Link) -> bool:
+    """Whether a pass may do something for a connection that sends nothing: cancel, or give up what has no time."""
+    later = state.letters(AI_39) == "b"
+    no_time = later and any(state.missions[index].start == 0 for index, _ in possible(state, link))
+    return link.serves and bool(no_time or lapses(state, link))
+
+
 def _pass(state: Server) -> int:
     """How long a scheduling pass is in coming at the latest, in microseconds."""
     return state.tolerance + LOOK
@@ -171,13 +178,14 @@ def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
     if link is None:
         return
     here = move if link.look is None else move.link(slot, look=None)
-    may_send = link.look != 0 and here.state.letters(AI_39) == "b"
+    quiet = link.look == 0
     link = evolve(link, look=None)
     for lapsed in lapses(here.state, link):
         yield from _followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
-    for index, chosen in possible(here.state, link) if may_send else ():
+    for index, chosen in possible(here.state, link) if here.state.letters(AI_39) == "b" else ():
         for after in sends(here.to(chosen.state), link, index):
-            yield from _followed(after, part)
+            if not quiet or len(after.sent) == len(here.sent):
+                yield from _followed(after, part)
 
 
 def _strike(here: _Here, part: Part, index: int, clock: Clock, until: int) -> Iterator[_Here]:
@@ -246,7 +254,7 @@ def _looking(move: Move, part: Part) -> Move:
         if link is None:
             continue
         look = None
-        if _waits_for_pass(move.state, link) if low < 0 else lapses(move.state, link):
+        if _waits_for_pass(move.state, link) if low < 0 else _waits_quietly(move.state, link):
             look = -low if link.look is None else min(link.look, -low)
         if look != link.look:
             move = move.link(slot, look=look)
@@ -257,7 +265,7 @@ def settled(state: Server) -> Server:
     """The server once all has been seen that was sent: what was cancelled in a pass would not have been."""
     after = calmed(state)
     for link in state.links:
-        if link.look is not None and lapses(after, link):
+        if link.look is not None and _waits_quietly(after, link):
             after = Move(after).link(link.slot, look=0).state
     return after
 

@@ -185,11 +185,12 @@ def _message_hook(kind: type[T]) -> Callable[[object, object], T]:
                 raise MalformedError(f"{groups[group]} and {name} are set; only one may be")
             if attribute.name in given:
                 raise MalformedError(f"{name} is set twice")
+            declared: Any = attribute.type
             hook = hooks.get(attribute.name)
             if hook is None:
-                hook = hooks[attribute.name] = CONVERTER.get_structure_hook(_plain(attribute.type))
+                hook = hooks[attribute.name] = CONVERTER.get_structure_hook(_plain(declared))
             try:
-                given[attribute.name] = hook(content, _plain(attribute.type))
+                given[attribute.name] = hook(content, _plain(declared))
             except MalformedError as error:
                 raise error.inside(name) from None
         return kind(**given)
@@ -197,6 +198,7 @@ def _message_hook(kind: type[T]) -> Callable[[object, object], T]:
     return structure
 
 
+@functools.cache
 def _plain(declared: Any) -> Any:  # noqa: ANN401 - a type
     """The type that a present value has: an optional field's without the None."""
     inner = [one for one in get_args(declared) if one is not type(None)]
@@ -274,6 +276,14 @@ def write(message: object) -> Any:  # noqa: ANN401 - JSON
     return CONVERTER.unstructure(message)
 
 
+@functools.cache
+def _message_of(declared: Any) -> type | None:  # noqa: ANN401 - a type
+    """The type of the message, or of the messages, that a field of a type has; None where it has none."""
+    plain = _plain(declared)
+    inner = get_args(plain)[0] if _is_tuple(plain) else plain
+    return inner if attrs.has(inner) else None
+
+
 def unknown_fields(kind: type, value: object) -> tuple[str, ...]:
     """The paths of fields that the message does not have."""
     if not isinstance(value, dict):
@@ -285,9 +295,9 @@ def unknown_fields(kind: type, value: object) -> tuple[str, ...]:
         if attribute is None:
             found.append(str(name))
             continue
-        declared = _plain(attribute.type)
-        inner = get_args(declared)[0] if _is_tuple(declared) else declared
-        if attrs.has(inner):
+        declared: Any = attribute.type
+        inner = _message_of(declared)
+        if inner is not None:
             items = content if isinstance(content, list) else [content]
             found += (f"{name}.{path}" for item in items for path in unknown_fields(inner, item))
     return tuple(found)

@@ -91,6 +91,7 @@ def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
     """The kinds that a mission of this type may have, of those that behave alike only one."""
     told = message.mission_type or MissionType()
     known = [kind for kind, types in TYPES.items() if told in types or told == FAMILY_TYPES.get((kind, world.family))]
+    known.sort(key=lambda kind: told not in TYPES[kind])  # what is told as it is assumes nothing
     if not known or told == MissionType():
         known += [kind for kind in AM_26 if FAMILY[kind] in (None, world.family)]
     kinds = known if message.goals else []

@@ -61,4 +61,6 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
         message = f"{name}: {says}"
         raise UnreadableError(message)
     spec = in_the_middle(found.spec, anywhere=anywhere, others=others)
+    if spec.anywhere or spec.others:  # of what is not known, no situation can be told
+        found = evolve(found, matrix=None)
     return evolve(found, spec=spec if strict or not found.codec.streams else over_transport(spec))

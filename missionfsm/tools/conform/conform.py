@@ -231,7 +231,10 @@ def _untested(run: Run, left_out: Iterable[str]) -> Untested:
     found = untested(run.system.spec, run.ledger.answers, drives, left_out)
     absent = {} if declared is None else dict.fromkeys(set(found.calls) - set(declared), f"{NOT_THERE}: not declared")
     calls = {name: absent.get(name, why) for name, why in found.calls.items()}
-    return evolve(found, calls=calls, refusals=missed_without(run.system, frozenset(found.drives)))
+    # Where a robot is in use, nothing is known of the state from which that would be explored.
+    known = not run.system.spec.anywhere
+    refusals = missed_without(run.system, frozenset(found.drives)) if known else found.refusals
+    return evolve(found, calls=calls, refusals=refusals)
 
 
 def _idle(run: Run, exercised: Mapping[str, int]) -> str:

@@ -152,7 +152,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
     """
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - each function loads what it needs
     from missionfsm.tools.conform import conform as tester  # noqa: PLC0415
-    from missionfsm.tools.reference.subject import Reference  # noqa: PLC0415
+    from missionfsm.tools.reference.subject import ReferenceSubject  # noqa: PLC0415
 
     judged = _system(system)
     expected = tuple(expected)
@@ -163,7 +163,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
     end = None if seconds is None else time.monotonic() + seconds
     own: Child | None = None
     if implementation is None:
-        subject: Subject = Reference(judged)
+        subject: Subject = ReferenceSubject(judged)
     elif isinstance(implementation, str):
         message = f"a command is a list, such as {shlex.split(implementation)}"
         raise TypeError(message)

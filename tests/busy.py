@@ -10,7 +10,7 @@ from typing import Any
 from attrs import define, field, frozen
 from traffic import COMMANDS, DRIVES, MISSION, SUBSCRIBE, WORLD, delivery, navigate
 
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 
 @frozen
@@ -51,7 +51,7 @@ class Traffic:
 
     random: Random
     habits: Habits
-    reference: Reference
+    reference: ReferenceSubject
     lines: list[Any] = field(factory=list)
     _calls: list[_Call] = field(factory=list)
     _sent: int = 0
@@ -161,7 +161,7 @@ class Traffic:
 
 def busy(seed: int, lines: int, habits: Habits, choice: Mapping[str, str] | None = None) -> list[Any]:
     """A log of about so many lines, the first one included; the robot follows a choice of readings."""
-    reference = Reference(MISSION, choice)
+    reference = ReferenceSubject(MISSION, choice)
     reference.exchange("reset", {"world": WORLD})
     traffic = Traffic(Random(seed), habits, reference)
     first = traffic.send(0, SUBSCRIBE, {})

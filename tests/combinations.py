@@ -14,7 +14,7 @@ from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import play, tour
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 BOUNDS = Bounds(4, goals=3)
 
@@ -44,7 +44,7 @@ def combination(system: System, seed: int) -> dict[str, str]:
 def wrong(bench: Bench, choice: Mapping[str, str], seed: int, examples: int, steps: int) -> str:
     """What is wrong with the judgement of a reference that follows a combination of readings; empty if nothing is."""
     system = bench.system
-    subject = Reference(system, choice)
+    subject = ReferenceSubject(system, choice)
     run = Run.with_guide(system, subject, handshake(system, subject), bench.automaton, bench.guide.fresh())
     if not (play(run) and tour(run, random.Random(seed), examples, steps)):
         if run.found is None:

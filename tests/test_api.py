@@ -14,7 +14,7 @@ import pytest
 
 import missionfsm
 from missionfsm import SubjectError, UnreadableError, check, check_robots, conform, explore
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 CREATE = {"call": 1, "method": "CreateMission", "params": {"mission": {"baseMission": {"navigateMission": {}}}}}
@@ -113,7 +113,7 @@ def test_an_implementation_is_judged_in_process_or_behind_a_command() -> None:
     """An object, nothing at all, and the command that starts the reference are asked the same and do as well."""
     few: dict[str, Any] = {"examples": 2, "tours": 1, "steps": 10, "seed": 3}
     robot = missionfsm.systems.system("isaac.robot")
-    inside = conform(robot, Reference(robot), **few)
+    inside = conform(robot, ReferenceSubject(robot), **few)
     assert inside.conforms
     assert conform("isaac.robot", **few) == inside
     behind = conform("isaac.robot", [sys.executable, "-m", "missionfsm", "adapter", "isaac.robot"], **few)

@@ -23,7 +23,7 @@ from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.systems import system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MANY = int(os.environ.get("MISSIONFSM_MUTATED", "30"))
 """How many lines of each form are mutated."""
@@ -78,13 +78,13 @@ def history(name: str, seed: int = 3) -> list[Any]:
     if name == MISSION.name:
         return walk(seed, 8).history
     of = system(name)
-    random, reference = Random(seed), Reference(of)
+    random, reference = Random(seed), ReferenceSubject(of)
     alphabet = of.alphabet({}, Bounds())
     world = alphabet.worlds[0]
     reference.exchange("reset", {"world": world})
     lines: list[Any] = [{"missionfsm": 1, "system": name, "world": world, "drives": list(of.spec.drives)}]
-    prompts = [one for one in (*alphabet.plain, *alphabet.prompts) if "$" not in str(one.params)]
-    drives = [one for one in (*alphabet.plain_drives, *alphabet.drives) if "$" not in str(one)]
+    prompts = [one for one in (*alphabet.core_inputs, *alphabet.inputs) if "$" not in str(one.params)]
+    drives = [one for one in (*alphabet.core_drives, *alphabet.drives) if "$" not in str(one)]
     for number in range(1, 9):
         if prompts and random.random() < 0.5:
             prompt = random.choice(prompts)

@@ -19,11 +19,11 @@ from attrs import evolve, frozen
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Bounds, Naming
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, choose, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore.explore import Labels, reachable, references, steps
+from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
 
 BOUNDS = Bounds(2, goals=2, batch=2)
 NEAR = 100
@@ -71,8 +71,8 @@ class Lab:
         self.spec: Spec = self.system.spec
         self.worlds = self.system.alphabet({}, BOUNDS).worlds
         alphabet = self.system.alphabet(self.worlds[0], BOUNDS)
-        self.plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
-        self.everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
+        self.plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
+        self.everything = Labels.of(self.system, alphabet.inputs, alphabet.drives)
         self._near: dict[State, list[Step]] = {}
         self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
 
@@ -123,14 +123,14 @@ class Lab:
 
     def calls(self, here: State) -> Iterator[tuple[Any, References]]:
         for request, free in self.everything.requests:
-            yield from ((request, refs) for refs in references(self.spec, here, free))
+            yield from ((request, refs) for refs in bindings(self.spec, here, free))
 
     def taken(self, here: State) -> Iterator[Taken]:
         """Every step from a state, under any readings."""
         for request, refs in self.calls(here):
             yield from (Taken(here, request, refs, step) for step in self.outcomes(here, request, refs))
         for event, free in self.everything.events:
-            for refs in references(self.spec, here, free):
+            for refs in bindings(self.spec, here, free):
                 found = self.spec.drives[event.name].steps(here, event, refs)
                 yield from (Taken(here, event, refs, step) for step in found)
         for step in (*self.spec.urgent(here), *self.spec.spontaneous(here)):
@@ -139,7 +139,7 @@ class Lab:
     @functools.cached_property
     def all_taken(self) -> list[Taken]:
         """Every step from some situations in every world, under any readings."""
-        states = dict.fromkeys(here for world in self.worlds for here in self.situations(ANYTHING, world))
+        states = dict.fromkeys(here for world in self.worlds for here in self.situations(UNCONSTRAINED, world))
         return [taken for here in states for taken in self.taken(here)]
 
 
@@ -233,7 +233,7 @@ def test_invariants_hold_and_possibilities_are_met(lab: Lab, *, decided: bool) -
 
     What is possible under the default readings is so under all of them.
     """
-    assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
+    assumed = choose(lab.spec.ambiguities) if decided else UNCONSTRAINED
     start = lab.start(lab.worlds[0])
     fewer = None if decided else FEWER.get(lab.system.name)
     found = reachable(lab.spec, start, lab.plain, fewer or lab.most(start), assumed)
@@ -244,7 +244,7 @@ def test_invariants_hold_and_possibilities_are_met(lab: Lab, *, decided: bool) -
 def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
     """In states with one situation, every call has the same answers under the same readings."""
     groups = defaultdict(list)
-    for here in lab.near(ANYTHING, lab.worlds[0]):
+    for here in lab.near(UNCONSTRAINED, lab.worlds[0]):
         groups[lab.spec.abstraction.situation(here)].append(here)
 
     def answers(here: State) -> list[Any]:
@@ -268,12 +268,12 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
     """
     if lab.spec.abstraction.shortcut is None:
         pytest.skip(f"{lab.system.name} has no shortcut")
-    assumed = choose(lab.spec.ambiguities) if decided else ANYTHING
+    assumed = choose(lab.spec.ambiguities) if decided else UNCONSTRAINED
     slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, shortcut=None))
     for number, world in enumerate(lab.worlds):
         bounds = Bounds(2 if decided or number == 0 else 1, goals=1, batch=2)
         alphabet = lab.system.alphabet(world, bounds)
-        labels = Labels.of(lab.system, alphabet.plain, alphabet.plain_drives)
+        labels = Labels.of(lab.system, alphabet.core_inputs, alphabet.core_drives)
         start = lab.start(world)
         fast = reachable(lab.spec, start, labels, bounds.size, assumed)
         assert set(fast) == set(reachable(slow, start, labels, bounds.size, assumed))
@@ -330,8 +330,8 @@ found = system(sys.argv[1])
 bounds = Bounds(1, goals=2, batch=1)
 (world, *_) = found.alphabet({}, bounds).worlds
 alphabet = found.alphabet(world, bounds)
-plain = Labels.of(found, alphabet.plain, alphabet.plain_drives)
-everything = Labels.of(found, alphabet.prompts, alphabet.drives)
+plain = Labels.of(found, alphabet.core_inputs, alphabet.core_drives)
+everything = Labels.of(found, alphabet.inputs, alphabet.drives)
 start = found.spec.initial(found.codec.world(world))
 ledger = hashlib.sha256()
 most = max(1, found.spec.names(start))

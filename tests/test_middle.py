@@ -17,7 +17,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import Judge
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 
 @cache
@@ -57,10 +57,10 @@ STATUS_WORLD = STATUS.alphabet({}, Bounds()).worlds[0]
 
 def status_log(seed: int, steps: int) -> list[Any]:
     """A conversation with the reference of `bear.status`: subscriptions, requests and whatever robots report."""
-    random, reference, lines = Random(seed), Reference(STATUS), list[Any]()
+    random, reference, lines = Random(seed), ReferenceSubject(STATUS), list[Any]()
     reference.exchange("reset", {"world": STATUS_WORLD})
     alphabet = STATUS.alphabet(STATUS_WORLD, Bounds())
-    prompts = [one for one in alphabet.prompts if "$" not in str(one.params)]
+    prompts = [one for one in alphabet.inputs if "$" not in str(one.params)]
     drives = [one for one in alphabet.drives if one["event"] in ("report", "restart", "fault")]
     for number in range(1, steps + 1):
         if random.random() < 0.5:

@@ -17,7 +17,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import names, system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 from missionfsm.tools.schema import FORMATS, schema
 
 TESTS = Path(__file__).parent
@@ -79,8 +79,8 @@ def spoken(name: str, subject: Subject) -> list[JSON]:
         for world in judged.alphabet({}, Bounds()).worlds[:2]:
             alphabet = judged.alphabet(world, Bounds())
             watched.exchange("reset", {"world": world})
-            asked = [(one.method, one.params) for one in (*alphabet.plain, *alphabet.prompts)]
-            driven: list[tuple[str, JSON]] = [("drive", one) for one in (*alphabet.plain_drives, *alphabet.drives)]
+            asked = [(one.method, one.params) for one in (*alphabet.core_inputs, *alphabet.inputs)]
+            driven: list[tuple[str, JSON]] = [("drive", one) for one in (*alphabet.core_drives, *alphabet.drives)]
             ends: list[tuple[str, JSON]] = [("cancel", {"stream": 1})] if judged.codec.streams else []
             subscribed: list[tuple[str, JSON]] = [one for one in asked if one[0] in judged.codec.streams][:3]
             for method, params in (
@@ -100,7 +100,7 @@ def spoken(name: str, subject: Subject) -> list[JSON]:
 @pytest.mark.parametrize("name", names())
 def test_what_the_reference_and_the_tester_say_is_valid(name: str) -> None:
     """Every line of conversations with the reference is valid for its system, and for any."""
-    lines = spoken(name, Reference(system(name)))
+    lines = spoken(name, ReferenceSubject(system(name)))
     assert len(lines) > 15
     assert wrong(validator("adapter", name), lines) == []
     assert wrong(validator("adapter", None), lines) == []

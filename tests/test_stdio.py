@@ -22,7 +22,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.systems import system
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 # A child answers as the reference does, through `reference`, until it is asked for METHOD; then it does WRONG.
 CHILD = """
@@ -239,7 +239,7 @@ def test_conform_ends_with_3_where_the_adapter_fails(
 def test_a_robot_that_connects_has_a_connection() -> None:
     """An adapter that says that a robot has connected but not which connection that is has failed."""
 
-    class Forgetful(Reference):
+    class Forgetful(ReferenceSubject):
         def exchange(self, method: str, params: JSON) -> Exchange:
             done = super().exchange(method, params)
             return evolve(done, result={"happened": True}) if method == "drive" else done
@@ -419,7 +419,7 @@ def told(exchange: Exchange) -> tuple[JSON, JSON, list[Notification]]:
 
 def test_a_child_answers_as_its_object_does(child: Child) -> None:
     """The reference as a child process says, word for word, what the reference in this process says."""
-    here = Reference(system("bear.mission"))
+    here = ReferenceSubject(system("bear.mission"))
     for method, params in CONVERSATION:
         near = here.exchange(method, params)
         far = child.exchange(method, params)
@@ -445,7 +445,7 @@ def test_a_server_answers_whatever_it_is_sent() -> None:
         b'{"id": 7, "method": "SkipGoal", "params": %b}' % (200 * b"[" + 200 * b"]"),
     ]
     out = io.BytesIO()
-    serve(Reference(system("bear.mission")), io.BytesIO(b"\n".join(lines)), out)
+    serve(ReferenceSubject(system("bear.mission")), io.BytesIO(b"\n".join(lines)), out)
     answers = [orjson.loads(line) for line in out.getvalue().splitlines()]
     assert [(one["id"], one.get("error", {}).get("code"), one.get("result")) for one in answers] == [
         (None, -32700, None),

@@ -9,7 +9,7 @@ from typing import Any
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
 from missionfsm.systems import system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 WORLD = {"family": "servi"}
@@ -36,7 +36,7 @@ class Recorder:
     """
 
     def __init__(self, choice: Mapping[str, str] | None = None, *, drives: bool = True, of: System = MISSION) -> None:
-        self.reference = Reference(of, choice)
+        self.reference = ReferenceSubject(of, choice)
         self.reference.exchange("reset", {"world": WORLD})
         self.head: Any = {"missionfsm": 1, "system": of.name, "world": WORLD}
         if drives:

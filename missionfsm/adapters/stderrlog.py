@@ -12,7 +12,7 @@ from missionfsm.kernel.text import printable
 KEPT = 1 << 20
 """Bytes at the beginning and at the end of a log that are kept; what is between them is left out."""
 
-LONGEST = 200
+MAX_CHARACTERS = 200
 """Characters of one telling line that are shown."""
 
 _FRAME = re.compile(r"^\s+(at |from |File \")|^\t.*:\d+|^\s*\d+: ")
@@ -67,7 +67,7 @@ class Log:
         if not lines:
             return ""
         told = telling(lines)
-        says = " | ".join(printable(line.strip()[:LONGEST]) for line in told)
+        says = " | ".join(printable(line.strip()[:MAX_CHARACTERS]) for line in told)
         return f" (stderr: {says}{self._kept_whole() if len(lines) > len(told) else ''})"
 
     def _kept_whole(self) -> str:

@@ -24,7 +24,7 @@ from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transport import TRANSPORT
 from missionfsm.systems import system as the_system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 _PART = re.compile(r"(<!-- generated: (\w+)(?: ([\w.]+))? -->\n).*?(<!-- end -->)", re.DOTALL)
 
@@ -68,7 +68,7 @@ def _fenced(kind: str, lines: Iterator[str]) -> str:
 
 def _talk(name: str) -> Iterator[tuple[bytes, list[bytes]]]:
     """The lines of a session: each request, and what the reference writes for it."""
-    reference = Reference(the_system(name))
+    reference = ReferenceSubject(the_system(name))
     asked = (("initialize", {"protocolVersion": 1, "system": name}), *SESSIONS[name])
     for number, (method, params) in enumerate(asked, 1):
         request = json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}).encode()
@@ -128,10 +128,10 @@ def _call(found: System, method: str) -> str:
     """A row: the first request worth trying that succeeds, at once or after another call, and the answer."""
     alphabet = found.alphabet({}, Bounds())
     world = alphabet.worlds[0]
-    tried = [prompt.params for prompt in (*alphabet.plain, *alphabet.prompts) if prompt.method == method]
-    for before in (None, *alphabet.plain):
+    tried = [prompt.params for prompt in (*alphabet.core_inputs, *alphabet.inputs) if prompt.method == method]
+    for before in (None, *alphabet.core_inputs):
         for params in tried:
-            reference = Reference(found)
+            reference = ReferenceSubject(found)
             reference.exchange("reset", {"world": world})
             if before is not None:
                 if "$" in json.dumps(before.params):

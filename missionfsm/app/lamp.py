@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
-from missionfsm.kernel.codec import JSON, Codec, Garbled, UnreadableError
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
+from missionfsm.kernel.codec import JSON, Codec, Malformed, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK, Document, Operation, decide, rule
@@ -93,9 +93,9 @@ SPEC = Spec(
 
 
 def read_answer(_method: str, result: JSON) -> tuple[Answer, tuple[()]]:
-    """``{"light": "on"}`` as an answer; anything else is remembered as garbled."""
+    """``{"light": "on"}`` as an answer; anything else is remembered as malformed."""
     light = result.get("light") if isinstance(result, dict) else None
-    return Answer(OK, light if isinstance(light, str) else Garbled("it does not say how the light is")), ()
+    return Answer(OK, light if isinstance(light, str) else Malformed("it does not say how the light is")), ()
 
 
 def read_drive(given: JSON) -> tuple[Event, tuple[()]]:
@@ -125,9 +125,9 @@ CODEC = Codec(
 
 def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
     """What is worth trying."""
-    calls = tuple(Prompt(name, {}) for name in OPERATIONS)
+    calls = tuple(Input(name, {}) for name in OPERATIONS)
     drives = ({"event": "burnOut"},)
-    return Alphabet(prompts=calls, plain=calls, drives=drives, plain_drives=drives, worlds=({},))
+    return Alphabet(inputs=calls, core_inputs=calls, drives=drives, core_drives=drives, worlds=({},))
 
 
 SYSTEM = System(NAME, SPEC, CODEC, alphabet)

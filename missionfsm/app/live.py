@@ -18,7 +18,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
 from missionfsm.tools.reference.stamps import Stamps
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MAX_HISTORY_LINES = 100_000
 """Lines of the history that are kept; of a longer one the beginning is forgotten."""
@@ -50,7 +50,7 @@ class Live:
         clock: Callable[[], float],
         record: Callable[[JSON], None] = lambda _: None,
         undriven: Collection[str] = (),
-        subject: Reference | None = None,
+        subject: ReferenceSubject | None = None,
     ) -> None:
         self.system = system
         self._lock = threading.RLock()
@@ -60,7 +60,7 @@ class Live:
         self._listeners: dict[int, Listener] = {}
         self._calls = 0
         self._history: deque[JSON] = deque(maxlen=MAX_HISTORY_LINES)
-        self._subject = subject or Reference(system, readings, seconds=Stamps(clock))
+        self._subject = subject or ReferenceSubject(system, readings, seconds=Stamps(clock))
         self.reset({} if world is None else world)
 
     def _note(self, line: JSON) -> None:

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnContext
 
 from missionfsm.systems import system
-from missionfsm.tools.mutate.teeth import Teeth, joined, teeth
+from missionfsm.tools.mutate.teeth import MutationReport, joined, teeth
 
 _MORE = "one more"
 """What a process tells the one that shows the progress, before it tells what it found."""
@@ -22,7 +22,7 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[], None]) -> Teeth:
+def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[], None]) -> MutationReport:
     """Judge every mutant of a system in so many processes; the same number of them finds the same.
 
     Args:
@@ -33,7 +33,7 @@ def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[
     context = multiprocessing.get_context("spawn")
     with contextlib.ExitStack() as started:
         parts = [started.enter_context(_begun(context, name, seed, only, (which, jobs))) for which in range(jobs)]
-        found: dict[Connection, Teeth] = {}
+        found: dict[Connection, MutationReport] = {}
         while len(found) < jobs:
             for part in wait([part for part in parts if part not in found]):
                 assert isinstance(part, Connection)  # noqa: S101 - nothing else is waited for

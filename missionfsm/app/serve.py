@@ -28,7 +28,7 @@ from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
 from missionfsm.systems import system as the_system
 from missionfsm.tools.reference.stamps import Stamps
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 if TYPE_CHECKING:
     from missionfsm.adapters.grpc.server import Server
@@ -236,7 +236,7 @@ def serve(  # noqa: PLR0913 - each with a default
             driver.stop()
 
 
-def _mutant(system: System, name: str, readings: Mapping[str, str] | None) -> Reference:
+def _mutant(system: System, name: str, readings: Mapping[str, str] | None) -> ReferenceSubject:
     """The reference with a rule broken, by the rule's id or the name that teeth gives the mutant."""
     from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415 - few need it
 

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from missionfsm.tools.conform.smoke import Smoke
     from missionfsm.tools.explore.explore import Exploration
     from missionfsm.tools.explore.hazards import Hazards
-    from missionfsm.tools.mutate.teeth import Teeth
+    from missionfsm.tools.mutate.teeth import MutationReport
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
@@ -375,7 +375,7 @@ def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, 
 
 
 def _told(
-    found: Verdict | Exploration | Teeth | Hazards | Smoke, json: str | None, *, verbose: bool = False
+    found: Verdict | Exploration | MutationReport | Hazards | Smoke, json: str | None, *, verbose: bool = False
 ) -> Troubles:
     """Tell what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
@@ -480,7 +480,7 @@ def check(  # noqa: PLR0913 - options of the command
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
     from missionfsm.app.many import histories, judge_files  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.summary import Told  # noqa: PLC0415
-    from missionfsm.tools.check.baseline import Expected, excused  # noqa: PLC0415
+    from missionfsm.tools.check.baseline import Baseline, excused  # noqa: PLC0415
 
     readings = choice(reading)
     how = {
@@ -491,7 +491,7 @@ def check(  # noqa: PLR0913 - options of the command
         "others": others,
         "settled_after": settled_after,
     }
-    known = Expected(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
+    known = Baseline(_known(expect_violations, *map(the_system, names())) if expect_violations is not None else ())
     with one_line_errors():
         found = histories(files)
     refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*found, expect_violations))
@@ -618,10 +618,10 @@ def adapter(
     from missionfsm.adapters.historyfile import stdin  # noqa: PLC0415 - commands load what they need
     from missionfsm.adapters.outputs import to_stdout  # noqa: PLC0415
     from missionfsm.adapters.stdio import serve  # noqa: PLC0415
-    from missionfsm.tools.reference.subject import Reference  # noqa: PLC0415
+    from missionfsm.tools.reference.subject import ReferenceSubject  # noqa: PLC0415
 
     try:
-        reference = Reference(the_system(system), profiled(profile, choice(reading), the_system(system)))
+        reference = ReferenceSubject(the_system(system), profiled(profile, choice(reading), the_system(system)))
     except ValueError as error:
         stop(str(error), BAD_INPUT)
     requests = stdin()

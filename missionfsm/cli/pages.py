@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from missionfsm.kernel.alphabet import Bounds
     from missionfsm.kernel.system import System
     from missionfsm.tools.check.verdict import Verdict
-    from missionfsm.tools.mutate.teeth import Teeth
+    from missionfsm.tools.mutate.teeth import MutationReport
 
 
 def _a_file(path: str | None) -> str | None:
@@ -44,7 +44,7 @@ def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> 
         _write(path, lambda: report(judgements, system, str(made())))
 
 
-def write_teeth(path: str | None, judged: System, found: Teeth) -> None:
+def write_teeth(path: str | None, judged: System, found: MutationReport) -> None:
     """Write the page on all mutants of a system, if it is wanted."""
     if path is not None:
         from missionfsm.pages.teeth import teeth_page  # noqa: PLC0415 - pages load what they need

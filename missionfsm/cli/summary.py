@@ -18,7 +18,7 @@ from missionfsm.kernel.text import shown
 from missionfsm.tools.check.summary import Found, summed_up
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
-MOST = 8
+MAX_ROWS = 8
 """Rules and readings that are listed, each."""
 PIPE_COLUMNS = 120
 """How wide a table is where nobody says how wide it may be."""
@@ -69,13 +69,13 @@ def _table(title: str, rows: Sequence[Found]) -> list[str]:
     table.add_column(title, no_wrap=True)
     table.add_column("times", justify="right")
     table.add_column("first", overflow="fold")
-    for one in rows[:MOST]:
+    for one in rows[:MAX_ROWS]:
         table.add_row(*(Text(shown(cell)) for cell in (one.what, f"{one.times:,}", one.first)))
     columns = shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else PIPE_COLUMNS
     console = Console(file=io.StringIO(), width=columns, color_system=None)
     console.print(table)
     drawn = [line.rstrip() for line in console.file.getvalue().splitlines()]  # type: ignore[attr-defined]
-    return drawn if len(rows) <= MOST else [*drawn, f"and {len(rows) - MOST:,} more"]
+    return drawn if len(rows) <= MAX_ROWS else [*drawn, f"and {len(rows) - MAX_ROWS:,} more"]
 
 
 __all__ = ["Told"]

@@ -41,7 +41,7 @@ from missionfsm.fakes.updates import Updates as AnyUpdates
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import OK
-from missionfsm.tools.reference.model import Model, Reply
+from missionfsm.tools.reference.model import Reference, Reply
 
 T = TypeVar("T")
 
@@ -138,7 +138,7 @@ class Fleet:
             ],
             "locations": [{"locationId": place, "owned": owned} for place, owned in places.items()],
         }
-        self._model = Model(SYSTEM, readings)
+        self._model = Reference(SYSTEM, readings)
         self._here = self._model.start(SYSTEM.codec.world(world))
         self._subscriptions: dict[Name, Updates[Any]] = {}
         self._clock = clock

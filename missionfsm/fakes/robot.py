@@ -41,7 +41,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.text import brief
-from missionfsm.tools.reference.model import Model, Reply, Sent, Snapshot
+from missionfsm.tools.reference.model import Reference, Reply, Sent, Snapshot
 from missionfsm.tools.reference.stamps import Stamps
 
 _USUAL = World()
@@ -91,7 +91,7 @@ class Robot:
         readings: Mapping[str, str] | None = None,
         clock: Callable[[], float] | None = None,
     ) -> None:
-        self._model = Model(SYSTEM, readings)
+        self._model = Reference(SYSTEM, readings)
         self._seconds = float if clock is None else Stamps(lambda: clock() - EPOCH.timestamp())
         self._subscriptions: dict[Name, Updates] = {}
         self._on_the_way: deque[tuple[Updates, MissionStatus]] = deque()

@@ -19,7 +19,7 @@ from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
-LONGEST = 6.0
+MAX_WAIT_SECONDS = 6.0
 """Seconds that are waited at most at a time: a little more than start_timeout, and than a robot may be silent."""
 
 _STATUSES = ("running", "success", "failure")
@@ -37,7 +37,7 @@ def in_real_time(system: System, tolerance: float = 0.0, scripts: int = 0) -> Sy
         whole = system.alphabet(world, bounds)
         return evolve(
             whole,
-            drives=tuple(one for one in whole.drives if one.get("seconds", 0) <= LONGEST),
+            drives=tuple(one for one in whole.drives if one.get("seconds", 0) <= MAX_WAIT_SECONDS),
             worlds=({"tolerance": tolerance} if tolerance else {},),
             scripts=whole.scripts[:scripts],
         )
@@ -54,10 +54,10 @@ def with_file(system: System, file: MissionFile, name_channel: str, tolerance: f
         for _ in range(3):
             drives += _lines(file, name_channel)
         return Alphabet(
-            prompts=(),
-            plain=(),
+            inputs=(),
+            core_inputs=(),
             drives=tuple(drives),
-            plain_drives=(),
+            core_drives=(),
             worlds=({"nameChannel": name_channel, "tolerance": tolerance},),
         )
 
@@ -67,7 +67,7 @@ def with_file(system: System, file: MissionFile, name_channel: str, tolerance: f
 def _waits(file: MissionFile) -> list[JSON]:
     """Some short times, and for every timeout that is not too long a little more than that."""
     timeouts = {time + 0.5 for one in file.missions for time in (one.start_timeout, one.timeout)}
-    times = sorted({0.5, 1.5, *(time for time in timeouts if time <= LONGEST)})
+    times = sorted({0.5, 1.5, *(time for time in timeouts if time <= MAX_WAIT_SECONDS)})
     return [{"event": "advance", "seconds": time} for time in times]
 
 

@@ -80,7 +80,7 @@ class Bounds:
 
 
 @frozen
-class Prompt:
+class Input:
     """One call worth trying: its method and the JSON of its params, with `ANY_NAME` where a name goes."""
 
     method: str
@@ -88,7 +88,7 @@ class Prompt:
 
 
 @frozen
-class Line:
+class ScriptStep:
     """One thing that is done in a script.
 
     `picks` says for each slot of the params which name goes there: the how-many-th of its kind that came up, from 0.
@@ -104,21 +104,21 @@ class Alphabet:
     """What is worth trying.
 
     Attributes:
-        prompts: calls, malformed ones included.
-        plain: those that bring the system on: few, well-formed, each with a meaning of its own; for exploration.
+        inputs: calls, malformed ones included.
+        core_inputs: those that bring the system on: few, well-formed, each with a meaning of its own; for exploration.
         drives: what to make happen, as JSON.
-        plain_drives: those among them that bring the system on.
+        core_drives: those among them that bring the system on.
         worlds: the worlds to try it in, as JSON, the usual one first.
         wrong_names: names that nothing has.
         scripts: conversations worth having in the usual world, whole.
         look: a call that shows where things stand and changes nothing; systematic conversations ask it again and again.
     """
 
-    prompts: tuple[Prompt, ...]
-    plain: tuple[Prompt, ...]
+    inputs: tuple[Input, ...]
+    core_inputs: tuple[Input, ...]
     drives: tuple[JSON, ...]
-    plain_drives: tuple[JSON, ...]
+    core_drives: tuple[JSON, ...]
     worlds: tuple[JSON, ...]
     wrong_names: tuple[str, ...] = ()
-    look: Prompt | None = None
-    scripts: tuple[tuple[Line, ...], ...] = ()
+    look: Input | None = None
+    scripts: tuple[tuple[ScriptStep, ...], ...] = ()

@@ -18,7 +18,7 @@ class UnreadableError(ValueError):
 
 
 @frozen(cache_hash=True)
-class Garbled:
+class Malformed:
     """What an implementation sent in the place of a documented result or message; nothing explains it."""
 
     says: str
@@ -40,7 +40,7 @@ class Codec:
     """The JSON of one system.
 
     Whatever an implementation sends has a meaning: a result or a message that is not of the documented form becomes
-    `Garbled`. What a tester or the author of a log writes (worlds, drives, methods) is refused with `UnreadableError`.
+    `Malformed`. What a tester or the author of a log writes (worlds, drives, methods) is refused: `UnreadableError`.
 
     Attributes:
         methods: the documented calls.

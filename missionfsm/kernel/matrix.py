@@ -7,7 +7,7 @@ from typing import Any
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import Bounds, Line
+from missionfsm.kernel.alphabet import Bounds, ScriptStep
 
 
 @frozen(eq=False)
@@ -26,5 +26,5 @@ class Matrix:
 
     situation: Callable[[Any], str | None]
     columns: Callable[[Any, Any, tuple[int | None, ...]], tuple[str, ...]]
-    ways: Mapping[str, tuple[tuple[Line, ...], ...]]
+    ways: Mapping[str, tuple[tuple[ScriptStep, ...], ...]]
     bounds: Bounds

@@ -14,7 +14,7 @@ from typing import Any
 
 from attrs import evolve
 
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import ONCE_HAD, Drive, Emission, Match, Mismatch, Opening, Spec, Step, View
 from missionfsm.kernel.values import value
@@ -71,7 +71,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
 
     def matches(view: View, content: Any) -> tuple[Match, ...] | Mismatch:  # noqa: ANN401 - of any system
         if view is ANY:
-            return Mismatch("", content.says) if isinstance(content, Garbled) else (Match(),)
+            return Mismatch("", content.says) if isinstance(content, Malformed) else (Match(),)
         return spec.matches(view, content)
 
     return evolve(

@@ -7,7 +7,7 @@ from typing import Any
 
 from attrs import field, frozen
 
-from missionfsm.kernel.alphabet import Prompt
+from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
 
 Refs = tuple[int | None, ...]
@@ -27,7 +27,7 @@ class Sketch:
         simple: (state, the readings that are followed) to the state that stands for it: under these readings the same
             can be done there, with the same names.
         shows: a view to what its being sent is called; None for what is not shown.
-        prompts, drives: what is tried.
+        inputs, drives: what is tried.
         world: the one that it starts in.
         contrasts: choices of a reading, such as ``AM-09=b``, that are worth a picture beside the reference's reading.
     """
@@ -39,7 +39,7 @@ class Sketch:
     within: Callable[[Any], bool]
     simple: Callable[[Any, int], Any] = lambda state, _: state
     shows: Callable[[Any], str | None] = lambda _: None
-    prompts: tuple[Prompt, ...] = ()
+    inputs: tuple[Input, ...] = ()
     drives: tuple[JSON, ...] = ()
     world: JSON = field(factory=dict)
     contrasts: tuple[str, ...] = ()

@@ -120,7 +120,7 @@ class Ambiguity:
         return tuple(letter for letter, bit in self._bit.items() if assumed & bit)
 
 
-ANYTHING = -1
+UNCONSTRAINED = -1
 """What an execution has assumed at its start: every reading of everything is possible."""
 
 
@@ -176,7 +176,7 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
             msg = f"{name} has no reading {letter}: {letters}"
             raise ValueError(msg)
         decided.update(dict.fromkeys(fitting, letter))
-    return meet(ANYTHING, (one[tuple(letters)] for one, letters in decided.items()))
+    return meet(UNCONSTRAINED, (one[tuple(letters)] for one, letters in decided.items()))
 
 
 def to_the_letter(ambiguities: Iterable[Ambiguity]) -> dict[str, str]:
@@ -209,7 +209,7 @@ def clashes(ambiguities: tuple[Ambiguity, ...], assumed: int) -> tuple[tuple[Amb
 
 def unflagged(ambiguities: Iterable[Ambiguity]) -> int:
     """What is assumed where nothing departs from the letter of the text."""
-    return meet(ANYTHING, (one.besides(*one.flagged) for one in ambiguities if one.flagged))
+    return meet(UNCONSTRAINED, (one.besides(*one.flagged) for one in ambiguities if one.flagged))
 
 
 def by_bit(ambiguities: Iterable[Ambiguity]) -> dict[int, int]:

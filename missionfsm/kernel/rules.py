@@ -9,7 +9,7 @@ from typing import Any
 
 from attrs import evolve, field, frozen
 
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
 
 OK = "OK"
 UNKNOWN = "UNKNOWN"
@@ -235,7 +235,7 @@ def decide(holding: tuple[Rule, ...], rank: Ranking = unranked) -> tuple[Decisio
         return (Decision(always[0].code, always, ()),)
     decisions: list[Decision] = []
     for case in itertools.product(*_cases([rule.under for rule in holding if rule.under is not None])):
-        active = tuple(rule for rule in holding if rule.under is None or meet(ANYTHING, (*case, rule.under)))
+        active = tuple(rule for rule in holding if rule.under is None or meet(UNCONSTRAINED, (*case, rule.under)))
         if not active:
             decisions.append(Decision(None, (), case))
             continue

@@ -17,7 +17,7 @@ from missionfsm.kernel.spec import Spec, Step
 
 
 @frozen
-class Bend:
+class MessageMutation:
     """A way to send wrong messages: the rule that it breaks, what it does, and how it changes a message's JSON."""
 
     rule: str
@@ -26,7 +26,7 @@ class Bend:
 
 
 @frozen
-class Break:
+class StepMutation:
     """A way to take wrong steps: the rule that it breaks, what it does, and how it changes a step.
 
     `twist` takes the state before and a step that the rule justifies, or the rule `at` where the one that is broken
@@ -39,9 +39,11 @@ class Break:
     at: str = ""
 
 
-def breaks(rule: Rule, **twists: Callable[[Any, Step], Step | None]) -> tuple[Break, ...]:
+def breaks(rule: Rule, **step_mutations: Callable[[Any, Step], Step | None]) -> tuple[StepMutation, ...]:
     """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the twist."""
-    return tuple(Break(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in twists.items())
+    return tuple(
+        StepMutation(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in step_mutations.items()
+    )
 
 
 @frozen(eq=False)
@@ -50,7 +52,8 @@ class System:
 
     Attributes:
         naming: how its names are made up and written.
-        bends, twists: how an implementation may break its promises, besides the ways that fit any system.
+        message_mutations, step_mutations: how an implementation may break its promises, besides the ways that fit
+            any system.
         reaching: id or name of a rule to the readings under which its condition can come about at all.
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
@@ -63,8 +66,8 @@ class System:
     codec: Codec
     alphabet: Callable[[JSON, Bounds], Alphabet]
     naming: Naming = Naming()
-    bends: tuple[Bend, ...] = ()
-    twists: tuple[Break, ...] = ()
+    message_mutations: tuple[MessageMutation, ...] = ()
+    step_mutations: tuple[StepMutation, ...] = ()
     reaching: Mapping[str, Mapping[str, str]] = field(factory=dict)
     sketches: tuple[Sketch, ...] = ()
     plans: tuple[Plan, ...] = ()

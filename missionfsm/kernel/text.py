@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-LONGEST = 2000
+MAX_CHARACTERS = 2000
 """Characters that a line has room for."""
 
 
@@ -21,7 +21,7 @@ def printable(text: str) -> str:
 
 def shown(text: str) -> str:
     """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
-    if len(text) > LONGEST:
-        half = LONGEST // 2
+    if len(text) > MAX_CHARACTERS:
+        half = MAX_CHARACTERS // 2
         text = f"{text[:half]} … {text[-half:]}"
     return printable(text)

@@ -26,20 +26,20 @@ from missionfsm.kernel.history import (
     Returned,
     Settled,
 )
-from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.subsumption import surviving_names
-from missionfsm.oracle.successors import BUDGET, Moves, Sighting
-from missionfsm.oracle.transition import Oracle
+from missionfsm.oracle.successors import BUDGET, Successor, Successors
+from missionfsm.oracle.transition import TransitionFunction
 
 Tally = defaultdict[int, int]
 """How often which set of rules was exercised; an automaton numbers the sets."""
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
-REMEMBERED = 100_000
+MAX_REMEMBERED = 100_000
 """How many names that are gone are remembered, so that one that comes again is noticed."""
 
 NODES = 50_000
@@ -85,7 +85,7 @@ class Automaton:
         driven: names of the drives that a tester commands.
         assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
         budget: how many explanations a single event may cost.
-        eager: see `missionfsm.oracle.transition.Oracle`.
+        eager: see `missionfsm.oracle.transition.TransitionFunction`.
 
     Attributes:
         tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
@@ -95,15 +95,15 @@ class Automaton:
         self,
         spec: Spec,
         driven: Iterable[str] = (),
-        assumed: int = ANYTHING,
+        assumed: int = UNCONSTRAINED,
         budget: int = BUDGET,
         *,
         eager: bool = False,
     ) -> None:
         self.spec = spec
         self.assumed = assumed
-        self.moves = Moves(spec, driven, assumed, budget)
-        self.oracle = Oracle(self.moves, eager=eager)
+        self.moves = Successors(spec, driven, assumed, budget)
+        self.oracle = TransitionFunction(self.moves, eager=eager)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
         self._rules: dict[tuple[str, ...], int] = {}
@@ -140,7 +140,7 @@ class Automaton:
         self._edges += 1
         return edge
 
-    def arrive(self, node: Node, sightings: tuple[Sighting, ...]) -> Edge:
+    def arrive(self, node: Node, sightings: tuple[Successor, ...]) -> Edge:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""
         explanations = tuple(sighting.explanation for sighting in sightings)
         new = surviving_names(explanations)
@@ -292,7 +292,7 @@ class Belief:
         elif type(event) is Cancelled:
             self._given_up[event.channel] = None
             self._unmark(event.channel)
-            if len(self._given_up) > REMEMBERED:
+            if len(self._given_up) > MAX_REMEMBERED:
                 del self._given_up[next(iter(self._given_up))]
 
     # A window of events that are searched together.
@@ -330,7 +330,7 @@ class Belief:
         self._note(event)
         return symbol
 
-    def leap(self, lookout: Belief, found: tuple[Sighting, ...], exercised: Iterable[tuple[str, ...]]) -> None:
+    def leap(self, lookout: Belief, found: tuple[Successor, ...], exercised: Iterable[tuple[str, ...]]) -> None:
         """Go to where a search has led that numbered its events with a lookout.
 
         Args:
@@ -469,7 +469,7 @@ class Belief:
         self._lasting.pop(name, None)
         self._retired[name] = None
         self._unmark(name)
-        if len(self._retired) > REMEMBERED:
+        if len(self._retired) > MAX_REMEMBERED:
             del self._retired[next(iter(self._retired))]
 
     def name(self, number: int) -> Name | None:

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.spec import Emission, State, Step, View
 from missionfsm.kernel.values import value
 
@@ -91,7 +91,7 @@ class Explanation:
 
     state: State
     names: Names = ()
-    assumed: int = ANYTHING
+    assumed: int = UNCONSTRAINED
     calls: tuple[InFlight, ...] = ()
     lost: Lost = ()
     channels: tuple[Channel, ...] = ()

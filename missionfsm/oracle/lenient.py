@@ -12,7 +12,7 @@ from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.transport import ENDS, MADE_BY_CLIENTS, TR_01, TR_02, TR_03, TR_04, TR_05
 from missionfsm.oracle.explanation import Channel, Explanation, Owed, tidy
-from missionfsm.oracle.successors import Moves, Sighting
+from missionfsm.oracle.successors import Successor, Successors
 
 LOSES = TR_03["b"]
 """That messages are lost."""
@@ -30,12 +30,12 @@ def ends(code: str) -> tuple[Assumption, ...] | None:
     return (TR_04["b"],) if code in MADE_BY_CLIENTS else None
 
 
-def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Sighting]:
+def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Successor]:
     """The explanations in which a message came twice, after which everything is as before."""
     for explanation in explanations:
         assumed = meet(explanation.assumed, (TR_02["b"],))
         if assumed and any(one.name == channel and one.last for one in explanation.channels):
-            yield Sighting(explanation.but(assumed=assumed))
+            yield Successor(explanation.but(assumed=assumed))
 
 
 def given_up(channel: Channel) -> Channel:
@@ -45,7 +45,7 @@ def given_up(channel: Channel) -> Channel:
 
 
 def restarted(
-    moves: Moves, spec: Spec, explanations: Iterable[Explanation], relations: tuple[str, ...] = ("first",)
+    moves: Successors, spec: Spec, explanations: Iterable[Explanation], relations: tuple[str, ...] = ("first",)
 ) -> Iterator[Explanation]:
     """The explanations in which the robot has restarted; a channel that goes on shows that first.
 

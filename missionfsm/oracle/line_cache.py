@@ -13,7 +13,7 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
-from missionfsm.oracle.transcript import REMEMBERED, Transcript
+from missionfsm.oracle.transcript import MAX_REMEMBERED, Transcript
 
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
 """How nearly all lines begin that call, return or show a message."""
@@ -133,7 +133,7 @@ class Texts:
 
     def _remember(self, text: bytes, line: JSON, event: Event, method: str | None) -> None:
         remembered: tuple[dict[Any, Any], ...] = (self._calls, self._answers, self._others, self._contents)
-        if sum(map(len, remembered)) >= REMEMBERED:
+        if sum(map(len, remembered)) >= MAX_REMEMBERED:
             for known in remembered:
                 known.clear()
         if type(event) is Called:

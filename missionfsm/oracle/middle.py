@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
 
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
 from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
@@ -27,7 +27,7 @@ from missionfsm.oracle.explanation import (
     fresh,
     tidy,
 )
-from missionfsm.oracle.successors import Moves, Sighting
+from missionfsm.oracle.successors import Successor, Successors
 
 WILD = Ready(Answer("*"), (), (), ())
 """The answer of a call that took effect, or was refused, while nothing was known: any that some state allows."""
@@ -39,11 +39,13 @@ def is_unknown(explanation: Explanation) -> bool:
     return type(explanation.state) is Unknown
 
 
-def _glimpses(moves: Moves) -> Glimpses | None:
+def _glimpses(moves: Successors) -> Glimpses | None:
     return moves.spec.middle.glimpses if moves.spec.middle else None
 
 
-def plausible(moves: Moves, explanation: Explanation, call: InFlight, answer: Answer) -> Iterator[tuple[Hashable, ...]]:
+def plausible(
+    moves: Successors, explanation: Explanation, call: InFlight, answer: Answer
+) -> Iterator[tuple[Hashable, ...]]:
     """The topics of the channels that such an answer opens, once for each way in which some state allows it."""
     glimpses = _glimpses(moves)
     state = explanation.state
@@ -57,7 +59,7 @@ def plausible(moves: Moves, explanation: Explanation, call: InFlight, answer: An
     yield from found
 
 
-def answered(moves: Moves, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Sighting]:
+def answered(moves: Successors, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Successor]:
     """The explanations in which a call is answered as some state allows, of which nothing more is known."""
     call = here.calls[position]
     rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
@@ -65,18 +67,18 @@ def answered(moves: Moves, here: Explanation, position: int, answer: Answer, nam
     for topics in plausible(moves, here, call, answer):
         opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
         channels = (*rest.channels, *(one for one in opened if one.name not in known))
-        yield Sighting(tidy(rest.but(channels=channels)))
+        yield Successor(tidy(rest.but(channels=channels)))
 
 
 def shown(  # noqa: PLR0913 - a message, and what is known
-    moves: Moves,
+    moves: Successors,
     here: Explanation,
     channel: int,
     content: Any,  # noqa: ANN401 - of any system
     names: Names,
     *,
     then: bool = False,
-) -> Iterator[Sighting]:
+) -> Iterator[Successor]:
     """The explanations in which a message shows the state, whatever it was before.
 
     Args:
@@ -87,7 +89,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
         return
     if GONE in names:
         if is_unknown(here):
-            yield Sighting(here)  # it shows what was before
+            yield Successor(here)  # it shows what was before
         return
     world = here.state.world if is_unknown(here) else glimpses.world(here.state)
     for state, view in glimpses.shown(world, content):
@@ -101,7 +103,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
             if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
                 looks = spec.looks(view, content)
                 after = _standing(here, state, own, channel, glimpses.topic(content), view, looks)
-                yield Sighting(tidy(after.but(assumed=assumed)), match.rules)
+                yield Successor(tidy(after.but(assumed=assumed)), match.rules)
 
 
 def _names(spec: Spec, here: Explanation, state: Any, match: Match, names: Names) -> Names:  # noqa: ANN401
@@ -134,12 +136,12 @@ def _standing(  # noqa: PLR0913 - what a message fixes
     return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
 
 
-def joined(moves: Moves, here: Explanation, channel: int, content: Any) -> tuple[Explanation, bool]:  # noqa: ANN401
+def joined(moves: Successors, here: Explanation, channel: int, content: Any) -> tuple[Explanation, bool]:  # noqa: ANN401
     """The explanation with a channel that was opened before the log began, and whether its message is no more judged.
 
     Such a channel may show anything first; where nobody can tell what it is to show, it is not followed.
     """
-    if isinstance(content, Garbled) or channel in {one.name for one in here.channels}:
+    if isinstance(content, Malformed) or channel in {one.name for one in here.channels}:
         return here, False
     glimpses = _glimpses(moves)
     if glimpses is None:
@@ -148,12 +150,12 @@ def joined(moves: Moves, here: Explanation, channel: int, content: Any) -> tuple
 
 
 def unforeseen(
-    moves: Moves,
+    moves: Successors,
     explanations: Iterable[Explanation],
     assumed: Iterable[Assumption],
     kind: type,
     *what: Any,  # noqa: ANN401
-) -> Iterator[Sighting]:
+) -> Iterator[Successor]:
     """How somebody whose calls are not in the log, or who called before it began, can have brought an event about.
 
     Args:
@@ -177,19 +179,19 @@ def unforeseen(
             place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
             if place is not None:
                 for after in answered(moves, here, place, answer, names):
-                    yield Sighting(_lost_sight(moves, after.explanation))
+                    yield Successor(_lost_sight(moves, after.explanation))
         elif kind is Driven or (kind is Settled and spec.anywhere):
-            yield Sighting(_lost_sight(moves, here))
+            yield Successor(_lost_sight(moves, here))
 
 
-def _late(here: Explanation, name: int, content: Any) -> Iterator[Sighting]:  # noqa: ANN401
+def _late(here: Explanation, name: int, content: Any) -> Iterator[Successor]:  # noqa: ANN401
     """The explanation in which a channel that was opened before the log began still shows what was before."""
     channels = (channel for channel in here.channels if channel.name == name)
-    if not isinstance(content, Garbled) and any(one.last and one.last.view is ANY for one in channels):
-        yield Sighting(here)
+    if not isinstance(content, Malformed) and any(one.last and one.last.view is ANY for one in channels):
+        yield Successor(here)
 
 
-def _lost_sight(moves: Moves, here: Explanation) -> Explanation:
+def _lost_sight(moves: Successors, here: Explanation) -> Explanation:
     """The explanation in which nothing is known of the state any more."""
     glimpses = _glimpses(moves)
     assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
@@ -202,7 +204,7 @@ def _lost_sight(moves: Moves, here: Explanation) -> Explanation:
     return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
 
 
-def wild(moves: Moves, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
+def wild(moves: Successors, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
     """The explanation in which a call took effect, or was refused, while nothing was known, and is answered so."""
     call = here.calls[position]
     if WILD in call.ready:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 
 from missionfsm.kernel.history import Called, Event, Name, Returned
-from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.spec import Parting, Spec
 from missionfsm.oracle.belief import Automaton, Belief, Node
 
@@ -48,7 +48,7 @@ class Parted:
         }
         self._calls: dict[Name, Hashable] = {}
         self._left: dict[Hashable, int] = {}
-        self._common = ANYTHING
+        self._common = UNCONSTRAINED
         self.latest = next(iter(self.beliefs.values()))
         self.broken = False
 
@@ -78,7 +78,7 @@ class Parted:
     def _meet(self, part: Hashable, belief: Belief) -> bool:
         """Whether every ambiguity has a reading left that all parts may follow."""
         left = belief.left
-        if self._left.get(part, ANYTHING) == left:
+        if self._left.get(part, UNCONSTRAINED) == left:
             return True
         self._left[part] = left
         self._common &= left

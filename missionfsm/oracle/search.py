@@ -16,9 +16,9 @@ from attrs import define, field
 from missionfsm.kernel.history import Called
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.lookahead import Lookahead, Message, Symbol
-from missionfsm.oracle.subsumption import sift
-from missionfsm.oracle.successors import ExhaustedError, Moves, Seen, Sighting
-from missionfsm.oracle.transition import Oracle
+from missionfsm.oracle.subsumption import prune
+from missionfsm.oracle.successors import ExhaustedError, Seen, Successor, Successors
+from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")
 WIDTH = 1
@@ -41,7 +41,7 @@ class Layer:
 
     explanations: tuple[Explanation, ...]
     rules: tuple[str, ...] = ()
-    more: Iterator[Sighting] | None = field(default=None, repr=False)
+    more: Iterator[Successor] | None = field(default=None, repr=False)
     begun: bool = False
     effort: int = EFFORT
 
@@ -72,14 +72,14 @@ class Search:
 
     def __init__(
         self,
-        oracle: Oracle,
+        oracle: TransitionFunction,
         start: Sequence[Explanation],
         symbols: Sequence[Symbol],
         latest: Mapping[int, Message],
         budget: int,
     ) -> None:
         self.oracle = oracle
-        self.moves: Moves = oracle.moves
+        self.moves: Successors = oracle.moves
         self._start = tuple(start)
         self._symbols = symbols
         self._latest = latest
@@ -128,7 +128,7 @@ class Search:
         finally:
             moves.ahead, moves.budget, moves.most = None, budget, budget
 
-    def _enter(self, found: tuple[Sighting, ...]) -> None:
+    def _enter(self, found: tuple[Successor, ...]) -> None:
         rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
         self.layers.append(Layer(tuple(one.explanation for one in found), rules))
 
@@ -147,7 +147,7 @@ class Search:
                 layers.pop()
         return True
 
-    def _next(self, here: Layer, position: int) -> tuple[Sighting, ...]:
+    def _next(self, here: Layer, position: int) -> tuple[Successor, ...]:
         """Some more explanations of the next event; none where there are no others."""
         ahead, tried, moves = self._ahead, self._tried[position + 1], self.moves
         if not here.begun:
@@ -155,7 +155,7 @@ class Search:
             kind, *what = self._symbols[position]
             explains = self.oracle.beyond if position in self.beyond else self.oracle.explained
             here.more = explains(here.explanations, kind, *what)
-        found: list[Sighting] = []
+        found: list[Successor] = []
         begun = moves.spent
         try:
             while here.more is not None and not found:
@@ -164,7 +164,7 @@ class Search:
                     narrow = ahead.narrowed(one.explanation)
                     ahead.at = position
                     if narrow and not moves.outdone(tried, narrow):
-                        found.append(one if narrow is one.explanation else Sighting(narrow, one.rules))
+                        found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
                         moves.most = min(moves.budget, begun + here.effort)
                     if len(found) >= self.width:
                         break
@@ -177,7 +177,7 @@ class Search:
             here.begun, here.effort = False, here.effort * 4
         finally:
             moves.most = moves.budget
-        return sift(moves, found)
+        return prune(moves, found)
 
     def first_unexplained(self) -> int | None:
         """The position of the first event that nothing explains, given those before it; None where all are explained.

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.readings import merge
 from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, within
-from missionfsm.oracle.successors import FocusOf, Moves, Place, Sighting, place, point
+from missionfsm.oracle.successors import FocusOf, Place, Successor, Successors, place, point
 
 
-def sift(moves: Moves, found: Iterable[Sighting], focus: FocusOf | None = None) -> tuple[Sighting, ...]:
+def prune(moves: Successors, found: Iterable[Successor], focus: FocusOf | None = None) -> tuple[Successor, ...]:
     """Those among the explanations that the others do not already stand for.
 
     Args:
@@ -21,15 +21,15 @@ def sift(moves: Moves, found: Iterable[Sighting], focus: FocusOf | None = None) 
         found: the explanations.
         focus: what was observed, where what happens elsewhere is left to later observations.
     """
-    points: dict[Place, list[Sighting]] = {}
+    points: dict[Place, list[Successor]] = {}
     for sighting in found:
         here = place(sighting.explanation)
         points[here] = _widened(moves, points.get(here, []), sighting)
-    kept = _without_spendthrifts([sighting for sightings in points.values() for sighting in sightings])
+    kept = _without_dominated([sighting for sightings in points.values() for sighting in sightings])
     return tuple(kept) if len(kept) <= 1 else tuple(_without_later(moves, kept, focus))
 
 
-def _widened(moves: Moves, sightings: list[Sighting], new: Sighting) -> list[Sighting]:
+def _widened(moves: Successors, sightings: list[Successor], new: Successor) -> list[Successor]:
     """Explanations at one point with one more; those that differ in a single question become one."""
     for position, other in enumerate(sightings):
         union = merge(other.explanation.assumed, new.explanation.assumed, moves.groups)
@@ -38,11 +38,11 @@ def _widened(moves: Moves, sightings: list[Sighting], new: Sighting) -> list[Sig
                 return sightings
             rules = tuple(dict.fromkeys(other.rules + new.rules))
             rest = [*sightings[:position], *sightings[position + 1 :]]
-            return _widened(moves, rest, Sighting(new.explanation.but(assumed=union), rules))
+            return _widened(moves, rest, Successor(new.explanation.but(assumed=union), rules))
     return [*sightings, new]
 
 
-def _without_later(moves: Moves, sightings: list[Sighting], focus: FocusOf | None) -> Iterator[Sighting]:
+def _without_later(moves: Successors, sightings: list[Successor], focus: FocusOf | None) -> Iterator[Successor]:
     """Those that no other can silently become."""
     reached: dict[Place, int] = {}
     for sighting in sightings:
@@ -59,11 +59,11 @@ def _without_later(moves: Moves, sightings: list[Sighting], focus: FocusOf | Non
                 reached[key] = later.explanation.assumed
 
 
-def _without_spendthrifts(sightings: list[Sighting]) -> list[Sighting]:
+def _without_dominated(sightings: list[Successor]) -> list[Successor]:
     """Without those that have used up more lost calls than another at the same point, assuming no less."""
     if not any(sighting.explanation.lost for sighting in sightings):
         return sightings
-    kept: dict[Place, list[tuple[int, Lost, Sighting]]] = {}
+    kept: dict[Place, list[tuple[int, Lost, Successor]]] = {}
     for sighting in sorted(sightings, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
         lost = sighting.explanation.lost
         others = kept.setdefault(point(sighting.explanation), [])

@@ -1,7 +1,7 @@
 """What one explanation can become: by a step that is known, or unseen, when nobody has said anything.
 
-A call in flight takes effect, a lost one does, the system and its surroundings act by themselves. `Moves` says so for
-one explanation at a time; `missionfsm.oracle.transition` puts it together with what is observed.
+A call in flight takes effect, a lost one does, the system and its surroundings act by themselves. `Successors` says so
+for one explanation at a time; `missionfsm.oracle.transition` puts it together with what is observed.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, by_bit, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, by_bit, meet
 from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
 from missionfsm.kernel.transport import MADE_BY_CLIENTS, MADE_UP
 from missionfsm.kernel.values import value
@@ -53,7 +53,7 @@ class ExhaustedError(Exception):
 
 
 @value
-class Sighting:
+class Successor:
     """An explanation that an observation leaves, and the rules that were exercised on the way."""
 
     explanation: Explanation
@@ -64,7 +64,7 @@ FocusOf = Callable[[Explanation], Focus]
 """What is observed next, seen from an explanation."""
 
 
-class Moves:
+class Successors:
     """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
 
     It holds caches and nothing that could change an answer. While it is `live`, nobody can be asked what comes later.
@@ -76,8 +76,10 @@ class Moves:
         budget: explanations that a single event may cost.
     """
 
-    def __init__(self, spec: Spec, driven: Iterable[str] = (), assumed: int = ANYTHING, budget: int = BUDGET) -> None:
-        self.spec = spec.decided(assumed) if spec.decided and assumed != ANYTHING else spec
+    def __init__(
+        self, spec: Spec, driven: Iterable[str] = (), assumed: int = UNCONSTRAINED, budget: int = BUDGET
+    ) -> None:
+        self.spec = spec.decided(assumed) if spec.decided and assumed != UNCONSTRAINED else spec
         self.driven = frozenset(driven) - (spec.middle.undriven if spec.middle and spec.anywhere else frozenset())
         self.assumed = assumed
         self.budget = budget
@@ -291,7 +293,7 @@ class Moves:
 
     def silent(
         self, explanation: Explanation, besides: int | None = None, focus: FocusOf | None = None
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """Everything that an explanation can become next without anybody seeing it.
 
         Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves,
@@ -320,19 +322,19 @@ class Moves:
         near = (len(channel.owed) < LAG for channel in explanation.channels)
         return all(near) if self.live else any(near) or not explanation.channels
 
-    def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Sighting]:
+    def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Successor]:
         self.spend(weight(explanation) - 1)
         taken = self.advance(explanation, step, besides=besides)
         if taken:
             after = self.narrowed(taken[0])
             if after:
-                yield Sighting(tidy(after), step.rules)
+                yield Successor(tidy(after), step.rules)
 
     def narrowed(self, explanation: Explanation) -> Explanation | None:
         """The explanation, as far as it can lead to what is known of later; None where it cannot."""
         return self.ahead.narrowed(explanation) if self.ahead else explanation
 
-    def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Sighting]:
+    def _take_effect(self, explanation: Explanation, position: int, besides: int | None) -> Iterator[Successor]:
         for where, refs in self.addressed(explanation, explanation.calls[position].args):
             for step in self.effects(where.state, where.calls[position].request, refs):
                 if step.answer is None:
@@ -348,7 +350,7 @@ class Moves:
                     calls[position] = InFlight(call.name, call.request, (), late, done)
                     bound = self._foreseen(after.but(calls=tuple(calls)), calls[position], done)
                     if bound:
-                        yield Sighting(tidy(bound), step.rules)
+                        yield Successor(tidy(bound), step.rules)
 
     def _foreseen(self, explanation: Explanation, call: InFlight, done: Ready) -> Explanation | None:
         """The explanation in which a call has taken effect, with the names that it is known to be answered with.
@@ -373,21 +375,21 @@ class Moves:
 
     def closure(
         self, starts: Iterable[Explanation], besides: int | None = None, focus: FocusOf | None = None
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """Explanations and everything that they can silently become, nearest first; `focus` as in `silent`.
 
         One that has used up more lost calls than another at the same point is left out, and so is all that follows.
         """
         seen: Seen = {}
-        todo = [Sighting(start) for start in starts]
+        todo = [Successor(start) for start in starts]
         while todo:
-            later: list[Sighting] = []
+            later: list[Successor] = []
             for sighting in todo:
                 if self.outdone(seen, sighting.explanation):
                     continue
                 yield sighting
                 later += (
-                    Sighting(next_one.explanation, sighting.rules + next_one.rules)
+                    Successor(next_one.explanation, sighting.rules + next_one.rules)
                     for next_one in self.silent(sighting.explanation, besides, focus)
                 )
             todo = later

@@ -46,7 +46,7 @@ _KEYS: Mapping[str, frozenset[str]] = {
     )
 }
 """What each kind of line may have; one that has more means something that would be passed over."""
-REMEMBERED = 20_000
+MAX_REMEMBERED = 20_000
 """How many different requests and messages a transcript knows again without reading them anew."""
 
 
@@ -231,7 +231,7 @@ class Transcript:
         key = (method, self._fingerprint(rest))
         request = self._requests.get(key)
         if request is None:
-            if len(self._requests) >= REMEMBERED:
+            if len(self._requests) >= MAX_REMEMBERED:
                 self._requests.clear()
                 self._interned.clear()
             request = self.codec.request(method, rest)
@@ -301,7 +301,7 @@ class Transcript:
         return again
 
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
-        if len(self._contents) >= REMEMBERED:
+        if len(self._contents) >= MAX_REMEMBERED:
             self._contents.clear()
         content = self._contents[key] = self.codec.content(rest)
         return content

@@ -1,7 +1,7 @@
 """From explanations of what was observed so far to those of what is observed next: exact, and only once for each.
 
-`Oracle.step` is the transition function of the belief automaton: all explanations before an event to all explanations
-after it. `missionfsm.oracle.belief` walks that automaton and remembers it.
+`TransitionFunction.step` is the transition function of the belief automaton: from all explanations before an
+event to all explanations after it. `missionfsm.oracle.belief` walks that automaton and remembers it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from attrs import evolve
 
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Refs
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
@@ -32,11 +32,11 @@ from missionfsm.oracle.explanation import (
     unify,
     with_lost,
 )
-from missionfsm.oracle.subsumption import sift
-from missionfsm.oracle.successors import FocusOf, Moves, Seen, Sighting
+from missionfsm.oracle.subsumption import prune
+from missionfsm.oracle.successors import FocusOf, Seen, Successor, Successors
 
 
-class Oracle:
+class TransitionFunction:
     """The transition function of the belief automaton.
 
     Args:
@@ -44,13 +44,13 @@ class Oracle:
         eager: whether what only a transport does is thought of at every event, not only where nothing else is left.
     """
 
-    def __init__(self, moves: Moves, *, eager: bool = False) -> None:
+    def __init__(self, moves: Successors, *, eager: bool = False) -> None:
         self.moves = moves
         self.spec = moves.spec
         self.eager = eager and moves.spec.transport
         self._lenient = 0
 
-    def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Sighting, ...]:  # noqa: ANN401
+    def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Successor, ...]:  # noqa: ANN401
         """Every explanation of what was observed before and of this event.
 
         Args:
@@ -63,13 +63,13 @@ class Oracle:
         """
         self.moves.reset()
         explanations = tuple(explanations)
-        found: Iterable[Sighting] = self.explained(explanations, kind, *what)
+        found: Iterable[Successor] = self.explained(explanations, kind, *what)
         if self.eager:
             found = (*found, *self._leniently(1, explanations, kind, *what))
         about = self._about(kind, *what)
-        kept = sift(self.moves, found, about)
+        kept = prune(self.moves, found, about)
         for more in () if kept else self._beyond(explanations, kind, *what):
-            kept = kept or sift(self.moves, more, about)
+            kept = kept or prune(self.moves, more, about)
         return kept
 
     @property
@@ -82,7 +82,7 @@ class Oracle:
         explanations: Iterable[Explanation],
         kind: type,
         *what: Any,  # noqa: ANN401
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """What explains an event that the system does not explain, one by one; see `step`."""
         return itertools.chain.from_iterable(self._beyond(tuple(explanations), kind, *what))
 
@@ -91,7 +91,7 @@ class Oracle:
         explanations: tuple[Explanation, ...],
         kind: type,
         *what: Any,  # noqa: ANN401
-    ) -> Iterator[Iterable[Sighting]]:
+    ) -> Iterator[Iterable[Successor]]:
         """What may have become of things on their way, or a robot that has restarted, or somebody not in the log."""
         if self.spec.transport:
             yield self._leniently(1, explanations, kind, *what)
@@ -111,7 +111,7 @@ class Oracle:
             leniently: whether a message may come twice.
         """
         if kind is Returned:
-            return isinstance(what[0].shape, Garbled) and not (self.spec.anywhere or self.spec.others)
+            return isinstance(what[0].shape, Malformed) and not (self.spec.anywhere or self.spec.others)
         if kind is not Received or (leniently and self.spec.transport and REDELIVERED in what[2]):
             return False
         relations = [one for one in what[2] if one not in ("equal", REDELIVERED)]
@@ -123,7 +123,7 @@ class Oracle:
         explanations: Iterable[Explanation],
         kind: type,
         *what: Any,  # noqa: ANN401
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """What explains an event with as much of the transport as the level says."""
         found = self.explained(explanations, kind, *what)
         while True:
@@ -136,9 +136,9 @@ class Oracle:
                 return
             yield one
 
-    def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Sighting]:  # noqa: ANN401
+    def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Successor]:  # noqa: ANN401
         """The same, one by one: the nearest first, some of them in several ways; without what only a transport does."""
-        observe: Callable[..., Iterator[Sighting]] = _OBSERVERS[kind]
+        observe: Callable[..., Iterator[Successor]] = _OBSERVERS[kind]
         return observe(self, explanations, *what)
 
     def _called(
@@ -148,16 +148,16 @@ class Oracle:
         args: Names,
         lost: bool,  # noqa: FBT001 - a field of the event
         call: int,
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         for explanation in explanations:
             if lost:
-                yield Sighting(explanation.but(lost=with_lost(explanation.lost, request, args)))
+                yield Successor(explanation.but(lost=with_lost(explanation.lost, request, args)))
             else:
-                yield Sighting(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
+                yield Successor(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
 
     def _returned(
         self, explanations: Iterable[Explanation], answer: Answer, names: Names, call: int
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         undone = []
         if self._lenient > 1:
             explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations))
@@ -166,12 +166,12 @@ class Oracle:
             if position is None:
                 continue
             failed = tuple(self._failed(explanation, position, answer, names))
-            yield from (Sighting(tidy(one)) for one in failed)
+            yield from (Successor(tidy(one)) for one in failed)
             if middle.is_unknown(explanation):
                 yield from middle.answered(self.moves, explanation, position, answer, names)
                 continue
             for one in middle.wild(self.moves, explanation, position, answer, names):
-                yield Sighting(tidy(one))
+                yield Successor(tidy(one))
             if explanation.calls[position].done is None:
                 # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
                 if not any(one.lost != explanation.lost and one.assumed == explanation.assumed for one in failed):
@@ -179,12 +179,12 @@ class Oracle:
                 continue
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, answer, names):
-                yield Sighting(tidy(after), rules)
+                yield Successor(tidy(after), rules)
         for sighting in self.moves.closure(undone, besides=call, focus=self._before_answer(call, answer)):
             position = _position(sighting.explanation, call)
             if position is not None:
                 for after, rules in self._answered(sighting.explanation, position, answer, names):
-                    yield Sighting(tidy(after), sighting.rules + rules)
+                    yield Successor(tidy(after), sighting.rules + rules)
 
     def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
         """The explanations in which the call has failed without anybody's doing, which any state allows.
@@ -261,7 +261,7 @@ class Oracle:
         names: Names,
         relations: tuple[str, ...],
         channel: int,
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         again = REDELIVERED in relations
         relations = tuple(relation for relation in relations if relation != REDELIVERED)
         if again:
@@ -270,20 +270,20 @@ class Oracle:
             yield from lenient.redelivered(explanations if self._lenient else once, channel)
         if self._lenient > 1:
             explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations, relations))
-        todo: list[tuple[Sighting, Hashable]] = []
+        todo: list[tuple[Successor, Hashable]] = []
         for explanation in explanations:
             echoes = self._echoed(explanation, channel)
             sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
             assumed = 0 if sequence is None else meet(explanation.assumed, sequence)
             if not assumed:
                 continue
-            start = Sighting(explanation.but(assumed=assumed))
+            start = Successor(explanation.but(assumed=assumed))
             if middle.is_unknown(explanation):
                 yield from middle.shown(self.moves, start.explanation, channel, content, names)
                 continue
             if self.spec.anywhere:
                 joined, unjudged = middle.joined(self.moves, start.explanation, channel, content)
-                start = Sighting(joined)
+                start = Successor(joined)
                 if unjudged:
                     yield start
             if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
@@ -294,14 +294,14 @@ class Oracle:
         # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
         seen: dict[Hashable, Seen] = {}
         while todo:
-            later: list[tuple[Sighting, Hashable]] = []
+            later: list[tuple[Successor, Hashable]] = []
             for sighting, topic in todo:
                 if self.moves.outdone(seen.setdefault(topic, {}), sighting.explanation):
                     continue
                 yield from self._showings(sighting, channel, topic, content, names, echo=False)
                 for skipped, whose in self._passed_over(sighting.explanation, channel, topic):
                     later += (
-                        (Sighting(one.explanation, sighting.rules + one.rules), whose)
+                        (Successor(one.explanation, sighting.rules + one.rules), whose)
                         for one in self.moves.silent(skipped, focus=about)
                     )
             todo = later
@@ -318,14 +318,14 @@ class Oracle:
 
     def _showings(  # noqa: PLR0913 - what a message is made of
         self,
-        sighting: Sighting,
+        sighting: Successor,
         name: int,
         topic: Hashable,
         content: Hashable,
         names: Names,
         *,
         echo: bool,
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """The explanations in which a channel of that name, and of that topic if one is given, shows the message."""
         known = _channel_names(sighting.explanation)
         for position, one in enumerate(sighting.explanation.channels):
@@ -386,7 +386,7 @@ class Oracle:
 
     def _shown(  # noqa: PLR0913 - what a message is made of
         self,
-        sighting: Sighting,
+        sighting: Successor,
         position: int,
         name: int,
         content: Hashable,
@@ -394,7 +394,7 @@ class Oracle:
         *,
         echo: bool,
         again: bool,
-    ) -> Iterator[Sighting]:
+    ) -> Iterator[Successor]:
         """The explanations in which the message shows one of those that the channel owes, or its last one `again`."""
         here = sighting.explanation
         channel = here.channels[position]
@@ -413,7 +413,7 @@ class Oracle:
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
                 bound = unify(after, pairs)
                 if bound:
-                    yield Sighting(tidy(bound), sighting.rules + match.rules)
+                    yield Successor(tidy(bound), sighting.rules + match.rules)
 
     def _passed_over(
         self, explanation: Explanation, name: int, topic: Hashable
@@ -436,19 +436,19 @@ class Oracle:
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
                 yield explanation.but(assumed=assumed, channels=channels), channel.topic
 
-    def _ended(self, explanations: Iterable[Explanation], code: str, name: int) -> Iterator[Sighting]:
+    def _ended(self, explanations: Iterable[Explanation], code: str, name: int) -> Iterator[Successor]:
         # A stream that nothing is known of yet is that of a call whose answer has not come.
         known: list[Explanation] = []
         unknown: list[Explanation] = []
         for explanation in explanations:
             named = name in _channel_names(explanation)
             if not named and self.spec.anywhere:  # it was opened before the log began
-                yield Sighting(explanation)
+                yield Successor(explanation)
             if not (middle.is_unknown(explanation) and not named):
                 (known if named else unknown).append(explanation)
         if self.spec.closing is not None:
             yield from self._closed((*known, *unknown), name)
-        for sighting in (*map(Sighting, known), *self.moves.closure(unknown, focus=self._before(ENDED, name))):
+        for sighting in (*map(Successor, known), *self.moves.closure(unknown, focus=self._before(ENDED, name))):
             here = sighting.explanation
             names = dict.fromkeys(channel.name for channel in here.channels)
             for own in (name,) if name in names else [one for one in names if one < GONE]:
@@ -462,9 +462,9 @@ class Oracle:
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
                     ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
-                    yield Sighting(tidy(ended), sighting.rules)
+                    yield Successor(tidy(ended), sighting.rules)
 
-    def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
+    def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
         """The explanations in which a step has closed the channel of that name, or closes it now.
 
         Where all of them have closed it, its name is carried no more.
@@ -478,17 +478,17 @@ class Oracle:
                 for step in self.spec.closing(here.state, channel.topic) if channel.name == name else ():
                     taken = self.moves.advance(here, step)
                     if taken:
-                        yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
+                        yield Successor(tidy(taken[0]), sighting.rules + step.rules)
 
-    def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Sighting]:
+    def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
         for explanation in explanations:
             rest = tuple(channel for channel in explanation.channels if channel.name != name)
             left = explanation
             if len(rest) < len(explanation.channels):
                 left = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
-            yield Sighting(tidy(left))
+            yield Successor(tidy(left))
 
-    def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Sighting]:
+    def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Successor]:
         drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
 
         for sighting in self.moves.closure(explanations, focus=self._before_drive(event, names)):
@@ -496,15 +496,15 @@ class Oracle:
             for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
                 taken = self.moves.advance(here, step, names)
                 if taken:
-                    yield Sighting(tidy(taken[0]), sighting.rules + step.rules)
+                    yield Successor(tidy(taken[0]), sighting.rules + step.rules)
 
-    def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Sighting]:
+    def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Successor]:
         loses = self._lenient > 0
         # What is urgent need not be what happened: a call or the surroundings may have come before it.
         seen: Seen = {}
-        todo = [Sighting(explanation) for explanation in explanations]
+        todo = [Successor(explanation) for explanation in explanations]
         while todo:
-            later: list[Sighting] = []
+            later: list[Successor] = []
             for sighting in todo:
                 here = sighting.explanation
                 if middle.is_unknown(here):
@@ -514,10 +514,10 @@ class Oracle:
                     continue
                 rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
                 for rest in rests:
-                    yield Sighting(self._calmed(rest), sighting.rules)
+                    yield Successor(self._calmed(rest), sighting.rules)
                 if here.assumed not in (rest.assumed for rest in rests):
                     silent = self.moves.silent(here, focus=self._before_rest)
-                    later += (Sighting(one.explanation, sighting.rules + one.rules) for one in silent)
+                    later += (Successor(one.explanation, sighting.rules + one.rules) for one in silent)
             todo = later
 
     def _calmed(self, explanation: Explanation) -> Explanation:
@@ -639,12 +639,12 @@ def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator
         ]
 
 
-_OBSERVERS: dict[type, Callable[..., Iterator[Sighting]]] = {
-    Called: Oracle._called,  # noqa: SLF001 - the table belongs to the class
-    Returned: Oracle._returned,  # noqa: SLF001
-    Received: Oracle._received,  # noqa: SLF001
-    Ended: Oracle._ended,  # noqa: SLF001
-    Cancelled: Oracle._cancelled,  # noqa: SLF001
-    Driven: Oracle._driven,  # noqa: SLF001
-    Settled: Oracle._settled,  # noqa: SLF001
+_OBSERVERS: dict[type, Callable[..., Iterator[Successor]]] = {
+    Called: TransitionFunction._called,  # noqa: SLF001 - the table belongs to the class
+    Returned: TransitionFunction._returned,  # noqa: SLF001
+    Received: TransitionFunction._received,  # noqa: SLF001
+    Ended: TransitionFunction._ended,  # noqa: SLF001
+    Cancelled: TransitionFunction._cancelled,  # noqa: SLF001
+    Driven: TransitionFunction._driven,  # noqa: SLF001
+    Settled: TransitionFunction._settled,  # noqa: SLF001
 }

@@ -13,7 +13,7 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation, with_lost
 from missionfsm.oracle.lookahead import Symbol
 from missionfsm.oracle.search import Search
-from missionfsm.oracle.successors import Sighting
+from missionfsm.oracle.successors import Successor
 
 BUDGET = 100_000
 """How many explanations a window may cost before it is given up."""
@@ -97,5 +97,5 @@ class Window:
             if layer.unfinished:
                 for one in layer.explanations:
                     belief.unfollowed |= one.assumed
-        found = tuple(Sighting(one) for one in layers[-1].explanations)
+        found = tuple(Successor(one) for one in layers[-1].explanations)
         belief.leap(self._lookout, found, [layer.rules for layer in layers[1:]])

@@ -125,7 +125,7 @@ class Doings:
     def _requests(self, kinds: tuple[str, ...]) -> Iterator[_Asked]:
         codec, spec = self.system.codec, self.system.spec
         seen: set[tuple[Request, tuple[int | None, ...]]] = set()
-        for prompt in self.alphabet.plain:
+        for prompt in self.alphabet.core_inputs:
             method = prompt.method
             for filled in self._filled(prompt.params, kinds, functools.partial(self._names_asked, method)):
                 request = codec.request(method, codec.split(method, filled.params)[1])
@@ -142,7 +142,7 @@ class Doings:
         return self.system.codec.split(method, params)[0]
 
     def _drives(self, kinds: tuple[str, ...]) -> Iterator[_Event]:
-        for drive in self.alphabet.plain_drives:
+        for drive in self.alphabet.core_drives:
             for filled in self._filled(drive, kinds, lambda given: self.system.codec.drive(given)[1]):
                 event = self.system.codec.drive(filled.params)[0]
                 yield _Event(event, filled, self.system.spec.describe(event))

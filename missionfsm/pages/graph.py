@@ -114,7 +114,7 @@ class Graph:
                 "missionfsm": 1,
                 "system": spec.system,
                 "world": self.world,
-                "drives": sorted({drive["event"] for drive in self.alphabet.plain_drives}),
+                "drives": sorted({drive["event"] for drive in self.alphabet.core_drives}),
             },
             # Streams are not subscribed to for long, so nothing is owed; what is sent on connections may be owed.
             "settles": not self._sends,
@@ -232,7 +232,7 @@ class Graph:
     def _looking(self) -> Iterator[tuple[str, Request]]:
         """The calls that show a state: the look of the alphabet, and one for every operation that opens a stream."""
         codec, found = self.system.codec, set[str]()
-        for prompt in (*((self.alphabet.look,) if self.alphabet.look else ()), *self.alphabet.plain):
+        for prompt in (*((self.alphabet.look,) if self.alphabet.look else ()), *self.alphabet.core_inputs):
             if prompt.method in found or not (prompt is self.alphabet.look or prompt.method in codec.streams):
                 continue
             names, rest = codec.split(prompt.method, prompt.params)

@@ -23,7 +23,7 @@ from missionfsm.pages.outline import (
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
 from missionfsm.tools.check.narrate import as_pytest
-from missionfsm.tools.check.verdict import Broken, Experiment, Outcome, Side, Verdict
+from missionfsm.tools.check.verdict import CitedRule, Experiment, Outcome, Side, Verdict
 
 _NUMBER = re.compile(r"\d+")
 _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
@@ -130,7 +130,7 @@ class Story:
     sides: tuple[Conversation, ...] = ()
 
     @property
-    def against(self) -> tuple[Broken, ...]:
+    def against(self) -> tuple[CitedRule, ...]:
         """The rules that are broken and are not told with what was allowed."""
         violation = self.judged.verdict.violation
         if violation is None:

@@ -9,7 +9,7 @@ from attrs import frozen
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.system import System
 from missionfsm.pages.render import rendered
-from missionfsm.tools.mutate.teeth import Bite, Teeth
+from missionfsm.tools.mutate.teeth import MutantResult, MutationReport
 
 
 @frozen
@@ -17,7 +17,7 @@ class Bitten:
     """A rule with what came of every implementation that breaks it."""
 
     rule: Rule
-    bites: tuple[tuple[str, Bite], ...]
+    bites: tuple[tuple[str, MutantResult], ...]
 
     @property
     def killed(self) -> int:
@@ -42,9 +42,9 @@ class Bitten:
         return "exercised" if self.killed else "otherwise"
 
 
-def teeth_page(system: System, teeth: Teeth, made: str = "") -> str:
+def teeth_page(system: System, teeth: MutationReport, made: str = "") -> str:
     """The page on all mutants of a system."""
-    by_rule: dict[str, list[tuple[str, Bite]]] = {}
+    by_rule: dict[str, list[tuple[str, MutantResult]]] = {}
     for bite in teeth.bites:
         by_rule.setdefault(bite.rule, []).append((bite.mutant.removeprefix(bite.rule).strip(), bite))
     topics: dict[str, list[Bitten]] = {}

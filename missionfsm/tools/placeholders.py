@@ -13,7 +13,7 @@ from typing import Any
 from missionfsm.kernel.alphabet import Naming
 from missionfsm.kernel.codec import JSON
 
-MOST = 24
+MAX_FILLINGS = 24
 """How many ways to fill the slots of one template are thought of at a time."""
 
 
@@ -71,5 +71,5 @@ def ways(wanted: Mapping[int, str], known: Iterable[Any], naming: Naming) -> Ite
     latest = list(known)[::-1]
     choices = [[*(name for name in latest if kind_of(name) == kind), naming.make(kind, 0)] for kind in wanted.values()]
     combined: Callable[..., Iterable[tuple[Any, ...]]] = itertools.product
-    for names in itertools.islice(combined(*choices), MOST):
+    for names in itertools.islice(combined(*choices), MAX_FILLINGS):
         yield dict(zip(wanted, names, strict=True))

@@ -14,7 +14,7 @@ from missionfsm.kernel.subject import Exchange, Notification, Subject
 from missionfsm.oracle.belief import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 ALPHABET = SYSTEM.alphabet({}, Bounds())
 WORLDS = ALPHABET.worlds
@@ -55,7 +55,7 @@ class Walk:
         self.random = random.Random(seed)
         self.judge = Judge(SYSTEM, Head(SYSTEM.name, world, drives), automaton, keep=100_000)
         alphabet = SYSTEM.alphabet(world, Bounds())
-        self.prompts = alphabet.prompts
+        self.prompts = alphabet.inputs
         self.drives = [one for one in alphabet.drives if one["event"] in drives]
         self.serial = 0
         self.streams: list[int] = []
@@ -139,9 +139,9 @@ def walk(
     return one.judge
 
 
-def reference(choice: Mapping[str, str] | None = None) -> Reference:
+def reference(choice: Mapping[str, str] | None = None) -> ReferenceSubject:
     """The reference model under a choice of readings."""
-    return Reference(SYSTEM, choice)
+    return ReferenceSubject(SYSTEM, choice)
 
 
 # Lines of histories, written by hand.

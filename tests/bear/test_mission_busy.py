@@ -10,7 +10,7 @@ from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 CLIENTS, ROUNDS = 8, 5
 NAVIGATE: JSON = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
@@ -28,7 +28,7 @@ class Recording:
     def __init__(self, seed: int) -> None:
         self.lines: list[JSON] = []
         self._draw = random.Random(seed)
-        self._robot = Reference(system("bear.mission"))
+        self._robot = ReferenceSubject(system("bear.mission"))
         self._robot.exchange("reset", {"world": {}})
         self._calls = 0
         self._sent: list[JSON] = []

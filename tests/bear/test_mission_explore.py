@@ -9,7 +9,7 @@ from missionfsm.bear.mission.compiled import forget_ended
 from missionfsm.bear.mission.readings import FIELDLESS
 from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import ANYTHING, choose
+from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.spec import Invariant
 from missionfsm.systems import system
 from missionfsm.tools.explore.explore import Labels, Reached, explore, firings, reachable, steps
@@ -18,12 +18,12 @@ MISSION = system("bear.mission")
 SPEC = MISSION.spec
 DEFAULT = choose(SPEC.ambiguities)
 WORLDS = MISSION.alphabet({}, Bounds()).worlds
-READINGS = pytest.mark.parametrize("assumed", [DEFAULT, ANYTHING], ids=["default readings", "all readings"])
+READINGS = pytest.mark.parametrize("assumed", [DEFAULT, UNCONSTRAINED], ids=["default readings", "all readings"])
 
 
 def labels(bounds: Bounds, world: object = None) -> Labels:
     alphabet = MISSION.alphabet(world or {}, bounds)
-    return Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
+    return Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
 
 
 def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
@@ -33,7 +33,7 @@ def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
 
 @pytest.mark.parametrize(
     ("assumed", "missions", "states", "situations", "depth"),
-    [(DEFAULT, 3, 12_720, 83, 12), (ANYTHING, 2, 13_810, 310, 13)],
+    [(DEFAULT, 3, 12_720, 83, 12), (UNCONSTRAINED, 2, 13_810, 310, 13)],
     ids=["default readings", "all readings"],
 )
 def test_some_missions_and_two_goals(assumed: int, missions: int, states: int, situations: int, depth: int) -> None:
@@ -132,7 +132,7 @@ def test_every_rule_fires_and_rests() -> None:
         start = SPEC.initial(MISSION.codec.world(world))
         found = reachable(SPEC, start, labels(bounds, world), bounds.size)
         situations = {SPEC.abstraction.situation(here): here for here in found}
-        everything = Labels.of(MISSION, alphabet.prompts, alphabet.drives)
+        everything = Labels.of(MISSION, alphabet.inputs, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything, settled=fires & rests).items():
             fires |= {rule} if fired else set()
             rests |= {rule} if rested else set()

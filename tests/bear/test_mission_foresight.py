@@ -26,12 +26,12 @@ from missionfsm.kernel.spec import Step
 from missionfsm.oracle import window
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.explore.explore import Labels, references, steps
+from missionfsm.tools.explore.explore import Labels, bindings, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
 ALPHABET = MISSION.alphabet({}, Bounds(3, goals=2, batch=2))
-LABELS = Labels.of(MISSION, ALPHABET.plain, ALPHABET.plain_drives)
+LABELS = Labels.of(MISSION, ALPHABET.core_inputs, ALPHABET.core_drives)
 Named = tuple[Any, tuple[int, ...]]
 """A robot, or what is seen of it, with the names of its missions; no two missions ever have the same."""
 
@@ -58,7 +58,7 @@ def lives(random: Random, length: int) -> Iterator[tuple[Named, list[Named]]]:
 def successes(robot: Robot, names: tuple[int, ...]) -> Iterator[tuple[Any, tuple[int, ...], tuple[int, ...]]]:
     """The requests that are answered OK in a state, each with its names and those of the answer."""
     for request, free in LABELS.requests:
-        for refs in references(SPEC, robot, free):
+        for refs in bindings(SPEC, robot, free):
             known = tuple(names[ref] for ref in refs if ref is not None and ref >= 0)
             for step in SPEC.outcomes(robot, request, refs) if len(known) == len(refs) else ():
                 if step.answer is not None and step.answer.code == OK and not step.opens:

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.state import Family, Fault, Kind, World
 from missionfsm.bear.mission.stream import MORE, Seen
 from missionfsm.bear.wire.messages import Command, Goal, Pose
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.codec import JSON, Garbled, UnreadableError
+from missionfsm.kernel.codec import JSON, Malformed, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.rules import OK
 from missionfsm.systems import system
@@ -147,7 +147,7 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
     """What is written for a request, with its names, is read as that request with those names."""
     alphabet = system("bear.mission").alphabet
     worlds = [{"family": family.value} for family in Family]
-    prompts = [prompt for world in worlds for prompt in alphabet(world, Bounds(2, goals=3, batch=2)).plain]
+    prompts = [prompt for world in worlds for prompt in alphabet(world, Bounds(2, goals=3, batch=2)).core_inputs]
     for prompt in prompts:
         names, rest = CODEC.split(prompt.method, prompt.params)
         request = CODEC.request(prompt.method, rest)
@@ -166,23 +166,23 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
         ("SkipGoal", {"missionId": "m", "more": 1}, Answer(OK, MORE), ("m",)),
         ("ClearMissionStatus", {"missionIds": ["a"], "more": 1}, Answer(OK, MORE, unordered=True), ("a",)),
         ("UpdateMission", {"missionId": None}, Answer(OK), ()),
-        ("UpdateMission", {"more": 1}, Answer(OK, Garbled("it has 'more'; the answer has no fields")), ()),
+        ("UpdateMission", {"more": 1}, Answer(OK, Malformed("it has 'more'; the answer has no fields")), ()),
         ("CreateMissionBatch", {"missionIds": ["a", "b"]}, Answer(OK), ("a", "b")),
         ("CreateMissionBatch", {}, Answer(OK), ()),
         ("ClearMissionStatus", {"missionIds": ["a"]}, Answer(OK, unordered=True), ("a",)),
         ("UpdateMission", {}, Answer(OK), ()),
         ("SubscribeMissionStatus", {"stream": 3}, Answer(OK), (("stream", 3),)),
-        ("CreateMission", {}, Answer(OK, Garbled("a mission id is missing")), ()),
-        ("CreateMission", {"missionId": ""}, Answer(OK, Garbled("a mission id is missing")), ()),
-        ("CreateMission", {"missionId": 7}, Answer(OK, Garbled("missionId: 7 is not a text")), ()),
-        ("CreateMission", "m", Answer(OK, Garbled("the message: 'm' is not an object")), ()),
+        ("CreateMission", {}, Answer(OK, Malformed("a mission id is missing")), ()),
+        ("CreateMission", {"missionId": ""}, Answer(OK, Malformed("a mission id is missing")), ()),
+        ("CreateMission", {"missionId": 7}, Answer(OK, Malformed("missionId: 7 is not a text")), ()),
+        ("CreateMission", "m", Answer(OK, Malformed("the message: 'm' is not an object")), ()),
         (
             "ClearMissionStatus",
             {"missionIds": ["a", None]},
-            Answer(OK, Garbled("missionIds[1]: None is not a text"), unordered=True),
+            Answer(OK, Malformed("missionIds[1]: None is not a text"), unordered=True),
             (),
         ),
-        ("UpdateMission", [], Answer(OK, Garbled("the message: [] is not an object")), ()),
+        ("UpdateMission", [], Answer(OK, Malformed("the message: [] is not an object")), ()),
     ],
 )
 def test_an_answer_is_read(method: str, result: JSON, answer: Answer, names: tuple[Any, ...]) -> None:
@@ -250,7 +250,7 @@ def test_a_garbled_message_says_where(message: JSON, says: str) -> None:
     """A message that is not of the documented form is garbled; what is wrong is told with its place."""
     ((_, _, rest),) = CODEC.strip(message)
     content = CODEC.content(rest)
-    assert isinstance(content, Garbled)
+    assert isinstance(content, Malformed)
     assert says in content.says
 
 

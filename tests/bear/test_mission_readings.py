@@ -16,7 +16,7 @@ from missionfsm.tools.conform.conversation import Conversation, Partner
 from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import play
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 BOUNDS = Bounds(2, goals=3, batch=2)
@@ -35,7 +35,7 @@ AUTOMATON = Automaton(MISSION.spec, MISSION.spec.drives)
 CONVERSATIONS, STEPS = 4, 25
 
 
-def talk(reference: Reference, world: object, chance: random.Random) -> Conversation:
+def talk(reference: ReferenceSubject, world: object, chance: random.Random) -> Conversation:
     """A conversation of calls and drives by chance, watched from its start, settled now and then."""
     alphabet = MISSION.alphabet(world, BOUNDS)
     conversation = Conversation(Partner(MISSION, reference, handshake(MISSION, reference)), world, AUTOMATON)
@@ -44,7 +44,7 @@ def talk(reference: Reference, world: object, chance: random.Random) -> Conversa
         if chance.random() < 0.3:
             done = conversation.perform(Action(serial, "drive", chance.choice(alphabet.drives)))
         else:
-            prompt = chance.choice(alphabet.plain if chance.random() < 0.6 else alphabet.prompts)
+            prompt = chance.choice(alphabet.core_inputs if chance.random() < 0.6 else alphabet.inputs)
             given = [one for one, name in conversation.given.items() if isinstance(name, str)]
             named = ANY_NAME in repr(prompt.params)
             name = (chance.choice(given) if given and chance.random() < 0.9 else "no-such-mission") if named else None
@@ -59,7 +59,7 @@ def explained(choice: dict[str, str], chance: random.Random, conversations: int 
 
     Returns how many conversations were too dear to decide.
     """
-    reference = Reference(MISSION, choice)
+    reference = ReferenceSubject(MISSION, choice)
     followed = choose(MISSION.spec.ambiguities, choice)
     worlds = MISSION.alphabet({}, BOUNDS).worlds
     undecided = 0
@@ -97,9 +97,9 @@ def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None
 def test_the_reference_conforms_under_its_own_readings() -> None:
     """The reference conforms where its own readings are demanded, and does not where another one is."""
     demanded = {one.id: one.default for one in MISSION.spec.ambiguities}
-    conforming = conform(MISSION, Reference(MISSION), examples=5, tours=3, steps=25, seed=1, readings=demanded)
+    conforming = conform(MISSION, ReferenceSubject(MISSION), examples=5, tours=3, steps=25, seed=1, readings=demanded)
     assert conforming.conforms, str(conforming)
-    violating = conform(MISSION, Reference(MISSION), examples=20, steps=25, seed=1, readings={"AM-16": "b"})
+    violating = conform(MISSION, ReferenceSubject(MISSION), examples=20, steps=25, seed=1, readings={"AM-16": "b"})
     assert violating.outcome.value == "violates"
 
 
@@ -107,7 +107,7 @@ def test_the_reference_conforms_under_its_own_readings() -> None:
 def test_the_same_seed_gives_the_same_verdict() -> None:
     """Whatever a verdict says, it says again for the same seed; another seed exercises other things."""
     verdicts = [
-        conform(MISSION, Reference(MISSION, {"AM-09": "b"}), examples=2, tours=2, steps=15, seed=seed)
+        conform(MISSION, ReferenceSubject(MISSION, {"AM-09": "b"}), examples=2, tours=2, steps=15, seed=seed)
         for seed in (5, 5, 6)
     ]
     assert verdicts[0].to_json() == verdicts[1].to_json()
@@ -126,6 +126,6 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
 )
 def test_the_written_down_conversations_tell_how_goals_are_chosen(name: str, letter: str) -> None:
     """Which goal a NavigateAuto mission takes, and when, shows only where goals are taken away at the right moment."""
-    run = Run.of(MISSION, Reference(MISSION, {name: letter}))
+    run = Run.of(MISSION, ReferenceSubject(MISSION, {name: letter}))
     assert play(run)
     assert run.ledger.readings[name] == (letter,)

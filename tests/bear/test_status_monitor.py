@@ -15,7 +15,7 @@ from missionfsm.bear.status.spec import SPEC
 from missionfsm.bear.status.state import Endpoint
 from missionfsm.bear.status.stream import Seen, View, matches
 from missionfsm.bear.status.values import CHECKS
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.spec import Mismatch
 from missionfsm.oracle.belief import Automaton
 
@@ -230,7 +230,7 @@ def test_the_monitor_and_the_specification_agree_on_single_messages() -> None:
             continue
         (part,) = CODEC.strip(copy.deepcopy(messages[0]))
         content = CODEC.content(part[2])
-        assert isinstance(content, Seen | Garbled)
+        assert isinstance(content, Seen | Malformed)
         robot = content.robot if isinstance(content, Seen) else "a"
         found = matches(View(robot, Endpoint(endpoint), unheard=True), content)
         name = found.rule.rpartition("/")[2] if isinstance(found, Mismatch) else "reserved-reasons-are-not-used"

@@ -101,7 +101,7 @@ def test_get_robot_status_is_answered_as_its_table_says(params: Any, expected: s
 def test_every_refusal_fires_somewhere_and_not_everywhere() -> None:
     """In the usual world each condition holds for some prompt of the alphabet, and fails for another."""
     fires: dict[str, set[bool]] = {}
-    for prompt in ALPHABET.prompts:
+    for prompt in ALPHABET.inputs:
         request = CODEC.request(prompt.method, prompt.params)
         for rule in OPERATIONS[prompt.method].refusals:
             fires.setdefault(rule.id, set()).add(rule(FLEET, request))

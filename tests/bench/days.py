@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Notification
 from missionfsm.systems import system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 WORLD = {"family": "servi"}
@@ -27,7 +27,7 @@ class Log:
     """Talks to the reference and keeps the lines of the history."""
 
     def __init__(self) -> None:
-        self.reference = Reference(MISSION)
+        self.reference = ReferenceSubject(MISSION)
         self.reference.exchange("reset", {"world": WORLD})
         self.calls = 0
         self.lines: list[JSON] = []

@@ -30,7 +30,7 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.shortest import everything
 from missionfsm.tools.conform.tour import tour
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 NODE = shutil.which("node")
@@ -52,7 +52,7 @@ class _Recorded:
 
 
 def _recording(exchanges: list[Exchange]) -> Any:
-    subject = Reference(MISSION, {})
+    subject = ReferenceSubject(MISSION, {})
     ask = subject.exchange
 
     def exchange(method: str, params: JSON) -> Exchange:
@@ -77,7 +77,7 @@ def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
     """Steps a second with the reference in process; the same actions had again show what Hypothesis is of it."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
     search(
-        _run(Reference(MISSION, {}), automaton), Plan(TIMES, 0, TIMES, 30), 1
+        _run(ReferenceSubject(MISSION, {}), automaton), Plan(TIMES, 0, TIMES, 30), 1
     )  # the automaton knows the way from here on
     had: list[tuple[Any, tuple[Any, ...]]] = []
 
@@ -85,17 +85,17 @@ def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
         if run.last is not None:
             had.append((run.last.world, tuple(run.last.actions)))
 
-    run = _run(Reference(MISSION, {}), automaton)
+    run = _run(ReferenceSubject(MISSION, {}), automaton)
     run.progress = note
     whole = benchmark.pedantic(lambda: _seconds(lambda: search(run, Plan(TIMES, 0, TIMES, 30), 1)), rounds=1)
-    again = _run(Reference(MISSION, {}), automaton)
+    again = _run(ReferenceSubject(MISSION, {}), automaton)
     alone = _seconds(lambda: [again.replay(world, actions) for world, actions in had])
     exchanges: list[Exchange] = []
     recorder = _run(_recording(exchanges), automaton)
     exchanges.clear()
     for world, actions in had:
         recorder.replay(world, actions)
-    player = _run(Reference(MISSION, {}), automaton)
+    player = _run(ReferenceSubject(MISSION, {}), automaton)
     player.partner.subject = _Recorded(exchanges)
     judging = _seconds(lambda: [player.replay(world, actions) for world, actions in had])
     print(
@@ -109,7 +109,7 @@ def test_bench_conform_steps_and_what_hypothesis_costs(benchmark: Any) -> None:
 def test_bench_conform_tours(benchmark: Any) -> None:
     """Steps a second of systematic conversations, which need no Hypothesis."""
     automaton = Automaton(MISSION.spec, tuple(MISSION.spec.drives))
-    run = _run(Reference(MISSION, {}), automaton)
+    run = _run(ReferenceSubject(MISSION, {}), automaton)
     took = benchmark.pedantic(lambda: _seconds(lambda: tour(run, random.Random(1), TIMES, 30)), rounds=1)
     print(f"\n{run.ledger.steps / took:,.0f} steps a second")
 

@@ -23,14 +23,14 @@ from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.history import Event
-from missionfsm.kernel.readings import ANYTHING, choose
+from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.oracle.belief import Automaton, Belief
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.explore.explore import Labels, reachable, steps
-from missionfsm.tools.reference.model import Model
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.model import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 SPEC = MISSION.spec
 DEFAULT = choose(SPEC.ambiguities)
@@ -69,7 +69,7 @@ def triggers(times: int) -> Callable[[], None]:
 
 def asked(*, whole: bool, times: int) -> Callable[[], None]:
     """So many requests to the model: what it answers in a state, or the whole next snapshot with what is seen of it."""
-    model = Model(MISSION)
+    model = Reference(MISSION)
     here = model.start(MISSION.codec.world(WORLD))
     names, rest = MISSION.codec.split("SkipGoal", {})
     params = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
@@ -111,9 +111,9 @@ def test_bench_mission_a_step_of_the_model(benchmark: Any) -> None:
     [
         (Bounds(3, goals=2, batch=2), DEFAULT, False),
         (Bounds(4, goals=2, batch=2), DEFAULT, False),
-        (Bounds(3, goals=2, batch=2), ANYTHING, False),
+        (Bounds(3, goals=2, batch=2), UNCONSTRAINED, False),
         (Bounds(6, goals=2, batch=2), DEFAULT, True),
-        (Bounds(6, goals=2, batch=2), ANYTHING, True),
+        (Bounds(6, goals=2, batch=2), UNCONSTRAINED, True),
     ],
     ids=[
         "3 missions",
@@ -126,7 +126,7 @@ def test_bench_mission_a_step_of_the_model(benchmark: Any) -> None:
 def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int, *, forgetting: bool) -> None:
     """Distinct states a second, every refusal tried in every situation; and with every state read as a value."""
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
+    labels = Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
     found = benchmark.pedantic(
         reachable, (SPEC, start, labels, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
@@ -143,7 +143,7 @@ def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:
     """Distinct states a second without the shortcut: every outcome of every call as a step with names and messages."""
     bounds = Bounds(2, goals=2, batch=2)
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.of(MISSION, alphabet.plain, alphabet.plain_drives)
+    labels = Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
     states = list(reachable(SPEC, start, labels, bounds.size, DEFAULT))
 
@@ -286,5 +286,5 @@ def test_bench_mission_sixteen_lost_and_an_impossible_answer(benchmark: Any) -> 
 
 def test_bench_mission_conform(benchmark: Any) -> None:
     """Events a second of a whole run of ``conform`` with the reference in this process, search included."""
-    verdict = benchmark.pedantic(conform, (MISSION, Reference(MISSION)), {"examples": 50, "seed": 1}, rounds=1)
+    verdict = benchmark.pedantic(conform, (MISSION, ReferenceSubject(MISSION)), {"examples": 50, "seed": 1}, rounds=1)
     print(f"\n{verdict.events / benchmark.stats.stats.min:,.0f} events a second on {sys.platform}")

@@ -28,7 +28,7 @@ from traffic import MISSION, SUBSCRIBE, Recorder, delivery, navigate, readings_a
 
 from missionfsm.app.recorded import check_file
 from missionfsm.systems import system
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 PATIENCE = 60
 """Seconds of the processor's time that a log may take."""
@@ -178,7 +178,7 @@ def test_bench_traffic_fleet_stream(tmp_path: Path, robots: int) -> None:
         ],
         "locations": [{"locationId": "L1", "owned": True}],
     }
-    reference = Reference(status)
+    reference = ReferenceSubject(status)
     reference.exchange("reset", {"world": world})
     params = {"selector": {"robotIds": {"ids": names}}}
     opened = reference.exchange("SubscribeBatteryStatus", params)

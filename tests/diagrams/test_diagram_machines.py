@@ -17,10 +17,10 @@ from missionfsm.tools.draw.diagram import state_name
 from missionfsm.tools.draw.gallery import FORMATS, Picture
 from missionfsm.tools.draw.machines import event
 
-Moves = dict[str, dict[str, str]]
+Successors = dict[str, dict[str, str]]
 
 
-def of_chart(chart: Chart[object]) -> Moves:
+def of_chart(chart: Chart[object]) -> Successors:
     """Where every event leads from every state; an event that is no move changes nothing."""
     return {
         state_name(state): {
@@ -32,10 +32,10 @@ def of_chart(chart: Chart[object]) -> Moves:
     }
 
 
-def walked(run: Callable[[list[str]], str], events: Iterable[str]) -> Moves:
+def walked(run: Callable[[list[str]], str], events: Iterable[str]) -> Successors:
     """Where every event leads from every state; `run` sends events to a fresh machine and says where it is then."""
     events = tuple(events)
-    moves: Moves = {}
+    moves: Successors = {}
     paths: dict[str, list[str]] = {run([]): []}
     todo = list(paths)
     for state in todo:  # grows while it is walked

@@ -10,7 +10,7 @@ import pytest
 from attrs import evolve, frozen
 
 from missionfsm import systems
-from missionfsm.kernel.alphabet import Alphabet, Prompt
+from missionfsm.kernel.alphabet import Alphabet, Input
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.picture import Refs, Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
@@ -22,8 +22,8 @@ from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay
 from missionfsm.tools.draw.gallery import Picture
 from missionfsm.tools.draw.quotient import Move, Quotient, quotient
 from missionfsm.tools.draw.tables import of_contrast, of_quotient
-from missionfsm.tools.explore.explore import Labels, references
-from missionfsm.tools.reference.model import Model, Snapshot
+from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.reference.model import Reference, Snapshot
 
 # A turnstile: a coin unlocks it for one push. What becomes of a second coin is nowhere said.
 
@@ -74,7 +74,7 @@ SKETCH = Sketch(
     node=str,
     label=lambda _, what, __: "push" if isinstance(what, Push) else "coin",
     within=lambda _: True,
-    prompts=(Prompt("coin", {}),),
+    inputs=(Input("coin", {}),),
     drives=({},),
 )
 LOCKED, OPEN = "locked", "open"
@@ -143,9 +143,9 @@ class Walker:
     def __init__(self, name: str, sketch: Sketch, choice: dict[str, str], seed: int) -> None:
         self.system = systems.system(name)
         self.sketch = sketch
-        self.model = Model(self.system, choice)
+        self.model = Reference(self.system, choice)
         self.random = random.Random(seed)
-        labels = Labels.of(self.system, sketch.prompts, sketch.drives)
+        labels = Labels.of(self.system, sketch.inputs, sketch.drives)
         self.tried = [(what, free, True) for what, free in labels.requests]
         self.tried += [(what, free, False) for what, free in labels.events]
 
@@ -159,7 +159,7 @@ class Walker:
         """A step that leads somewhere within the bounds, and the move that it is: source, label, code, target."""
         while True:
             what, free, asked = self.random.choice(self.tried)
-            refs = self.random.choice(list(references(self.system.spec, here.state, free)))
+            refs = self.random.choice(list(bindings(self.system.spec, here.state, free)))
             if ONCE_HAD in refs and not here.gone:
                 continue
             names = tuple(self.named(here, ref) for ref in refs)

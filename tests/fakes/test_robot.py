@@ -550,7 +550,7 @@ class Walk:
         assert self.judge.feed(line), self.judge.verdict()
 
 
-UNARY = {family: SYSTEM.alphabet({"family": family}, Bounds()).prompts for family in ("base", "servi", "carti")}
+UNARY = {family: SYSTEM.alphabet({"family": family}, Bounds()).inputs for family in ("base", "servi", "carti")}
 CHOICES = [{}] + [
     {ambiguity.id: letter}
     for ambiguity in SYSTEM.spec.ambiguities
@@ -573,7 +573,7 @@ def test_the_oracle_accepts_every_walk(family: str, readings: dict[str, str], da
     """Whatever is asked of a robot and happens to it, under any reading, the oracle finds it conforming."""
     walk = Walk(family, readings)
     prompts = [prompt for prompt in UNARY[family] if prompt.method != "SubscribeMissionStatus"]
-    plain = SYSTEM.alphabet({"family": family}, Bounds()).plain
+    plain = SYSTEM.alphabet({"family": family}, Bounds()).core_inputs
     for _ in range(data.draw(st.integers(1, 20), label="steps")):
         if data.draw(st.booleans(), label="is a drive"):
             walk.drive(data.draw(st.sampled_from(["goal_reached", "mission_succeeded", "mission_failed"])))

@@ -188,7 +188,7 @@ def test_what_binary_can_carry_is_known_without_its_library(name: str) -> None:
     tried = system(name)
     worlds = tried.alphabet({}, BOUNDS).worlds
     told, right = {}, {}
-    for prompt in (one for world in worlds for one in tried.alphabet(world, BOUNDS).prompts):
+    for prompt in (one for world in worlds for one in tried.alphabet(world, BOUNDS).inputs):
         said = repr(prompt)
         told[said] = tried.codec.carries(prompt.method, prompt.params)
         try:

@@ -20,7 +20,7 @@ from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.mutate.teeth import teeth
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 ROBOT = system("isaac.robot")
 ONE, TWO = Uuid(1, 1 << 60 | 1), Uuid(2, 1 << 60 | 2)
@@ -144,7 +144,7 @@ def test_the_robot_that_ships_conforms() -> None:
 )
 def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
     """The reference under a single other reading conforms, and is found to follow it."""
-    run = run_of("isaac.robot", Reference(ROBOT, {entry: letter}))
+    run = run_of("isaac.robot", ReferenceSubject(ROBOT, {entry: letter}))
     assert (explained(run, 12, 30), run.ledger.readings[entry]) == (True, (letter,))
 
 

@@ -20,7 +20,7 @@ from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import Plan, conform
 from missionfsm.tools.explore.explore import explore
 from missionfsm.tools.mutate.teeth import teeth
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 AUTOMATON = Automaton(SERVER.spec, tuple(SERVER.spec.drives))
 """Walked by all tests: what one has worked out the next only looks up."""
@@ -211,7 +211,7 @@ def test_every_profile_of_the_server_is_explained(profile: Profile) -> None:
 )
 def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
     """The reference under a single other reading conforms, and that reading is not ruled out."""
-    run = run_of("isaac.server", Reference(SERVER, {entry: letter}), AUTOMATON)
+    run = run_of("isaac.server", ReferenceSubject(SERVER, {entry: letter}), AUTOMATON)
     assert (explained(run, 1, 20), letter in run.ledger.readings.get(entry, (letter,))) == (True, True)
 
 

@@ -8,7 +8,7 @@ import pytest
 from toys import BUTTONS, QUESTIONS
 
 from missionfsm.kernel.history import Answer, Called, Returned
-from missionfsm.kernel.readings import ANYTHING, constrain
+from missionfsm.kernel.readings import UNCONSTRAINED, constrain
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
 from missionfsm.oracle.belief import Automaton, Belief
 
@@ -54,7 +54,7 @@ def test_what_every_reading_allows_decides_nothing() -> None:
     """Answers that come under each reading leave one explanation with all of them; there is nothing to report."""
     belief, verdicts = pressed(*((("quiet", number), None) for number in range(8)))
     assert (all(verdicts), len(belief.node.explanations), belief.readings) == (True, 1, {})
-    assert belief.node.explanations[0].assumed == ANYTHING
+    assert belief.node.explanations[0].assumed == UNCONSTRAINED
 
 
 def test_independent_questions_are_no_cross_product() -> None:
@@ -67,7 +67,7 @@ def test_independent_questions_are_no_cross_product() -> None:
 
 def constrain_all(kept: list[int]) -> int:
     """All of these assumptions at once."""
-    assumed = ANYTHING
+    assumed = UNCONSTRAINED
     for one in kept:
         assumed &= one
     return assumed

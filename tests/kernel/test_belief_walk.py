@@ -21,7 +21,7 @@ from missionfsm.kernel.history import Answer, Called, Driven, Received, Returned
 from missionfsm.kernel.rules import OK
 from missionfsm.oracle import belief
 from missionfsm.oracle.belief import Automaton, Belief
-from missionfsm.tools.reference.model import Model, Reply
+from missionfsm.tools.reference.model import Reference, Reply
 
 EVENTS = 1_000
 GOALS = tuple(Goal(destination_id=f"table-{number}") for number in (1, 2, 3))
@@ -41,7 +41,7 @@ HAPPENINGS = ("goalReached", "goalReached", "missionSucceeded", "missionFailed")
 
 def robot(seed: int) -> Iterator[history.Event]:
     """What is seen of a robot that is busy for ever, and of which nobody knows what it does by itself."""
-    chance, model = random.Random(seed), Model(SYSTEM)
+    chance, model = random.Random(seed), Reference(SYSTEM)
     here = model.start(World())
     called = 0
 

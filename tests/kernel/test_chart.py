@@ -67,13 +67,13 @@ def test_the_machine_walks_as_the_chart_does(triggers: list[str]) -> None:
 def test_the_machine_drives_an_object() -> None:
     """Callbacks of an object of one's own are called, and there are no triggers but the table's."""
 
-    class Model:
+    class Reference:
         opened = 0
 
         def on_enter_OPEN(self) -> None:  # noqa: N802 - as transitions names it
             self.opened += 1
 
-    model = Model()
+    model = Reference()
     DOOR.machine(model)
     model.open()  # type: ignore[attr-defined]
     assert (model.opened, hasattr(model, "to_GONE")) == (1, False)

@@ -10,7 +10,7 @@ from attrs import evolve
 from toys import QUESTIONS, Refs, Request, spec
 
 from missionfsm.kernel.history import Answer, Called, Event, Returned
-from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Parting, Step
 from missionfsm.oracle.belief import Automaton, Belief
@@ -59,7 +59,7 @@ def asked(*requests: tuple[str, str]) -> list[Event]:
 )
 def test_parts_follow_the_same_readings(requests: list[tuple[str, str]], *, parted: bool, whole: bool) -> None:
     """A reading that one part rules out is ruled out for all; only ties between two questions are lost."""
-    beliefs = (Parted(TOY, 0, (), ANYTHING, 1000), Belief(Automaton(TOY), 0))
+    beliefs = (Parted(TOY, 0, (), UNCONSTRAINED, 1000), Belief(Automaton(TOY), 0))
     found = tuple(all(belief.observe(event) for event in asked(*requests)) for belief in beliefs)
     assert found == (parted, whole)
 
@@ -106,7 +106,7 @@ def test_a_fleet_is_judged_robot_by_robot(driven: tuple[str, ...]) -> None:
     for lines in itertools.product(LINES, repeat=3):
         transcript = Transcript(found.codec)
         events = [event for line in (*start, *lines) for event in transcript.read(line)]
-        parted = Parted(found.spec, world, driven, ANYTHING, 20_000)
+        parted = Parted(found.spec, world, driven, UNCONSTRAINED, 20_000)
         whole = Belief(_automaton(driven), world)
         explained = [(parted.observe(event), whole.observe(event)) for event in events]
         assert [one for one, _ in explained] == [other for _, other in explained], lines

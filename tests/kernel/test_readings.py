@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from missionfsm.kernel.readings import (
-    ANYTHING,
+    UNCONSTRAINED,
     Ambiguity,
     Assumption,
     by_bit,
@@ -43,21 +43,21 @@ def choices(assumed: int) -> Choices:
 def allowed_by(assumption: Assumption) -> Choices:
     """The full choices that agree with one assumption."""
     at = ALL.index(assumption.of)
-    return frozenset(choice for choice in choices(ANYTHING) if choice[at] in assumption.letters)
+    return frozenset(choice for choice in choices(UNCONSTRAINED) if choice[at] in assumption.letters)
 
 
 @given(st.lists(assumptions, max_size=4))
 def test_meet_leaves_the_choices_that_agree_with_all(some: list[Assumption]) -> None:
     """What is assumed together stands for the choices that agree with each; 0 where there is none."""
-    expected = functools.reduce(frozenset.intersection, map(allowed_by, some), choices(ANYTHING))
-    assumed = meet(ANYTHING, some)
+    expected = functools.reduce(frozenset.intersection, map(allowed_by, some), choices(UNCONSTRAINED))
+    assumed = meet(UNCONSTRAINED, some)
     assert (choices(assumed), assumed == 0) == (expected, not expected)
 
 
 @given(st.lists(assumptions, max_size=3), st.lists(assumptions, max_size=3))
 def test_merge_stands_for_exactly_the_two(first: list[Assumption], second: list[Assumption]) -> None:
     """Two sets of assumptions become one exactly where their choices together are a box."""
-    one, other = meet(ANYTHING, first), meet(ANYTHING, second)
+    one, other = meet(UNCONSTRAINED, first), meet(UNCONSTRAINED, second)
     if not one or not other:
         return
     union = choices(one) | choices(other)
@@ -151,9 +151,9 @@ FIRST, SECOND, THIRD = (
 def test_alike_parts_that_share_no_letter_clash() -> None:
     """An execution that reads alike parts differently is found, pair by pair; one that still can agree is not."""
     asked = (*ALL, FIRST, SECOND, THIRD)
-    differing = meet(ANYTHING, (FIRST["a"], SECOND["b"], THIRD["b", "c"]))
-    agreeing = meet(ANYTHING, (FIRST["a", "b"], SECOND["b"], COLOUR["a"], DAY["b"]))
-    assert (clashes(asked, differing), clashes(asked, agreeing), clashes(asked, ANYTHING)) == (
+    differing = meet(UNCONSTRAINED, (FIRST["a"], SECOND["b"], THIRD["b", "c"]))
+    agreeing = meet(UNCONSTRAINED, (FIRST["a", "b"], SECOND["b"], COLOUR["a"], DAY["b"]))
+    assert (clashes(asked, differing), clashes(asked, agreeing), clashes(asked, UNCONSTRAINED)) == (
         ((FIRST, SECOND), (FIRST, THIRD)),
         (),
         (),
@@ -164,4 +164,4 @@ def test_unflagged_leaves_what_the_text_says() -> None:
     """Without departures from the text every flagged letter is ruled out and no other."""
     odd = Ambiguity("R-4", "Odd?", {"a": "no", "b": "yes", "c": "very"}, "a", flagged=frozenset("bc"))
     left = unflagged((*ALL, odd))
-    assert (odd.possible(left), choices(left)) == (("a",), choices(ANYTHING))
+    assert (odd.possible(left), choices(left)) == (("a",), choices(UNCONSTRAINED))

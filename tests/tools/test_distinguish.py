@@ -15,7 +15,7 @@ from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.distinguish import Lab, Trial
 from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 ALTERNATIVES = {
@@ -36,7 +36,7 @@ def bench() -> Bench:
 def trials(name: str) -> tuple[Trial, ...]:
     """The experiments on an ambiguity before anything else has been decided."""
     ambiguity = next(one for one in MISSION.spec.ambiguities if one.id == name)
-    lab = Lab(bench().guide, handshake(MISSION, Reference(MISSION, {})), bench().automaton, {}, 4_000)
+    lab = Lab(bench().guide, handshake(MISSION, ReferenceSubject(MISSION, {})), bench().automaton, {}, 4_000)
     return lab.trials(ambiguity, tuple(ambiguity.readings))
 
 
@@ -57,7 +57,7 @@ def test_an_experiment_tells_what_it_says(name: str) -> None:
 def test_nothing_can_be_left_out_of_an_experiment() -> None:
     """Without any one of its actions it tells less."""
     (trial,) = [one for one in trials("AM-09") if one.follows == "b"]
-    lab = Lab(bench().guide, handshake(MISSION, Reference(MISSION, {})), bench().automaton, {})
+    lab = Lab(bench().guide, handshake(MISSION, ReferenceSubject(MISSION, {})), bench().automaton, {})
     for at in range(len(trial.actions)):
         actions = (*trial.actions[:at], *trial.actions[at + 1 :])
         shorter = lab.play(("AM-09", "b"), trial.world, actions)
@@ -68,7 +68,7 @@ def test_nothing_can_be_left_out_of_an_experiment() -> None:
 @pytest.mark.long
 def test_a_verdict_tells_the_experiments_for_what_is_open() -> None:
     """With few conversations much is open; what would tell it apart is in the verdict, as text and as JSON."""
-    verdict = conform(MISSION, Reference(MISSION, {}), examples=1, tours=2, steps=10, seed=1)
+    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), examples=1, tours=2, steps=10, seed=1)
     left = {name for name, letters in verdict.readings.items() if len(letters) > 1}
     names = {one.ambiguity for one in verdict.experiments}
     assert (len(names) > 0, names - left) == (True, set())
@@ -85,7 +85,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     Which ones no experiment tells is what the search came to, and nobody's list.
     """
     told = {other for trial in trials(name) if trial.follows == letter for other in trial.against}
-    subject = Reference(MISSION, {name: letter})
+    subject = ReferenceSubject(MISSION, {name: letter})
     automaton = Automaton(MISSION.spec, bench().automaton.moves.driven)
     run = Run.with_guide(MISSION, subject, handshake(MISSION, subject), automaton, bench().guide.fresh())
     ambiguity = next(one for one in MISSION.spec.ambiguities if one.id == name)
@@ -102,7 +102,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
 def test_a_run_decides_what_it_can(name: str, letter: str) -> None:
     """After a whole run with experiments nothing is open that one for the reading really followed would decide."""
     verdict = conform(
-        MISSION, Reference(MISSION, {name: letter}), examples=1, tours=10, steps=14, seed=1, distinguish=True
+        MISSION, ReferenceSubject(MISSION, {name: letter}), examples=1, tours=10, steps=14, seed=1, distinguish=True
     )
     assert verdict.conforms, str(verdict)
     followed = {one.id: one.default for one in MISSION.spec.ambiguities} | {name: letter}

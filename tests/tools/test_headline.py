@@ -25,7 +25,7 @@ from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.explore.undriven import missed_without
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission"}'
 CREATE: JSON = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
@@ -78,7 +78,7 @@ class Without:
     """A reference that has not all calls."""
 
     def __init__(self, *absent: str) -> None:
-        self._reference = Reference(MISSION)
+        self._reference = ReferenceSubject(MISSION)
         self._absent = absent
 
     def exchange(self, method: str, params: JSON) -> Exchange:
@@ -103,7 +103,7 @@ def test_a_robot_without_four_of_ten_calls_conforms_in_part() -> None:
 def test_what_has_no_gap_conforms() -> None:
     """A robot whose every drive was commanded, and which departs from nothing, simply conforms."""
     robot = system("isaac.robot")
-    verdict = conform(robot, Reference(robot), examples=3, tours=5, steps=20, seed=1, advice=False)
+    verdict = conform(robot, ReferenceSubject(robot), examples=3, tours=5, steps=20, seed=1, advice=False)
     assert verdict.headline == "conforms"
     assert verdict.rests_on()[-1] == "drives: all 6 commanded"
 

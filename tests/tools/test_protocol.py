@@ -13,7 +13,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 DRIVES = ("goalReached", "missionSucceeded", "missionFailed", "world", "fault")
 OWN = ("initialize", "reset", "settle", "drive", "cancel")
@@ -59,7 +59,7 @@ SUBSETS = [(), DRIVES, ("fault",), ("goalReached", "world"), ("missionFailed", "
 @pytest.mark.parametrize("drives", SUBSETS, ids="-".join)
 def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
     """Whatever drives an adapter has: none other is sent, and no second fault while one waits, to a right one."""
-    adapter = Strict(Reference(MISSION, {}), {"drives": list(drives)})
+    adapter = Strict(ReferenceSubject(MISSION, {}), {"drives": list(drives)})
     verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
 
@@ -75,7 +75,7 @@ def test_a_story_is_made_short_with_what_is_declared(drives: tuple[str, ...]) ->
 def test_calls_that_are_not_declared_are_not_made() -> None:
     """An adapter that says which calls it has is asked for those alone."""
     methods = ["CreateMission", "SubscribeMissionStatus"]
-    adapter = Strict(Reference(MISSION, {}), {"drives": list(DRIVES), "methods": methods})
+    adapter = Strict(ReferenceSubject(MISSION, {}), {"drives": list(DRIVES), "methods": methods})
     verdict = conform(MISSION, adapter, examples=2, tours=4, steps=15, seed=1, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
     assert set(adapter.sent) <= {*OWN, *methods}
@@ -85,7 +85,7 @@ def test_no_world_but_the_fixed_one_is_asked_for() -> None:
     """An adapter whose world is fixed is reset to that one every time."""
     declared = {"drives": list(DRIVES), "worlds": "fixed", "world": {"family": "base"}}
     verdict = conform(
-        MISSION, Strict(Reference(MISSION, {}), declared), examples=2, tours=4, steps=15, seed=1, advice=False
+        MISSION, Strict(ReferenceSubject(MISSION, {}), declared), examples=2, tours=4, steps=15, seed=1, advice=False
     )
     assert verdict.outcome is Outcome.CONFORMS
 
@@ -114,7 +114,7 @@ def test_an_adapter_that_fails_later_loses_no_violation() -> None:
 
 def test_what_is_wrong_before_anything_is_asked_ends() -> None:
     """A message on a stream that nobody opened, right after the reset, is a violation and no endless search."""
-    reference = Reference(MISSION, {})
+    reference = ReferenceSubject(MISSION, {})
 
     def exchange(method: str, params: JSON) -> Exchange:
         answer = reference.exchange(method, params)

@@ -13,7 +13,7 @@ from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.conform import FILLS, Plan, conform
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import fill
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 KINDS = {
@@ -63,7 +63,7 @@ def columns() -> set[str]:
 @pytest.mark.long
 def test_a_run_asks_everything_in_every_situation() -> None:
     """Before anything is toured or drawn every cell is met three times: all that the page lets one ask, everywhere."""
-    run = Run.of(MISSION, Reference(MISSION))
+    run = Run.of(MISSION, ReferenceSubject(MISSION))
     assert run.reach is not None
     assert fill(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
@@ -87,7 +87,7 @@ def test_what_was_met_too_seldom_is_told() -> None:
 def test_a_system_that_names_no_situation_has_no_matrix() -> None:
     """Nothing is told of situations that nobody names."""
     status = system("bear.status")
-    verdict = conform(status, Reference(status), plan=Plan(1, 1, 1, 5), seed=1, advice=False)
+    verdict = conform(status, ReferenceSubject(status), plan=Plan(1, 1, 1, 5), seed=1, advice=False)
     assert (verdict.reach, verdict.to_json()["reach"]) == (None, None)
     assert "situations" not in str(verdict)
 
@@ -96,7 +96,7 @@ def test_a_run_led_nowhere_says_so() -> None:
     """Of a robot whose list cannot be cleared the run says that no situation after a clear came about."""
     without = conform(
         MISSION,
-        Reference(MISSION),
+        ReferenceSubject(MISSION),
         plan=Plan(0, 1, 0, 5, fills=30),
         without=["ClearMissionStatus"],
         seed=1,

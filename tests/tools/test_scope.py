@@ -9,7 +9,7 @@ from attrs import evolve
 from kernel.toys import spec as toy
 
 from missionfsm.kernel.history import Answer, Called, Returned
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, meet
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
     INVALID_ARGUMENT,
@@ -22,7 +22,7 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.spec import Drive, Spec, Step
 from missionfsm.oracle.belief import Automaton, Belief
-from missionfsm.tools.check.eliminations import Rulings
+from missionfsm.tools.check.eliminations import Eliminations
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, untested
 from missionfsm.tools.check.verdict import Outcome, Untested, Verdict
 
@@ -65,7 +65,7 @@ DOOR: Spec = evolve(
 def judged(*answers: tuple[str, str]) -> tuple[str, ...]:
     """What is flagged where calls were answered so."""
     belief = Belief(Automaton(DOOR), "")
-    rulings = Rulings(belief)
+    rulings = Eliminations(belief)
     for number, (call, code) in enumerate(answers):
         for event in (Called(("call", number), (call,)), Returned(("call", number), Answer(code))):
             assert belief.observe(event)
@@ -97,13 +97,13 @@ def test_incoherence_is_flagged_with_both_events() -> None:
 
 def test_one_explanation_that_keeps_to_the_text_is_enough() -> None:
     """Nothing is flagged while one explanation departs nowhere, though others do."""
-    ways = [meet(ANYTHING, some) for some in ((OPEN["b"],), (KNOCK["a"], RING["b"]), (OPEN["a"], KNOCK["a"]))]
+    ways = [meet(UNCONSTRAINED, some) for some in ((OPEN["b"],), (KNOCK["a"], RING["b"]), (OPEN["a"], KNOCK["a"]))]
     assert flagged(DOOR, {}, {}, ways) == ()
 
 
 def test_readings_that_are_possible_apart_may_not_be_so_together() -> None:
     """Where every explanation departs somewhere, the one that departs least is flagged."""
-    ways = [meet(ANYTHING, some) for some in ((OPEN["b"], KNOCK["a"], RING["b"]), (KNOCK["b"], RING["a"]))]
+    ways = [meet(UNCONSTRAINED, some) for some in ((OPEN["b"], KNOCK["a"], RING["b"]), (KNOCK["b"], RING["a"]))]
     assert flagged(DOOR, {}, {}, ways) == (
         "incoherent, calls that look alike are read differently: D-1.knock=b, but D-1.ring=a",
     )
@@ -113,7 +113,7 @@ def test_nothing_departs_where_nothing_may() -> None:
     """Under the letter of the text flagged readings are ruled out from the start, and asking for one is refused."""
     left = assumed(DOOR, {"D-1": "b"}, no_flagged=True)
     assert [one.possible(left) for one in DOOR.ambiguities] == [("b",), ("b",), ("a",)]
-    assert assumed(DOOR, None, no_flagged=False) == ANYTHING
+    assert assumed(DOOR, None, no_flagged=False) == UNCONSTRAINED
     with pytest.raises(ValueError, match="D-2=b departs from the text, and nothing that does is accepted"):
         assumed(DOOR, {"D-2": "b"}, no_flagged=True)
 

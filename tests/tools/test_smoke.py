@@ -15,7 +15,7 @@ from missionfsm.systems import names, system
 from missionfsm.tools.conform.run import BOUNDS
 from missionfsm.tools.conform.smoke import smoke
 from missionfsm.tools.placeholders import is_template
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")
 
@@ -25,7 +25,7 @@ class Odd:
 
     def __init__(self, **instead: Any) -> None:
         self.instead = instead
-        self.reference = Reference(MISSION, {})
+        self.reference = ReferenceSubject(MISSION, {})
 
     def exchange(self, method: str, params: JSON) -> Exchange:
         """Answer."""
@@ -43,7 +43,7 @@ class Odd:
 def test_the_reference_is_an_adapter(name: str) -> None:
     """Every method and every drive that needs no name is tried; nothing is wrong and nothing is left to do."""
     tried = system(name)
-    found = smoke(tried, lambda: Reference(tried, {}))
+    found = smoke(tried, lambda: ReferenceSubject(tried, {}))
     assert (found.faults, found.left) == ((), ())
     assert set(tried.codec.methods) <= set(found.tried)
     drives = {one["event"] for one in tried.alphabet({}, BOUNDS).drives if not is_template(one)}

@@ -27,7 +27,7 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.shortest import everything
 from missionfsm.tools.mutate.teeth import mutants
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
@@ -175,7 +175,7 @@ def test_the_pytest_function_fails_for_what_was_found(tmp_path: Path) -> None:
     wrong = history(found("NOT_FOUND", BUSY))
     first, *lines = wrong
     done = [line for line in lines if "call" in line or "drive" in line or "settled" in line]
-    subject = Reference(MISSION, {})
+    subject = ReferenceSubject(MISSION, {})
     right = [first]
     subject.exchange("reset", {"world": first["world"]})
     for line in done:

@@ -23,7 +23,7 @@ from attrs import evolve
 from missionfsm.kernel.history import Answer
 from missionfsm.systems import system
 from missionfsm.testing import Suite
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 RULE = {rule!r}
 
@@ -37,12 +37,12 @@ class TestRight(Suite):
     examples = 12
 
     def subject(self):
-        return Reference(system(self.system))
+        return ReferenceSubject(system(self.system))
 
 
 class TestWrong(TestRight):
     def subject(self):
-        return Reference(system(self.system), twist=broken)
+        return ReferenceSubject(system(self.system), twist=broken)
 
 
 class TestKnown(TestWrong):

@@ -10,7 +10,7 @@ from browsing import Opener, missionfsm
 
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.pages.graph import Graph
 
 pytestmark = pytest.mark.slow
@@ -230,7 +230,7 @@ def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -
 
 def test_the_bounds_are_told(explorers: dict[str, Path], open_page: Opener) -> None:
     """The page says how many states it has and within which bounds."""
-    graph = Graph(systems.system("isaac.robot"), Bounds(1, goals=2, batch=1), ANYTHING).data()
+    graph = Graph(systems.system("isaac.robot"), Bounds(1, goals=2, batch=1), UNCONSTRAINED).data()
     told = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
     steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
     assert told.startswith(f"{len(graph['states'])} states and {steps} steps")

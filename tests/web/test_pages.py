@@ -13,7 +13,7 @@ from attrs import evolve
 
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import ANYTHING, constrain
+from missionfsm.kernel.readings import UNCONSTRAINED, constrain
 from missionfsm.oracle.transcript import head
 from missionfsm.pages.graph import BEYOND, HERE, Graph
 from missionfsm.pages.outline import ClauseLine, Evidence, Section, Standing, document_map
@@ -22,7 +22,7 @@ from missionfsm.pages.report import Judged, report
 from missionfsm.pages.teeth import teeth_page
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Experiment, Verdict
-from missionfsm.tools.mutate.teeth import Bite, Teeth
+from missionfsm.tools.mutate.teeth import MutantResult, MutationReport
 from missionfsm.tools.specpages import clauses
 
 HEAD = {
@@ -43,11 +43,11 @@ ACTIVE = "bear.mission/CreateMission/FAILED_PRECONDITION/another-mission-is-acti
 HASHED = """
 import hashlib, sys
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import ANYTHING
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.pages.explorer import explorer_page
 from missionfsm.systems import names, system
 for name in names():
-    page = explorer_page(system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), ANYTHING)
+    page = explorer_page(system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), UNCONSTRAINED)
     print(name, hashlib.sha256(page.encode()).hexdigest())
 """
 
@@ -180,7 +180,9 @@ def test_a_history_without_its_beginning_is_told() -> None:
 @pytest.mark.parametrize("name", systems.names())
 def test_every_number_in_a_graph_means_something(name: str) -> None:
     """What a state refers to is there: doings, effects, states, parts of messages, rules and assumptions."""
-    graph = Graph(systems.system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), ANYTHING).data()
+    graph = Graph(
+        systems.system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), UNCONSTRAINED
+    ).data()
     states = graph["states"]
     assert states
     for _, seen, flat in states:
@@ -198,7 +200,7 @@ def test_every_number_in_a_graph_means_something(name: str) -> None:
 def test_a_demanded_reading_leaves_no_other() -> None:
     """Where a reading is demanded, no answer of the graph assumes another of that ambiguity."""
     explored = systems.system("bear.mission")
-    free = Graph(explored, Bounds(1, goals=1, batch=1), ANYTHING).data()
+    free = Graph(explored, Bounds(1, goals=1, batch=1), UNCONSTRAINED).data()
     bound = Graph(
         explored, Bounds(1, goals=1, batch=1), constrain(explored.spec.ambiguities, {"AM-02.unknown": "a"})
     ).data()
@@ -214,11 +216,11 @@ def test_survivors_are_told_apart() -> None:
     robot = systems.system("isaac.robot")
     first, second, third, *_ = (rule.id for rule in robot.spec.all_rules)
     bites = (
-        Bite(f"{first} is dropped", first, killed=True, length=4),
-        Bite(f"{first} has no effect", first, killed=False, because="which <AI-01> allows"),
-        Bite(f"{second} is dropped", second, killed=False),
+        MutantResult(f"{first} is dropped", first, killed=True, length=4),
+        MutantResult(f"{first} has no effect", first, killed=False, because="which <AI-01> allows"),
+        MutantResult(f"{second} is dropped", second, killed=False),
     )
-    page = teeth_page(robot, Teeth("isaac.robot", bites, (third,)))
+    page = teeth_page(robot, MutationReport("isaac.robot", bites, (third,)))
     marks = re.findall(r'<li><span class="mark (\w+)">(\w+)</span>', page)
     assert marks == [
         ("exercised", "noticed"),

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from lift.spec import ARRIVAL, FLOORS, OPERATIONS, Asked, Event, Lift
-from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.rules import OK
 
-# What an implementation says is read whatever it is; what is no ride or no floor becomes `Garbled`.
+# What an implementation says is read whatever it is; what is no ride or no floor becomes `Malformed`.
 
 
 Names = tuple[Any, ...]
@@ -49,10 +49,10 @@ def read_answer(method: str, result: JSON) -> tuple[Answer, Names]:
             raise UnreadableError(f"Watch answered {result}, which carries no stream number")
         return Answer(OK), (("stream", stream),)
     if method == "Cancel":
-        return Answer(OK, None if result == {} else Garbled("Cancel answers with an empty object")), ()
+        return Answer(OK, None if result == {} else Malformed("Cancel answers with an empty object")), ()
     ride = said.get("ride")
     if not isinstance(ride, str):
-        return Answer(OK, Garbled("Call answers with the name of a ride")), ()
+        return Answer(OK, Malformed("Call answers with the name of a ride")), ()
     return Answer(OK), ride_name(ride)
 
 
@@ -73,15 +73,15 @@ def strip(message: JSON) -> tuple[Part, ...]:
     return ((names, (), {**message, "rides": bare}),)
 
 
-def content(message: JSON) -> Lift | Garbled:
+def content(message: JSON) -> Lift | Malformed:
     """What a message shows."""
     try:
         floors = tuple(one["floor"] for one in message["rides"])
         moving = message["moving"]
     except (KeyError, TypeError):
-        return Garbled("a message has rides, each with a ride and a floor, and moving")
+        return Malformed("a message has rides, each with a ride and a floor, and moving")
     if type(moving) is not bool or not all(type(floor) is int for floor in floors):
-        return Garbled("floors are numbers, and moving is true or false")
+        return Malformed("floors are numbers, and moving is true or false")
     return Lift(floors, moving)
 
 

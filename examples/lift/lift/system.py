@@ -4,26 +4,33 @@ from __future__ import annotations
 
 from lift.codec import CODEC
 from lift.spec import ARRIVAL, NAME, SPEC
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Line, Prompt, pick
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, ScriptStep, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
 
 def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
     """What is worth trying."""
-    calls = tuple(Prompt("Call", {"floor": floor}) for floor in (0, 1, 2))
-    cancel, watch = Prompt("Cancel", {"ride": pick("ride")}), Prompt("Watch", {})
+    calls = tuple(Input("Call", {"floor": floor}) for floor in (0, 1, 2))
+    cancel, watch = Input("Cancel", {"ride": pick("ride")}), Input("Watch", {})
     drives = ({"event": ARRIVAL.name},)
-    full = (*(Line("Call", {"floor": floor}) for floor in (0, 1, 2, 3)), Line("settle"))
+    full = (*(ScriptStep("Call", {"floor": floor}) for floor in (0, 1, 2, 3)), ScriptStep("settle"))
     return Alphabet(
-        prompts=(*calls, Prompt("Call", {"floor": 4}), Prompt("Call", {"floor": "one"}), cancel, watch),
-        plain=(*calls[:2], cancel),
+        inputs=(*calls, Input("Call", {"floor": 4}), Input("Call", {"floor": "one"}), cancel, watch),
+        core_inputs=(*calls[:2], cancel),
         drives=drives,
-        plain_drives=drives,
+        core_drives=drives,
         worlds=({},),
         wrong_names=("no-such-ride",),
         look=watch,
-        scripts=((Line("Watch", {}), *full, Line("Cancel", {"ride": pick("ride")}, ((0, 2),)), Line("settle")),),
+        scripts=(
+            (
+                ScriptStep("Watch", {}),
+                *full,
+                ScriptStep("Cancel", {"ride": pick("ride")}, ((0, 2),)),
+                ScriptStep("settle"),
+            ),
+        ),
     )
 
 

@@ -25,7 +25,7 @@ from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON
 
 Record = Callable[[JSON], None]
-"""Takes a line of a history, with what was said in it as `Said`."""
+"""Takes a line of a history, with what was said in it as `LineContent`."""
 HOP_BY_HOP = frozenset(("user-agent", "te", "content-type", "grpc-timeout", "grpc-accept-encoding", "grpc-encoding"))
 """Metadata that the proxy's own connection has."""
 UNLIMITED = (("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1))
@@ -40,7 +40,7 @@ def _passed(metadata: Any) -> tuple[tuple[str, str | bytes], ...]:  # noqa: ANN4
 
 
 @frozen
-class Said:
+class LineContent:
     """A message as it was on the wire.
 
     Attributes:
@@ -60,7 +60,7 @@ class Said:
 
 def read_line(line: dict[str, JSON]) -> dict[str, JSON]:
     """A line of a history as the format has it: what was said in it is read."""
-    return {key: value.read() if isinstance(value, Said) else value for key, value in line.items()}
+    return {key: value.read() if isinstance(value, LineContent) else value for key, value in line.items()}
 
 
 class Proxy:
@@ -307,9 +307,9 @@ class _Seen:
             self._note({"call": call, "method": "cancel", "params": {"stream": self._stream}})
             self._note({"return": call, "result": {}})
 
-    def _read(self, data: bytes, *, request: bool) -> Said:
+    def _read(self, data: bytes, *, request: bool) -> LineContent:
         assert self._method is not None  # noqa: S101 - the callers have looked
-        return Said(self._method.request if request else self._method.response, data)
+        return LineContent(self._method.request if request else self._method.response, data)
 
     def _note(self, line: dict[str, JSON]) -> None:
         self._proxy._note(line)  # noqa: SLF001 - as above

@@ -22,7 +22,7 @@ from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import Command, Goal, MissionStates
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel, key_of, read, unknown_fields, write
-from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
 from missionfsm.kernel.text import brief
@@ -216,7 +216,7 @@ _WITH_MORE = Answer(OK, MORE), Answer(OK, MORE, unordered=True)
 
 
 def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
-    """What a successful result says; one that is not of the documented form is `Garbled`."""
+    """What a successful result says; one that is not of the documented form is `Malformed`."""
     if method in STREAMS:
         stream = result.get("stream") if isinstance(result, dict) else None
         if isinstance(stream, bool) or not isinstance(stream, int):
@@ -233,13 +233,13 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
         if kind is None:
             read(wire.Empty, result)
             said = [name for name, value in result.items() if value is not None]
-            return (Answer(OK, Garbled(f"it has {brief(said[0])}; the answer has no fields")) if said else _NAMED), ()
+            return (Answer(OK, Malformed(f"it has {brief(said[0])}; the answer has no fields")) if said else _NAMED), ()
         found: wire.MissionId | wire.MissionIds = read(kind, result)
     except MalformedError as error:
-        return Answer(OK, Garbled(str(error)), unordered), ()
+        return Answer(OK, Malformed(str(error)), unordered), ()
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
     if not all(ids):
-        return Answer(OK, Garbled("a mission id is missing"), unordered), ()
+        return Answer(OK, Malformed("a mission id is missing"), unordered), ()
     if unknown_fields(kind, result):
         return _WITH_MORE[unordered], ids
     return _LISTED if unordered else _NAMED, ids
@@ -326,7 +326,7 @@ def _sequence_number(metadata: dict[str, JSON]) -> tuple[int | None, JSON]:
     return found.sequence_number, {"timestamp": None, **left} if found.timestamp is None else left
 
 
-def content(rest: JSON) -> Seen | Garbled:
+def content(rest: JSON) -> Seen | Malformed:
     """What a stripped status message shows."""
     bare: list[bool] = []
     metadata: JSON = {}
@@ -334,13 +334,13 @@ def content(rest: JSON) -> Seen | Garbled:
         metadata = rest["metadata"]
         wrong = _about_metadata(metadata)
         if wrong:
-            return Garbled(wrong)
+            return Malformed(wrong)
         rest = {name: value for name, value in rest.items() if name != "metadata"}
     try:
         wrapped = _wrapped_feedback(rest, bare)
         status = read(wire.MissionStatus, wrapped)
     except MalformedError as error:
-        return Garbled(str(error))
+        return Malformed(str(error))
     states = status.mission_states or MissionStates()
     named = tuple(bool(one.mission_id) for one in states.missions)
     more = unknown_fields(wire.MissionStatus, wrapped) or unknown_fields(wire.EventMetadata, metadata)

@@ -67,7 +67,7 @@ from missionfsm.bear.mission.state import (
     is_missing,
 )
 from missionfsm.bear.wire.messages import Command, Goal, State
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import (
     CANCELLED,
     DEADLINE_EXCEEDED,
@@ -206,7 +206,7 @@ def _all_accepted(robot: Situation, call: str, wanted: tuple[Wanted, ...]) -> li
     first = robot.active is None and not robot.queued
     held = first and robot.world.blocked
     waits = not first or held
-    ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), ANYTHING)]
+    ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), UNCONSTRAINED)]
     for one in wanted:
         accepted = tuple(_accepted(robot, call, one, waits=waits))
         ways = [

@@ -16,7 +16,7 @@ from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Kind, Mission, Robot
 from missionfsm.bear.mission.stream import Seen, has_goals
 from missionfsm.bear.wire.messages import MissionState, State
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 
 _ACTIVE = (State.STATE_RUNNING, State.STATE_PAUSED)
 _BROKEN_OFF = (State.STATE_CANCELED, State.STATE_FAILED)
@@ -24,10 +24,10 @@ _CHARGE = Mission(Kind.CHARGE)
 
 
 def foresees(
-    robot: Robot, names: tuple[int, ...], content: Seen | Garbled, shown: tuple[int, ...], calls: Container[str]
+    robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: Container[str]
 ) -> bool:
     """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
-    if isinstance(content, Garbled) or not all(content.named):
+    if isinstance(content, Malformed) or not all(content.named):
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
     return later.all_kept() or later.some_forgotten()

@@ -26,20 +26,20 @@ from missionfsm.bear.mission.state import (
 )
 from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, Seen, listing
 from missionfsm.bear.wire.messages import Goal, MissionState, MissionType, State
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
 from missionfsm.kernel.spec import Glimpses, Middle
 
-MOST = 16
+MAX_STATES = 16
 """How many robots are imagined behind one message at most."""
 
 
 @functools.lru_cache(maxsize=1_000)
-def shown(world: World, content: Seen | Garbled) -> tuple[tuple[Robot, Listing], ...]:
+def shown(world: World, content: Seen | Malformed) -> tuple[tuple[Robot, Listing], ...]:
     """Robots that a message may show, the likeliest first, each with the view of it."""
-    if isinstance(content, Garbled):
+    if isinstance(content, Malformed):
         return ()
-    robots = itertools.islice(_robots(world, content), MOST)
+    robots = itertools.islice(_robots(world, content), MAX_STATES)
     return tuple((robot, listing(robot)) for robot in dict.fromkeys(robots))
 
 

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.samples import CANCEL, PAUSE, TABLES
 from missionfsm.bear.mission.scripts import APPENDED, CREATED, call, commanded, drive
 from missionfsm.bear.mission.state import AUTOMATIC, Fault, Robot, World, is_foreign, is_missing
 from missionfsm.bear.wire.messages import State
-from missionfsm.kernel.alphabet import Bounds, Line
+from missionfsm.kernel.alphabet import Bounds, ScriptStep
 from missionfsm.kernel.matrix import Matrix
 
 MANY = 4
@@ -37,11 +37,11 @@ def situation(robot: Robot) -> str | None:
     return "running the last of a queue" if robot.done and at == "running" else at
 
 
-_AT_REST: tuple[Line, ...] = ()
+_AT_REST: tuple[ScriptStep, ...] = ()
 _QUEUE = (*CREATED, *APPENDED)
 _TAKEN = drive("world", occupied=[TABLES[0]])
 
-WAYS: Mapping[str, tuple[tuple[Line, ...], ...]] = {
+WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
     "idle": (_AT_REST, _TAKEN),
     "running": (CREATED, (*CREATED, *_TAKEN)),
     "paused": ((*CREATED, *commanded(0, PAUSE)), (*CREATED, *_TAKEN, *commanded(0, PAUSE))),

@@ -26,7 +26,7 @@ from missionfsm.bear.mission.stream import (
 )
 from missionfsm.bear.wire.messages import BaseType, CartiType, MissionState, MissionType, ServiType, State
 from missionfsm.bear.wire.problem import Problem
-from missionfsm.kernel.codec import JSON, Garbled
+from missionfsm.kernel.codec import JSON, Malformed
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.sequence import relation
 
@@ -95,7 +95,7 @@ class MissionMonitor:
         found = list(self._numbered(marks[0][1])) if marks else []
         self._last = message
         seen = content(rest)
-        if isinstance(seen, Garbled):
+        if isinstance(seen, Malformed):
             found.append((WELL_FORMED, seen.says))
         elif isinstance(seen, Seen):
             missions = dict(zip(names, seen.states.missions, strict=False))

@@ -13,7 +13,7 @@ from missionfsm.bear.mission.state import Mission, Robot
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.spec import Step
-from missionfsm.kernel.system import Bend, Break
+from missionfsm.kernel.system import MessageMutation, StepMutation
 
 
 def _each(change: Callable[[JSON], None]) -> Callable[[JSON], JSON]:
@@ -70,43 +70,49 @@ def _twice(message: JSON) -> None:
 
 
 BENDS = (
-    Bend(status.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))),
-    Bend(
+    MessageMutation(
+        status.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))
+    ),
+    MessageMutation(
         status.WELL_FORMED.id,
         "has a text for an index",
         _whole(lambda one: one["missionStates"].update(currentMissionIndex="first")),
     ),
-    Bend(status.SEQUENCE.id, "never changes", _whole(lambda one: one["metadata"].update(sequenceNumber=7))),
-    Bend(
+    MessageMutation(status.SEQUENCE.id, "never changes", _whole(lambda one: one["metadata"].update(sequenceNumber=7))),
+    MessageMutation(
         status.SEQUENCE.id,
         "goes down",
         _whole(lambda one: one["metadata"].update(sequenceNumber=10**6 - one["metadata"]["sequenceNumber"])),
     ),
-    Bend(status.SEQUENCE.id, "is negative", _whole(lambda one: one["metadata"].update(sequenceNumber=-1))),
-    Bend(
+    MessageMutation(status.SEQUENCE.id, "is negative", _whole(lambda one: one["metadata"].update(sequenceNumber=-1))),
+    MessageMutation(
         status.ALL_LISTED.id,
         "leaves out the last",
         _whole(lambda one: one["missionStates"].update(missions=one["missionStates"]["missions"][:-1])),
     ),
-    Bend(status.ALL_LISTED.id, "lists in reverse", _whole(lambda one: one["missionStates"]["missions"].reverse())),
-    Bend(status.ALL_LISTED.id, "lists twice", _whole(_twice)),
-    Bend(
+    MessageMutation(
+        status.ALL_LISTED.id, "lists in reverse", _whole(lambda one: one["missionStates"]["missions"].reverse())
+    ),
+    MessageMutation(status.ALL_LISTED.id, "lists twice", _whole(_twice)),
+    MessageMutation(
         status.CURRENT.id,
         "is one too high",
         _whole(
             lambda one: one["missionStates"].update(currentMissionIndex=one["missionStates"]["currentMissionIndex"] + 1)
         ),
     ),
-    Bend(status.CURRENT.id, "is always 0", _whole(lambda one: one["missionStates"].update(currentMissionIndex=0))),
-    Bend(status.STATE.id, "shows running as paused", _each(_running_as_paused)),
-    Bend(status.STATE.id, "shows failed as succeeded", _each(_failed_as_succeeded)),
-    Bend(status.STATE.id, "shows waiting as running", _each(_waiting_as_running)),
-    Bend(status.GOALS.id, "drops the last goal", _each(lambda one: one.update(goals=one["goals"][:-1]))),
-    Bend(status.GOALS.id, "reverses the goals", _each(lambda one: one["goals"].reverse())),
-    Bend(status.GOAL_INDEX.id, "is one too high", _each(_next_index)),
-    Bend(status.GOAL_INDEX.id, "never moves", _each(lambda one: one.update(currentGoalIndex=0))),
-    Bend(status.FEEDBACK.id, "has two members", _each(_wrong_feedback)),
-    Bend(status.TYPE.id, "has another type", _each(_another_type)),
+    MessageMutation(
+        status.CURRENT.id, "is always 0", _whole(lambda one: one["missionStates"].update(currentMissionIndex=0))
+    ),
+    MessageMutation(status.STATE.id, "shows running as paused", _each(_running_as_paused)),
+    MessageMutation(status.STATE.id, "shows failed as succeeded", _each(_failed_as_succeeded)),
+    MessageMutation(status.STATE.id, "shows waiting as running", _each(_waiting_as_running)),
+    MessageMutation(status.GOALS.id, "drops the last goal", _each(lambda one: one.update(goals=one["goals"][:-1]))),
+    MessageMutation(status.GOALS.id, "reverses the goals", _each(lambda one: one["goals"].reverse())),
+    MessageMutation(status.GOAL_INDEX.id, "is one too high", _each(_next_index)),
+    MessageMutation(status.GOAL_INDEX.id, "never moves", _each(lambda one: one.update(currentGoalIndex=0))),
+    MessageMutation(status.FEEDBACK.id, "has two members", _each(_wrong_feedback)),
+    MessageMutation(status.TYPE.id, "has another type", _each(_another_type)),
 )
 
 
@@ -197,7 +203,7 @@ def _rule(*place: str) -> str:
 
 TWISTS = (
     *(
-        Break(
+        StepMutation(
             _rule(operation, "the-answer-names-the-new-missions-in-order"),
             "leaves out the last",
             _shown(_last_added_left_out),
@@ -205,26 +211,28 @@ TWISTS = (
         for operation in ("CreateMissionBatch", "AppendMissionBatch")
     ),
     *(
-        Break(_rule(operation, "missions-are-appended-at-the-end"), "puts them first", _shown(_put_first))
+        StepMutation(_rule(operation, "missions-are-appended-at-the-end"), "puts them first", _shown(_put_first))
         for operation in ("AppendMission", "AppendMissionBatch")
     ),
-    Break(_rule("UpdateMission", "cancel"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
-    Break(_rule("UpdateMission", "finish"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
-    Break(_rule("UpdateMission", "finish"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
-    Break(_rule("UpdateMission", "pause"), "goes to the next goal", _shown(_goal(_skips_one))),
-    Break(_rule("UpdateMission", "resume"), "goes to the next goal", _shown(_goal(_skips_one))),
-    Break(_rule("SkipGoal", "the-next-goal-is-taken-up"), "skips two", _shown(_goal(_skips_one))),
-    Break(_rule("lifecycle", "goals-are-taken-up-in-order"), "skips one", _shown(_goal(_skips_one))),
-    Break(_rule("lifecycle", "goals-are-taken-up-in-order"), "ends as failed", _shown(_ended(State.STATE_FAILED))),
-    Break(_rule("lifecycle", "succeed"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
-    Break(_rule("lifecycle", "fail"), "ends it as succeeded", _shown(_ended(State.STATE_SUCCEEDED))),
-    Break(_rule("lifecycle", "start"), "starts the last", _shown(_start_last)),
-    Break(
+    StepMutation(_rule("UpdateMission", "cancel"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
+    StepMutation(_rule("UpdateMission", "finish"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
+    StepMutation(_rule("UpdateMission", "finish"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
+    StepMutation(_rule("UpdateMission", "pause"), "goes to the next goal", _shown(_goal(_skips_one))),
+    StepMutation(_rule("UpdateMission", "resume"), "goes to the next goal", _shown(_goal(_skips_one))),
+    StepMutation(_rule("SkipGoal", "the-next-goal-is-taken-up"), "skips two", _shown(_goal(_skips_one))),
+    StepMutation(_rule("lifecycle", "goals-are-taken-up-in-order"), "skips one", _shown(_goal(_skips_one))),
+    StepMutation(
+        _rule("lifecycle", "goals-are-taken-up-in-order"), "ends as failed", _shown(_ended(State.STATE_FAILED))
+    ),
+    StepMutation(_rule("lifecycle", "succeed"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
+    StepMutation(_rule("lifecycle", "fail"), "ends it as succeeded", _shown(_ended(State.STATE_SUCCEEDED))),
+    StepMutation(_rule("lifecycle", "start"), "starts the last", _shown(_start_last)),
+    StepMutation(
         _rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"),
         "answers no ids",
         lambda _, step: evolve(step, refs=()),
     ),
-    Break(
+    StepMutation(
         _rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"),
         "leaves out an id",
         lambda _, step: evolve(step, refs=step.refs[:-1]),

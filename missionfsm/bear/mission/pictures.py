@@ -6,7 +6,7 @@ from missionfsm.bear.mission.compiled import forget_ended
 from missionfsm.bear.mission.events import Happening
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Robot
-from missionfsm.kernel.alphabet import ANY_NAME, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Refs, Sketch
 
@@ -16,19 +16,19 @@ _MOST = 4
 _GOALS: JSON = {"goals": [{"destinationId": "table-1"}, {"destinationId": "table-2"}]}
 _MISSION: JSON = {"mission": {"serviMission": {"deliveryMission": _GOALS}}}
 _PROMPTS = (
-    Prompt("CreateMission", _MISSION),
-    Prompt("CreateMissionBatch", {"missions": [_MISSION, _MISSION]}),
-    Prompt("CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"delivery": _GOALS}}}),
-    Prompt("AppendMission", _MISSION),
-    Prompt("AppendMissionBatch", {"missions": [_MISSION, _MISSION]}),
-    Prompt("ChargeRobot", {}),
+    Input("CreateMission", _MISSION),
+    Input("CreateMissionBatch", {"missions": [_MISSION, _MISSION]}),
+    Input("CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"delivery": _GOALS}}}),
+    Input("AppendMission", _MISSION),
+    Input("AppendMissionBatch", {"missions": [_MISSION, _MISSION]}),
+    Input("ChargeRobot", {}),
     *(
-        Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": f"COMMAND_{command}"}})
+        Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": f"COMMAND_{command}"}})
         for command in ("PAUSE", "RESUME", "CANCEL", "FINISH")
     ),
-    Prompt("SkipGoal", {}),
-    Prompt("ClearMissionStatus", {}),
-    Prompt("SubscribeMissionStatus", {}),
+    Input("SkipGoal", {}),
+    Input("ClearMissionStatus", {}),
+    Input("SubscribeMissionStatus", {}),
 )
 _DRIVES: tuple[JSON, ...] = ({"event": "goalReached"}, {"event": "missionSucceeded"}, {"event": "missionFailed"})
 _HAPPENS = {
@@ -73,7 +73,7 @@ SKETCHES = (
         label=_label,
         within=lambda robot: len(robot.listed) <= _MOST,
         simple=lambda robot, _: forget_ended(robot),
-        prompts=_PROMPTS,
+        inputs=_PROMPTS,
         drives=_DRIVES,
         contrasts=("AM-09=b", "AM-09=c", "AM-10=b"),
     ),

@@ -8,27 +8,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from missionfsm.bear.mission.samples import CANCEL, COMMANDS, FINISH, PAUSE, RESUME, TABLES, auto, base, of_family
-from missionfsm.kernel.alphabet import ANY_NAME, Line
+from missionfsm.kernel.alphabet import ANY_NAME, ScriptStep
 from missionfsm.kernel.codec import JSON
 
-_SETTLE = Line("settle")
-_SUBSCRIBE = Line("SubscribeMissionStatus", {})
+_SETTLE = ScriptStep("settle")
+_SUBSCRIBE = ScriptStep("SubscribeMissionStatus", {})
 
 
-def drive(event: str, **fields: JSON) -> tuple[Line, ...]:
+def drive(event: str, **fields: JSON) -> tuple[ScriptStep, ...]:
     """Something happens, and all that it causes."""
-    return (Line("drive", {"event": event, **fields}), _SETTLE)
+    return (ScriptStep("drive", {"event": event, **fields}), _SETTLE)
 
 
-def call(method: str, params: JSON = None) -> tuple[Line, ...]:
+def call(method: str, params: JSON = None) -> tuple[ScriptStep, ...]:
     """A call, and all that it causes."""
-    return (Line(method, params or {}), _SETTLE)
+    return (ScriptStep(method, params or {}), _SETTLE)
 
 
-def commanded(mission: int, command: str) -> tuple[Line, ...]:
+def commanded(mission: int, command: str) -> tuple[ScriptStep, ...]:
     """A command to the how-many-th mission that was created, from 0."""
     params = {"missionCommand": {"missionId": ANY_NAME, "command": command}}
-    return (Line("UpdateMission", params, ((0, mission),)), _SETTLE)
+    return (ScriptStep("UpdateMission", params, ((0, mission),)), _SETTLE)
 
 
 _SINGLE: JSON = {"mission": base({"destinationId": TABLES[0]})}
@@ -43,14 +43,14 @@ _BEGUN = (_SUBSCRIBE, *call("CreateMission", _several("deliveryMission")))
 CREATED = call("CreateMission", _SINGLE)
 APPENDED = call("AppendMission", _SINGLE)
 
-_ALIVE: tuple[tuple[Line, ...], ...] = (
+_ALIVE: tuple[tuple[ScriptStep, ...], ...] = (
     _BEGUN,
     (*_BEGUN, *drive("goalReached")),
     (*_BEGUN, *commanded(0, PAUSE)),
 )
 """Ways to a first mission that has not ended."""
 
-_ENDED: tuple[tuple[Line, ...], ...] = (
+_ENDED: tuple[tuple[ScriptStep, ...], ...] = (
     (*_BEGUN, *drive("missionSucceeded")),
     (*_BEGUN, *drive("missionFailed")),
     (*_BEGUN, *commanded(0, CANCEL)),
@@ -59,7 +59,7 @@ _ENDED: tuple[tuple[Line, ...], ...] = (
 """Ways to a first mission that has ended."""
 
 
-def _commands() -> Iterator[tuple[Line, ...]]:
+def _commands() -> Iterator[tuple[ScriptStep, ...]]:
     for way in _ALIVE:
         for command in COMMANDS:
             yield (*way, *commanded(0, command), *drive("goalReached"))
@@ -71,7 +71,7 @@ def _commands() -> Iterator[tuple[Line, ...]]:
             yield (*way, *call("CreateMission", _SINGLE), *commanded(0, command), *drive("goalReached"))
 
 
-def _patrols() -> Iterator[tuple[Line, ...]]:
+def _patrols() -> Iterator[tuple[ScriptStep, ...]]:
     """A patrol goes round until it is told otherwise, and what is appended waits for that."""
     for which in ("deliveryPatrolMission", "bussingPatrolMission"):
         begun = (_SUBSCRIBE, *call("CreateMission", _several(which)))
@@ -82,7 +82,7 @@ def _patrols() -> Iterator[tuple[Line, ...]]:
             yield (*begun, *round_once, *commanded(0, command), *drive("goalReached"), *call("SkipGoal"))
 
 
-def _choices() -> Iterator[tuple[Line, ...]]:
+def _choices() -> Iterator[tuple[ScriptStep, ...]]:
     """Which goal is taken where some are not free: at the start, after a skip, and when that changes on the way."""
     for taken in (["table-1"], ["table-2"], ["table-1", "table-2"]):
         occupied = drive("world", occupied=taken)
@@ -92,7 +92,7 @@ def _choices() -> Iterator[tuple[Line, ...]]:
         yield (_SUBSCRIBE, *behind, *occupied, *drive("missionSucceeded"), *call("SkipGoal"))
 
 
-def _again() -> Iterator[tuple[Line, ...]]:
+def _again() -> Iterator[tuple[ScriptStep, ...]]:
     """What was done once is done once more: pauses, skips, and calls that fail on the way."""
     four = of_family("servi", "deliveryMission", *TABLES, TABLES[0])
     begun = (_SUBSCRIBE, *call("CreateMission", {"mission": four}))
@@ -109,7 +109,7 @@ def _again() -> Iterator[tuple[Line, ...]]:
         yield (_SUBSCRIBE, *fault, *call("CreateMissionBatch", batch), *reached, *reached)
 
 
-def _impossible() -> Iterator[tuple[Line, ...]]:
+def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
     """Missions that should have been refused are followed to their end, if they were not."""
     foreign = of_family("carti", "traverseMission", *TABLES)
     nowhere = of_family("servi", "deliveryMission", *TABLES, "nowhere")

@@ -61,7 +61,7 @@ from missionfsm.bear.mission.stream import (
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, Waiver, promise
 from missionfsm.kernel.spec import (
     Abstraction,
@@ -347,7 +347,7 @@ def _shape(robot: Robot) -> tuple[object, ...]:
     return (at, min(len(robot.pending), 2), bool(robot.done), robot.halted, robot.fresh, robot.fault, robot.world)
 
 
-def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int = ANYTHING) -> Spec:
+def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int = UNCONSTRAINED) -> Spec:
     """The system, with other operations if some rule is to be tried without or with another condition.
 
     Calls have no outcomes that contradict what is assumed.

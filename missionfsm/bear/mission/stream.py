@@ -48,7 +48,7 @@ from missionfsm.bear.wire.messages import (
     ServiType,
     State,
 )
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
@@ -185,9 +185,9 @@ class _WrongError(Exception):
         self.mismatch = Mismatch(rule.id, says)
 
 
-def matches(view: Listing, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch:
+def matches(view: Listing, content: Seen | Malformed) -> tuple[Match, ...] | Mismatch:
     """The ways in which a message shows a listing, or the first thing that is wrong with it."""
-    if isinstance(content, Garbled):
+    if isinstance(content, Malformed):
         return Mismatch(WELL_FORMED.id, content.says)
     try:
         if not view.missions and content.states.missions:
@@ -302,9 +302,9 @@ TYPE_CHANGED, GOALS_CHANGED = "type changed", "goals changed"
 
 
 @functools.lru_cache(maxsize=10_000)
-def lasting(content: Seen | Garbled) -> tuple[tuple[tuple[str, Hashable], ...], ...]:
+def lasting(content: Seen | Malformed) -> tuple[tuple[tuple[str, Hashable], ...], ...]:
     """A mission keeps its type and its goals as long as it is listed, also where nothing says which they are."""
-    if isinstance(content, Garbled) or not all(content.named):
+    if isinstance(content, Malformed) or not all(content.named):
         return ()
     return tuple(
         ((TYPE_CHANGED, _shown_type(one)), (GOALS_CHANGED, tuple(map(_rounded, one.goals))))

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_
 from missionfsm.bear.mission.scripts import SCRIPTS
 from missionfsm.bear.mission.shapes import shapes
 from missionfsm.bear.mission.spec import SPEC
-from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Naming, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Input, Naming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -116,49 +116,49 @@ _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
 )
 
 
-def _updates() -> Iterator[Prompt]:
+def _updates() -> Iterator[Input]:
     for command in COMMANDS:
-        yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
-    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
-    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
-    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_DANCE"}})
-    yield Prompt("UpdateMission", {"missionCommand": {"command": "COMMAND_CANCEL"}})
-    yield Prompt("UpdateMission", {})
-    yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_PAUSE"}, "x": 1})
+        yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
+    yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
+    yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
+    yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_DANCE"}})
+    yield Input("UpdateMission", {"missionCommand": {"command": "COMMAND_CANCEL"}})
+    yield Input("UpdateMission", {})
+    yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_PAUSE"}, "x": 1})
 
 
 def _wrapped(mission: JSON) -> JSON:
     return {} if mission is None else {"mission": mission}
 
 
-def _prompts(family: str, bounds: Bounds) -> Iterator[Prompt]:
+def _prompts(family: str, bounds: Bounds) -> Iterator[Input]:
     good = tuple(_missions(family, bounds.get("goals")))
     bad = (*_DEFECTIVE, *_FOREIGN[family], *_odd(family))
     for method in ("CreateMission", "AppendMission"):
-        yield from (Prompt(method, _wrapped(mission)) for mission in (*good, *bad))
-        yield Prompt(method, {"mission": good[0], "urgency": "high"})
+        yield from (Input(method, _wrapped(mission)) for mission in (*good, *bad))
+        yield Input(method, {"mission": good[0], "urgency": "high"})
     for method in ("CreateMissionBatch", "AppendMissionBatch"):
         for size in range(1, bounds.get("batch") + 1):
             for first in range(0, len(good), 2):
                 batch = [_wrapped(good[(first + index) % len(good)]) for index in range(size)]
-                yield Prompt(method, {"missions": batch})
-        yield from (Prompt(method, {"missions": [_wrapped(good[0]), _wrapped(mission)]}) for mission in bad)
+                yield Input(method, {"missions": batch})
+        yield from (Input(method, {"missions": [_wrapped(good[0]), _wrapped(mission)]}) for mission in bad)
         for wrong in (_DEFECTIVE[5], _FOREIGN[family][0]):
-            yield Prompt(method, {"missions": [_wrapped(wrong), _wrapped(good[0])]})
-            yield Prompt(method, {"missions": [*map(_wrapped, good[:3]), _wrapped(wrong)]})
-        yield Prompt(method, {"missions": []})
-        yield Prompt(method, {})
-        yield Prompt(method, {"missions": [good[0]]})
+            yield Input(method, {"missions": [_wrapped(wrong), _wrapped(good[0])]})
+            yield Input(method, {"missions": [*map(_wrapped, good[:3]), _wrapped(wrong)]})
+        yield Input(method, {"missions": []})
+        yield Input(method, {})
+        yield Input(method, {"missions": [good[0]]})
     for workflow in (*_workflows(family, bounds.get("goals")), *_DEFECTIVE_WORKFLOWS):
-        yield Prompt("CreateMissionWorkflow", {} if workflow is None else {"missionWorkflow": workflow})
-    yield Prompt("CreateMissionWorkflow", {"missionWorkflow": _DEFECTIVE_WORKFLOWS[-1], "urgency": "high"})
+        yield Input("CreateMissionWorkflow", {} if workflow is None else {"missionWorkflow": workflow})
+    yield Input("CreateMissionWorkflow", {"missionWorkflow": _DEFECTIVE_WORKFLOWS[-1], "urgency": "high"})
     yield from _updates()
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
-        yield Prompt(method, {})
-        yield Prompt(method, {"x": 1})
+        yield Input(method, {})
+        yield Input(method, {"x": 1})
 
 
-def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
+def _plain(family: str, bounds: Bounds) -> Iterator[Input]:
     goals = _tables(bounds.get("goals"))
     kind = {"base": auto, "servi": None, "carti": None}[family]
     several = (
@@ -172,24 +172,24 @@ def _plain(family: str, bounds: Bounds) -> Iterator[Prompt]:
         else []
     )
     for mission in (base({"destinationId": TABLES[0]}), several, *patrol):
-        yield Prompt("CreateMission", {"mission": mission})
-        yield Prompt("AppendMission", {"mission": mission})
+        yield Input("CreateMission", {"mission": mission})
+        yield Input("AppendMission", {"mission": mission})
     if bounds.get("batch") > 1:
         batch = [
             {"mission": several},
             *({"mission": base({"destinationId": TABLES[0]})} for _ in range(bounds.get("batch") - 1)),
         ]
-        yield Prompt("CreateMissionBatch", {"missions": batch})
-        yield Prompt("AppendMissionBatch", {"missions": batch})
+        yield Input("CreateMissionBatch", {"missions": batch})
+        yield Input("AppendMissionBatch", {"missions": batch})
     if family != "base":
         name = "delivery" if family == "servi" else "traverse"
-        yield Prompt(
+        yield Input(
             "CreateMissionWorkflow", {"missionWorkflow": {f"{family}Workflow": {name: {"goals": goals_at(*goals)}}}}
         )
     for command in COMMANDS:
-        yield Prompt("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
+        yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": command}})
     for method in ("ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"):
-        yield Prompt(method, {})
+        yield Input(method, {})
 
 
 _DRIVES: tuple[JSON, ...] = (
@@ -230,10 +230,10 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     """What is worth trying on a robot in a world."""
     family = (world or {}).get("family", "servi")
     return Alphabet(
-        prompts=tuple(_prompts(family, bounds)),
-        plain=tuple(_plain(family, bounds)),
+        inputs=tuple(_prompts(family, bounds)),
+        core_inputs=tuple(_plain(family, bounds)),
         drives=(*_DRIVES, *_MAPS[: bounds.get("maps", 0)]),
-        plain_drives=_DRIVES[:3],
+        core_drives=_DRIVES[:3],
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
         scripts=SCRIPTS,
@@ -247,8 +247,8 @@ SYSTEM = System(
     CODEC,
     alphabet,
     NAMING,
-    bends=BENDS,
-    twists=TWISTS,
+    message_mutations=BENDS,
+    step_mutations=TWISTS,
     reaching=REACHING,
     sketches=SKETCHES,
     shapes=shapes,

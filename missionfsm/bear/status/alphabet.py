@@ -28,7 +28,7 @@ from missionfsm.bear.status.samples import (
 )
 from missionfsm.bear.status.scripts import scripts
 from missionfsm.bear.status.state import GET, Endpoint
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
 
 
@@ -171,14 +171,14 @@ def _defective_gets(names: _Names) -> Iterator[JSON]:
     yield from ({"robotId": one, "mode": "fast"} for one in (*names.own[:1], *names.others[:1]))
 
 
-def _prompts(names: _Names) -> Iterator[Prompt]:
+def _prompts(names: _Names) -> Iterator[Input]:
     for robot in names.own[:4]:
-        yield from (Prompt(GET, {"robotId": robot}) for _ in range(3))
-    yield from (Prompt(GET, params) for params in _defective_gets(names))
+        yield from (Input(GET, {"robotId": robot}) for _ in range(3))
+    yield from (Input(GET, params) for params in _defective_gets(names))
     for endpoint in Endpoint:
         # What works is worth more tries than what does not.
-        yield from (Prompt(endpoint.value, params) for _ in range(6) for params in _selections(names))
-        yield from (Prompt(endpoint.value, params) for params in _defective(names))
+        yield from (Input(endpoint.value, params) for _ in range(6) for params in _selections(names))
+        yield from (Input(endpoint.value, params) for params in _defective(names))
 
 
 def _drives(names: _Names) -> Iterator[JSON]:
@@ -204,23 +204,23 @@ def _plain_drives(names: _Names) -> Iterator[JSON]:
     yield {"event": "fault", "status": "INTERNAL"}
 
 
-def _plain(names: _Names) -> Iterator[Prompt]:
+def _plain(names: _Names) -> Iterator[Input]:
     """For exploration: one of every kind of call; but for an armed fault none changes the fleet."""
-    yield from (Prompt(GET, {"robotId": robot}) for robot in names.own[:1])
-    yield from (Prompt(GET, params) for params in _defective_gets(names))
+    yield from (Input(GET, {"robotId": robot}) for robot in names.own[:1])
+    yield from (Input(GET, params) for params in _defective_gets(names))
     for endpoint in Endpoint:
-        yield from (Prompt(endpoint.value, by_ids(robot)) for robot in names.own[:1])
-        yield from (Prompt(endpoint.value, params) for params in _defective(names))
+        yield from (Input(endpoint.value, by_ids(robot)) for robot in names.own[:1])
+        yield from (Input(endpoint.value, params) for params in _defective(names))
 
 
 def alphabet(world: JSON, _: Bounds) -> Alphabet:
     """What is worth trying on the fleet of a world; on the usual one where the world is empty."""
     names = _Names(world or _WORLDS[0])
     return Alphabet(
-        prompts=tuple(_prompts(names)),
-        plain=tuple(_plain(names)),
+        inputs=tuple(_prompts(names)),
+        core_inputs=tuple(_plain(names)),
         drives=tuple(_drives(names)),
-        plain_drives=tuple(_plain_drives(names)),
+        core_drives=tuple(_plain_drives(names)),
         worlds=_WORLDS,
         scripts=tuple(scripts(names.own[:2], next(iter(names.selecting), None))),
     )

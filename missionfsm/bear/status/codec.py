@@ -32,7 +32,7 @@ from missionfsm.bear.status.values import clamped, single
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import EventMetadata, MissionState, Pose
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, unknown_fields, write
-from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import INTERNAL, OK
 from missionfsm.kernel.text import brief
@@ -102,7 +102,7 @@ def write_request(asked: Request, _: tuple[Name, ...] = ()) -> JSON:
 
 
 def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
-    """What a successful result says; one that is not of the documented form is `Garbled`."""
+    """What a successful result says; one that is not of the documented form is `Malformed`."""
     if method in STREAMS:
         stream = result.get("stream") if isinstance(result, dict) else None
         if isinstance(stream, bool) or not isinstance(stream, int):
@@ -114,7 +114,7 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             raise MalformedError(f"{brief(result)} is not an object")
         state, wrapped = read_state(_field(result, "robotState"))
     except MalformedError as error:
-        return Answer(OK, Garbled(str(error))), ()
+        return Answer(OK, Malformed(str(error))), ()
     return Answer(OK, Seen("", Endpoint.ROBOT, state, wrapped)), ()
 
 
@@ -237,12 +237,12 @@ _STRIPPED = "(metadata)"
 """Marks a message whose metadata was there and has been taken out."""
 
 
-def content(rest: JSON) -> Seen | Garbled:
+def content(rest: JSON) -> Seen | Malformed:
     """What a stripped message shows."""
     try:
         return _content(rest)
     except MalformedError as error:
-        return Garbled(str(error))
+        return Malformed(str(error))
 
 
 def _content(rest: JSON) -> Seen:

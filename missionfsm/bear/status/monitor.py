@@ -30,7 +30,7 @@ from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Mismatch
 from missionfsm.kernel.text import brief
 
-REMEMBERED = 50_000
+MAX_REMEMBERED = 50_000
 """How many different payloads a monitor remembers before it starts to remember anew."""
 
 
@@ -148,7 +148,7 @@ class StreamMonitor:
     def _remembered(self, payload: JSON, key: bytes) -> Verdict:
         verdict = self._verdicts.get(key)
         if verdict is None:
-            if len(self._verdicts) >= REMEMBERED:
+            if len(self._verdicts) >= MAX_REMEMBERED:
                 self._verdicts.clear()
             verdict = self._verdicts[key] = _verdict(lambda: self._value(payload))
         return verdict
@@ -171,7 +171,7 @@ class StreamMonitor:
             key = marshal.dumps((part, value), 2)
             verdict = self._verdicts.get(key)
             if verdict is None:
-                if len(self._verdicts) >= REMEMBERED:
+                if len(self._verdicts) >= MAX_REMEMBERED:
                     self._verdicts.clear()
                 state = {part: value}
                 verdict = self._verdicts[key] = _verdict(lambda given=state: read_state(given)[0])  # type: ignore[misc]

@@ -14,7 +14,7 @@ from missionfsm.bear.status.state import GET, MAPS, SINGLES, Endpoint
 from missionfsm.bear.status.stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, Promised
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.spec import Step
-from missionfsm.kernel.system import Bend, Break
+from missionfsm.kernel.system import MessageMutation, StepMutation
 
 Change = Callable[[dict[str, JSON]], None]
 
@@ -101,63 +101,71 @@ def _moving(state: dict[str, JSON]) -> None:
 
 
 BENDS = (
-    Bend(WELL_FORMED.id, "has no metadata", _each(lambda entry: entry.pop("metadata"))),
-    Bend(WELL_FORMED.id, "has a battery in words", _battery(chargePercent="half")),
-    Bend(SEQUENCE.id, "never changes", _numbered(lambda _: 7)),
-    Bend(SEQUENCE.id, "goes down", _numbered(lambda number: 10**6 - number)),
-    Bend(SEQUENCE.id, "is negative", _numbered(lambda number: -number)),
-    Bend(SELECTED.id, "is about another robot", _elsewhere),
-    Bend(UPDATES.id, "shows a battery that nobody reported", _battery(chargePercent=33, state="STATE_CHARGING")),
-    Bend(VALUES["SubscribeBatteryStatus"].id, "is always discharging", _battery(state="STATE_DISCHARGING")),
-    Bend(
+    MessageMutation(WELL_FORMED.id, "has no metadata", _each(lambda entry: entry.pop("metadata"))),
+    MessageMutation(WELL_FORMED.id, "has a battery in words", _battery(chargePercent="half")),
+    MessageMutation(SEQUENCE.id, "never changes", _numbered(lambda _: 7)),
+    MessageMutation(SEQUENCE.id, "goes down", _numbered(lambda number: 10**6 - number)),
+    MessageMutation(SEQUENCE.id, "is negative", _numbered(lambda number: -number)),
+    MessageMutation(SELECTED.id, "is about another robot", _elsewhere),
+    MessageMutation(
+        UPDATES.id, "shows a battery that nobody reported", _battery(chargePercent=33, state="STATE_CHARGING")
+    ),
+    MessageMutation(VALUES["SubscribeBatteryStatus"].id, "is always discharging", _battery(state="STATE_DISCHARGING")),
+    MessageMutation(
         VALUES["SubscribeErrorCodes"].id,
         "shows no errors",
         _of(Endpoint.ERRORS, lambda entry: entry.update(codes=[])),
     ),
-    Bend(VALUES["SubscribeNavigationStatus"].id, "is never stuck", _stuck("STATE_NOT_STUCK", "REASON_UNKNOWN")),
-    Bend(VALUES["SubscribeNetworkStatus"].id, "shows no network", _of(Endpoint.NETWORK, _unnetworked)),
-    Bend(
+    MessageMutation(
+        VALUES["SubscribeNavigationStatus"].id, "is never stuck", _stuck("STATE_NOT_STUCK", "REASON_UNKNOWN")
+    ),
+    MessageMutation(VALUES["SubscribeNetworkStatus"].id, "shows no network", _of(Endpoint.NETWORK, _unnetworked)),
+    MessageMutation(
         VALUES["SubscribeOnlineStatus"].id,
         "is always connected",
         _of(Endpoint.ONLINE, lambda entry: entry.update(connection={"state": "STATE_CONNECTED"})),
     ),
-    Bend(
+    MessageMutation(
         VALUES["SubscribeRobotStatus"].id,
         "leaves out the emergency stop",
         _of(Endpoint.ROBOT, lambda state: state.pop("emergencyStop", None)),
     ),
-    Bend(values.enum_values_are_documented.rule.id, "invents a state", _battery(state=4)),
-    Bend(values.the_charge_is_a_percentage.rule.id, "counts in tenths", _battery(chargePercent=780)),
-    Bend(values.the_link_quality_is_in_its_range.rule.id, "is above 70", _of(Endpoint.NETWORK, _poor)),
-    Bend(
+    MessageMutation(values.enum_values_are_documented.rule.id, "invents a state", _battery(state=4)),
+    MessageMutation(values.the_charge_is_a_percentage.rule.id, "counts in tenths", _battery(chargePercent=780)),
+    MessageMutation(values.the_link_quality_is_in_its_range.rule.id, "is above 70", _of(Endpoint.NETWORK, _poor)),
+    MessageMutation(
         values.only_a_stuck_robot_has_a_reason.rule.id,
         "has a reason while it is free",
         _stuck("STATE_NOT_STUCK", "REASON_PATH_BLOCKED"),
     ),
-    Bend(values.a_stuck_state_is_known.rule.id, "is unknown", _stuck("STATE_UNKNOWN", "REASON_UNKNOWN")),
-    Bend(
+    MessageMutation(values.a_stuck_state_is_known.rule.id, "is unknown", _stuck("STATE_UNKNOWN", "REASON_UNKNOWN")),
+    MessageMutation(
         values.reserved_reasons_are_not_used.rule.id,
         "has a reserved reason",
         _stuck("STATE_STUCK", "REASON_DESTINATION_UNREACHABLE"),
     ),
-    Bend(
+    MessageMutation(
         values.one_type_of_robot_at_a_time.rule.id,
         "has two types",
         _of(Endpoint.ROBOT, lambda state: state.update(serviState={}, cartiState={})),
     ),
-    Bend(values.the_goal_index_is_one_of_the_goals.rule.id, "is past the goals", _of(Endpoint.ROBOT, _sleeping)),
-    Bend(values.a_full_battery_is_charged.rule.id, "is full at once", _battery(chargePercent=50, state="STATE_FULL")),
-    Bend(
+    MessageMutation(
+        values.the_goal_index_is_one_of_the_goals.rule.id, "is past the goals", _of(Endpoint.ROBOT, _sleeping)
+    ),
+    MessageMutation(
+        values.a_full_battery_is_charged.rule.id, "is full at once", _battery(chargePercent=50, state="STATE_FULL")
+    ),
+    MessageMutation(
         values.a_discharging_battery_is_on_no_charger.rule.id,
         "discharges on a wire",
         _battery(state="STATE_DISCHARGING", chargeMethod="CHARGE_METHOD_WIRED"),
     ),
-    Bend(
+    MessageMutation(
         values.a_charging_battery_is_on_a_charger.rule.id,
         "charges on nothing",
         _battery(state="STATE_CHARGING", chargeMethod="CHARGE_METHOD_NONE"),
     ),
-    Bend(values.a_stuck_robot_stands.rule.id, "moves while it is stuck", _of(Endpoint.ROBOT, _moving)),
+    MessageMutation(values.a_stuck_robot_stands.rule.id, "moves while it is stuck", _of(Endpoint.ROBOT, _moving)),
 )
 """Ways to send wrong messages; every promise about messages has one."""
 
@@ -173,5 +181,5 @@ def _without_battery(_: object, step: Step) -> Step:
 
 
 (_ANSWERED,) = OPERATIONS[GET].promises
-TWISTS = (Break(VALUES[GET].id, "leaves out the battery", _without_battery, at=_ANSWERED.id),)
+TWISTS = (StepMutation(VALUES[GET].id, "leaves out the battery", _without_battery, at=_ANSWERED.id),)
 """Ways to take wrong steps that show in no message."""

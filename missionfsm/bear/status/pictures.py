@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.bear.status.state import GET, Endpoint, Fleet, Happening, Request
-from missionfsm.kernel.alphabet import Prompt
+from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Refs, Sketch
 
@@ -17,8 +17,8 @@ _WORLD: JSON = {
 }
 _ASKED = {_OWN: "", _FOREIGN: " of another's robot", "": " of no robot", "nobody": " of an unknown robot"}
 _PROMPTS = (
-    *(Prompt(GET, {"robotId": robot}) for robot in _ASKED),
-    *(Prompt(Endpoint.ROBOT.value, {"selector": {"robotIds": {"ids": [robot]}}}) for robot in _ASKED),
+    *(Input(GET, {"robotId": robot}) for robot in _ASKED),
+    *(Input(Endpoint.ROBOT.value, {"selector": {"robotIds": {"ids": [robot]}}}) for robot in _ASKED),
 )
 _DRIVES: tuple[JSON, ...] = (
     {"event": "report", "robotId": _OWN, "part": "connection", "value": {"state": "STATE_CONNECTED"}},
@@ -47,7 +47,7 @@ SKETCHES = (
         node=_node,
         label=_label,
         within=lambda _: True,
-        prompts=_PROMPTS,
+        inputs=_PROMPTS,
         drives=_DRIVES,
         world=_WORLD,
         contrasts=("AS-07.offline=b", "AS-02.GetRobotStatus=b"),

@@ -22,7 +22,7 @@ from missionfsm.bear.status.samples import (
     report,
 )
 from missionfsm.bear.status.state import Endpoint
-from missionfsm.kernel.alphabet import Line
+from missionfsm.kernel.alphabet import ScriptStep
 from missionfsm.kernel.codec import JSON
 
 
@@ -116,7 +116,7 @@ SHOWN: Mapping[Endpoint, tuple[str, ...]] = {
 """For each subscription the parts that it shows."""
 
 
-def scripts(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[Line, ...]]:
+def scripts(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[ScriptStep, ...]]:
     """Every subscription to several robots, and each field of what it shows changes alone.
 
     Chance seldom watches the second one change, and seldom one field of many.
@@ -129,5 +129,5 @@ def scripts(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[Line, 
     for endpoint, parts in SHOWN.items():
         for selection, part in itertools.product(selections, parts):
             reports = (report(robot, part, value) for robot in robots[::-1] for value in APART[part])
-            changes = ((Line("settle"), Line("drive", one)) for one in reports)
-            yield (Line(endpoint.value, selection), *itertools.chain.from_iterable(changes))
+            changes = ((ScriptStep("settle"), ScriptStep("drive", one)) for one in reports)
+            yield (ScriptStep(endpoint.value, selection), *itertools.chain.from_iterable(changes))

@@ -55,8 +55,8 @@ from missionfsm.bear.status.values import (
     within,
 )
 from missionfsm.bear.wire.messages import MissionState, State
-from missionfsm.kernel.codec import Garbled
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, Assumption, meet
+from missionfsm.kernel.codec import Malformed
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.spec import Match, Mismatch
 from missionfsm.kernel.text import brief
@@ -230,9 +230,9 @@ _EMPTY_PARTS: dict[str, tuple[tuple[str, Any], ...]] = {
 _NO_MISSION = (MissionState(state=State.STATE_DEFAULT), MissionState())
 
 
-def matches(view: View, content: Seen | Garbled) -> tuple[Match, ...] | Mismatch:
+def matches(view: View, content: Seen | Malformed) -> tuple[Match, ...] | Mismatch:
     """The ways in which a message shows a view, or the first thing that is wrong with it."""
-    if isinstance(content, Garbled):
+    if isinstance(content, Malformed):
         return Mismatch(WELL_FORMED.id, content.says)
     if content.robot != view.robot:
         return Mismatch(
@@ -429,7 +429,7 @@ def _whole_shown(view: View, state: RobotState) -> Iterator[tuple[Seen, Assumed]
             yield Seen(view.robot, view.endpoint, evolve(state, **changed), wrapped), (*assumes, *way)
 
 
-def show(view: View, choice: int = ANYTHING) -> Seen:
+def show(view: View, choice: int = UNCONSTRAINED) -> Seen:
     """The message that an implementation with these readings sends."""
     return next(seen for seen, assumes in shows(view) if meet(choice, assumes))
 

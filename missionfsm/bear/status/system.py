@@ -11,6 +11,8 @@ from missionfsm.bear.status.spec import SPEC
 from missionfsm.bear.status.state import SYSTEM as NAME
 from missionfsm.kernel.system import System
 
-SYSTEM = System(NAME, SPEC, CODEC, alphabet, bends=BENDS, twists=TWISTS, sketches=SKETCHES, shapes=shapes)
+SYSTEM = System(
+    NAME, SPEC, CODEC, alphabet, message_mutations=BENDS, step_mutations=TWISTS, sketches=SKETCHES, shapes=shapes
+)
 
 __all__ = ["SYSTEM"]

@@ -8,7 +8,7 @@ from missionfsm.isaac.robot.codec import CODEC
 from missionfsm.isaac.robot.inputs import USABLE, Arrives
 from missionfsm.isaac.shared.line import new_uuid
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Line, as_text, new, pick
+from missionfsm.kernel.alphabet import Alphabet, Bounds, ScriptStep, as_text, new, pick
 from missionfsm.kernel.codec import JSON
 
 _CONFIGS = ('{"goals.path":{"FollowPath":{"tolerance":0.25}}}', "{}", '{"a":{"b":{"c":[1,2.5,null,"é"]}}}')
@@ -69,10 +69,10 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         "line": CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))["line"],
     }
     return Alphabet(
-        prompts=(),
-        plain=(),
+        inputs=(),
+        core_inputs=(),
         drives=tuple(_drives(here.channel, here.status_channel)),
-        plain_drives=(plain, *_EVENTS[:2], _EVENTS[5], *_EVENTS[6:]),
+        core_drives=(plain, *_EVENTS[:2], _EVENTS[5], *_EVENTS[6:]),
         worlds=_WORLDS,
         scripts=_scripts(),
     )
@@ -91,12 +91,12 @@ _SCRIPTS = (
 )
 
 
-def _scripts() -> tuple[tuple[Line, ...], ...]:
+def _scripts() -> tuple[tuple[ScriptStep, ...], ...]:
     """Conversations that go where chance seldom does, in the usual world."""
     words = ("succeeds", "fails", "tick", "1s", "5s", "20s", "drops", "connects")
-    known = {word: Line("drive", event) for word, event in zip(words, _EVENTS, strict=True)}
-    known["settle"] = Line("settle")
-    known["mission"] = Line("drive", _mission({"serialized": "{}"}, new("uuid"), "mission"))
-    known["again"] = Line("drive", _mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
-    known["unusable"] = Line("drive", _mission({"serialized": "no json"}, new("uuid"), "mission"))
+    known = {word: ScriptStep("drive", event) for word, event in zip(words, _EVENTS, strict=True)}
+    known["settle"] = ScriptStep("settle")
+    known["mission"] = ScriptStep("drive", _mission({"serialized": "{}"}, new("uuid"), "mission"))
+    known["again"] = ScriptStep("drive", _mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
+    known["unusable"] = ScriptStep("drive", _mission({"serialized": "no json"}, new("uuid"), "mission"))
     return tuple(tuple(known[word] for word in script.split()) for script in _SCRIPTS)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives, Connection, Passes, Stops
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
-from missionfsm.isaac.shared.line import MICROSECONDS, Said
-from missionfsm.kernel.codec import Garbled
+from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
+from missionfsm.kernel.codec import Malformed
 
 _CONFIGURED = dict(
     zip(
@@ -37,9 +37,9 @@ def describe(value: object) -> str:
         return f"{value.status.upper()} of its mission on {value.channel}"
     if isinstance(value, Introduction):
         return f"the name{'' if value.name is None else f' {value.name!r}'} on {value.channel}"
-    if isinstance(value, Said):
+    if isinstance(value, LineContent):
         return _said(value)
-    if isinstance(value, Garbled):
+    if isinstance(value, Malformed):
         return f"a malformed line: {value.says}"
     if isinstance(value, Arrives):
         return _arrives(value)
@@ -48,7 +48,7 @@ def describe(value: object) -> str:
     return _HAPPENS[value.name] if isinstance(value, Stops | Connection) else str(value)
 
 
-def _said(line: Said) -> str:
+def _said(line: LineContent) -> str:
     if line.kind == "status":
         return f"{line.what.upper()} on {line.channel}"
     return f"the text {line.what!r} on {line.channel}" if line.kind == "text" else f"a mission on {line.channel}"

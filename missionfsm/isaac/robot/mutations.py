@@ -9,17 +9,17 @@ from attrs import evolve
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
-from missionfsm.isaac.shared.mutations import changed, line_bends, mission_type, swapped, unsigned_type
+from missionfsm.isaac.shared.mutations import changed, line_mutations, mission_type, swapped, unsigned_type
 from missionfsm.kernel.spec import Emission, Step
-from missionfsm.kernel.system import Bend, Break, breaks
+from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
 Twist = Callable[[Codelet, Step], Step | None]
 
 BENDS = (
-    Bend(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
-    Bend(rules.TYPES.id, "sends the type id unsigned", changed(unsigned_type)),
-    Bend(rules.TYPES.id, "sends the type id of a mission", changed(mission_type)),
-    *line_bends(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
+    MessageMutation(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
+    MessageMutation(rules.TYPES.id, "sends the type id unsigned", changed(unsigned_type)),
+    MessageMutation(rules.TYPES.id, "sends the type id of a mission", changed(mission_type)),
+    *line_mutations(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
 )
 
 
@@ -117,7 +117,7 @@ TWISTS = (
     *breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
     *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
     *breaks(rules.RUNNING, is_never_reported=_without_running),
-    Break(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
+    StepMutation(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
     *breaks(
         rules.NAMED,
         is_never_said=_without_name,

@@ -8,8 +8,8 @@ from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Report
-from missionfsm.isaac.shared.line import Said
-from missionfsm.kernel.codec import Garbled
+from missionfsm.isaac.shared.line import LineContent
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.spec import Delivery, Match, Mismatch
 
@@ -17,9 +17,9 @@ RULES = {"running": rules.RUNNING, **FINAL}
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}
 
 
-def matches(view: Report | Introduction, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:
+def matches(view: Report | Introduction, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
     """The ways in which a line shows what is owed, or why it does not."""
-    if isinstance(content, Garbled):
+    if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
     if content.unsigned:
         return Mismatch(rules.TYPES.id, "header.proto is the unsigned type id; it is sent as its signed value")
@@ -36,7 +36,7 @@ def matches(view: Report | Introduction, content: Said | Garbled) -> tuple[Match
 
 
 def _introduces(
-    view: Introduction, content: Said, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+    view: Introduction, content: LineContent, assumes: tuple[Assumption, ...], told: tuple[str, ...]
 ) -> tuple[Match, ...] | Mismatch:
     if content.kind != "text":
         return Mismatch(rules.NAMED.id, f"the robot's name is due, not a {content.kind} message")
@@ -48,7 +48,7 @@ def _introduces(
 
 
 def _reports(
-    view: Report, content: Said, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+    view: Report, content: LineContent, assumes: tuple[Assumption, ...], told: tuple[str, ...]
 ) -> tuple[Match, ...] | Mismatch:
     rule = RULES[view.status]
     if content.kind != "status":

@@ -17,7 +17,7 @@ from missionfsm.isaac.server.inputs import (
     STATUS,
     Connects,
     Drops,
-    Heard,
+    Incoming,
     Passes,
     Statuses,
     Submission,
@@ -30,7 +30,7 @@ from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line, encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
-from missionfsm.kernel.codec import JSON, Codec, Garbled, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
@@ -185,17 +185,17 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     if method == "submit":
         handle = result.get("mission") if isinstance(result, dict) else None
         if not _is_handle(handle):
-            return Answer(OK, Garbled(f"mission: {brief(handle)} is no handle")), ()
+            return Answer(OK, Malformed(f"mission: {brief(handle)} is no handle")), ()
         return Answer(OK), (("mission", handle),)
     missions = result.get("missions") if isinstance(result, dict) else None
     if not isinstance(missions, dict) or not all(map(_is_number, missions)):
-        return Answer(OK, Garbled(f"missions: {brief(missions)} is no object from handles to statuses")), ()
+        return Answer(OK, Malformed(f"missions: {brief(missions)} is no object from handles to statuses")), ()
     shown = sorted(((int(key), value) for key, value in missions.items()), key=operator.itemgetter(0))
     names = tuple(("mission", handle) for handle, _ in shown)
     words = tuple(_word(value) for _, value in shown)
     if None in words:
         unknown = shown[words.index(None)][1]
-        return Answer(OK, Garbled(f"{brief(unknown)} is not the name of a status")), names
+        return Answer(OK, Malformed(f"{brief(unknown)} is not the name of a status")), names
     return Answer(OK, words), names
 
 
@@ -261,23 +261,23 @@ def happened(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     return event, names or ((_connection(given),) if isinstance(event, Connects) else ())
 
 
-def hear(line: str) -> tuple[Heard, tuple[Name, ...]]:
+def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     """What a robot's line is to a server."""
     if not line.strip():
-        return Heard(NOISE), ()
+        return Incoming(NOISE), ()
     data = line.encode(errors="surrogatepass")
     message = decode_line(data)[0]
     if isinstance(message, WireError):
-        return Heard(FOREIGN if message.kind == _BUFFERS else BAD), ()
+        return Incoming(FOREIGN if message.kind == _BUFFERS else BAD), ()
     numeric = isinstance(decode_line(data, numbers=False)[0], WireError)
     payload, channel = message.payload, message.header.channel
     if isinstance(payload, TextProto):
-        return Heard(NAME, payload.text, channel, numeric=numeric), ()
+        return Incoming(NAME, payload.text, channel, numeric=numeric), ()
     if not isinstance(payload, MissionStatusProto):
-        return Heard(NOISE, channel=channel, numeric=numeric), ()
+        return Incoming(NOISE, channel=channel, numeric=numeric), ()
     names = tuple(uuid_name(one) for one in (payload.uuid, message.header.uuid) if one is not None)
     named, header = payload.uuid is not None, message.header.uuid is not None
-    return Heard(STATUS, payload.mission_status.value, channel, named, header, numeric), names
+    return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric), names
 
 
 def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - an event of the system
@@ -285,7 +285,7 @@ def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - 
     if isinstance(event, Passes):
         return {"event": "advance", "seconds": event.time / MICROSECONDS}
     number = {"connection": names[0][1]} if names else {}  # type: ignore[index]
-    if not isinstance(event, Heard):
+    if not isinstance(event, Incoming):
         return {"event": event.name, **number}
     payload: JSON = {"text": event.what} if event.kind == NAME else {"missionStatus": event.what}
     uuids = [{"lower": str(Uuid.of(one[1]).lower), "upper": str(Uuid.of(one[1]).upper)} for one in names[1:]]  # type: ignore[index]

@@ -6,7 +6,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.deciding import split, ways
-from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Heard
+from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Incoming
 from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started, untimed
 from missionfsm.isaac.server.readings import (
     AI_07,
@@ -75,7 +75,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
         yield later
 
 
-def hears(move: Move, link: Link, heard: Heard, named: int | None, header: int | None) -> Moves:
+def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: int | None) -> Moves:
     """A line arrives on a connection; `named` and `header` as in `Report`."""
     if heard.numeric:
         taken, refused = split(move, AI_25_TAKEN, "a")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.inputs import Connects, Drops, Heard, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
-from missionfsm.isaac.shared.line import MICROSECONDS, Said
-from missionfsm.kernel.codec import Garbled
+from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
+from missionfsm.kernel.codec import Malformed
 
 
 def describe(value: object) -> str:
@@ -15,13 +15,13 @@ def describe(value: object) -> str:
         return f"{missions}; {', '.join(map(_link, value.links)) or 'no connection'}"
     if isinstance(value, Submission):
         return _submission(value)
-    if isinstance(value, Heard):
+    if isinstance(value, Incoming):
         return _heard(value)
     if isinstance(value, Sends):
         return f"a mission on {value.channel} with {value.config}"
-    if isinstance(value, Said):
+    if isinstance(value, LineContent):
         return f"a {value.kind} on {value.channel}" + (f" with {value.what}" if value.what else "")
-    if isinstance(value, Garbled):
+    if isinstance(value, Malformed):
         return f"a malformed line: {value.says}"
     if isinstance(value, Passes):
         return f"{value.time / MICROSECONDS:g} s pass"
@@ -52,7 +52,7 @@ def _submission(asked: Submission) -> str:
     return f"submit({', '.join(parts)})"
 
 
-def _heard(heard: Heard) -> str:
+def _heard(heard: Incoming) -> str:
     if heard.kind == "name":
         return f"a robot says its name, {heard.what!r}"
     if heard.kind == "status":

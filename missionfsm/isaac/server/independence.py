@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Hashable
 
-from missionfsm.isaac.server.inputs import NAME, Drops, Heard, Submission
+from missionfsm.isaac.server.inputs import NAME, Drops, Incoming, Submission
 from missionfsm.isaac.server.readings import AI_19
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Server, topic
 from missionfsm.kernel.focus import DRIVEN, RETURNED, Focus, Refs
@@ -86,9 +86,9 @@ def concerned(server: Server, focus: Focus) -> tuple[Part, ...]:
         missions |= meant
         if isinstance(what, Submission):
             names.add(what.robot)
-        elif isinstance(what, Heard | Drops):
+        elif isinstance(what, Incoming | Drops):
             slots |= _slots(server, refs)
-            if isinstance(what, Heard) and what.kind == NAME:
+            if isinstance(what, Incoming) and what.kind == NAME:
                 names |= {what.what, what.what.strip()}
     return tuple(
         part

@@ -78,7 +78,7 @@ class Drops:
 
 
 @value(cache_hash=True)
-class Heard:
+class Incoming:
     """A line that a robot sends.
 
     It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`

@@ -8,19 +8,19 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status, topic
-from missionfsm.isaac.shared.mutations import changed, line_bends
+from missionfsm.isaac.shared.mutations import changed, line_mutations
 from missionfsm.kernel.spec import Step
-from missionfsm.kernel.system import Bend, Break, breaks
+from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
 Twist = Callable[[Server, Step], Step | None]
 
 BENDS = (
-    Bend(
+    MessageMutation(
         rules.CONFIG.id,
         "sends another configuration",
         changed(lambda message: message["payload"].update(config={"serialized": '{"other":{}}'})),
     ),
-    *line_bends(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
+    *line_mutations(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
 )
 
 
@@ -89,8 +89,8 @@ def _revived(_: Server, step: Step) -> Step:
 
 TWISTS = (
     *breaks(rules.SENT, is_sent_twice=_sent_twice, is_not_sent=_unsent),
-    Break(rules.UNNAMED.id, "goes to whoever connected first", _sent_elsewhere, at=rules.SENT.id),
-    Break(
+    StepMutation(rules.UNNAMED.id, "goes to whoever connected first", _sent_elsewhere, at=rules.SENT.id),
+    StepMutation(
         rules.UPSTREAM.id,
         "does not wait for them",
         _each(_freed),

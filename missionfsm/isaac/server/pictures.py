@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.inputs import Connects, Drops, Heard, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.readings import AMBIGUITIES
 from missionfsm.isaac.server.state import ENDED, Mission, Sends, Server, Status
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Prompt, as_text, pick
+from missionfsm.kernel.alphabet import Input, as_text, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Refs, Sketch
 
@@ -49,7 +49,9 @@ def _dispatch_node(server: Server) -> str:
     return f"{mission}, the robot is {'there' if there else 'away'}"
 
 
-def _label(server: Server, what: Submission | Statuses | Connects | Drops | Heard | Passes, refs: Refs) -> str | None:
+def _label(
+    server: Server, what: Submission | Statuses | Connects | Drops | Incoming | Passes, refs: Refs
+) -> str | None:
     if isinstance(what, Submission):
         return "submit"
     if isinstance(what, Passes):
@@ -60,9 +62,9 @@ def _label(server: Server, what: Submission | Statuses | Connects | Drops | Hear
         return None
     if isinstance(what, Drops):
         return "its connection drops"
-    if isinstance(what, Heard) and what.kind == "name":
+    if isinstance(what, Incoming) and what.kind == "name":
         return "it says its name"
-    if isinstance(what, Heard) and refs[1] in range(1, 2 * len(server.missions), 2):
+    if isinstance(what, Incoming) and refs[1] in range(1, 2 * len(server.missions), 2):
         return f"it reports {what.what.upper()}"
     return None
 
@@ -89,11 +91,11 @@ def _depend_within(server: Server) -> bool:
     return known and coming and early and (both or not robots)
 
 
-def _depend_label(server: Server, what: Submission | Connects | Heard | Passes, refs: Refs) -> str | None:
+def _depend_label(server: Server, what: Submission | Connects | Incoming | Passes, refs: Refs) -> str | None:
     """What robots report of their own missions; what they say of another's is not heeded."""
     if isinstance(what, Passes):
         return "time passes"
-    if not isinstance(what, Heard) or what.kind == "name":
+    if not isinstance(what, Incoming) or what.kind == "name":
         return None
     link, mission = ((-1 if ref is None else ref) for ref in refs)
     robot = link - 2 * len(server.missions)
@@ -116,7 +118,7 @@ SKETCHES = (
         within=lambda server: len(server.missions) <= 1 and len(server.links) <= 1,
         simple=_simple,
         shows=_shows,
-        prompts=(Prompt("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),),
+        inputs=(Input("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),),
         drives=(_CONNECT, *_names(_ROBOTS[0]), *_REPORTS, _DROP, _PASS),
         contrasts=("AI-15=a", "AI-15=b", "AI-05=b"),
     ),
@@ -128,9 +130,9 @@ SKETCHES = (
         within=_depend_within,
         simple=_simple,
         shows=_shows,
-        prompts=(
-            Prompt("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),
-            Prompt("submit", {"mission": {"robot": _ROBOTS[1], **_TIMES, "upstream": [pick("mission", 0)]}}),
+        inputs=(
+            Input("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),
+            Input("submit", {"mission": {"robot": _ROBOTS[1], **_TIMES, "upstream": [pick("mission", 0)]}}),
         ),
         drives=(_CONNECT, *_names(*_ROBOTS), *_REPORTS, _PASS),
         contrasts=("AI-03=b",),

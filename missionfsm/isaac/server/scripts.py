@@ -7,7 +7,7 @@ second (AI-39 b), and the statuses are asked for.
 from __future__ import annotations
 
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Line, as_text, pick, upcoming
+from missionfsm.kernel.alphabet import ScriptStep, as_text, pick, upcoming
 from missionfsm.kernel.codec import JSON
 
 A, B = "carter-01", "carter-02"
@@ -33,33 +33,35 @@ class _Script:
     """Writes a script down. Missions, connections and identifiers are numbered from 0 in the order of coming."""
 
     def __init__(self) -> None:
-        self.lines: list[Line] = []
+        self.lines: list[ScriptStep] = []
 
     def submit(self, robot: str, *upstream: int, **fields: JSON) -> _Script:
         if upstream:
             fields["upstream"] = [pick("mission", slot) for slot in range(len(upstream))]
         picks = tuple(enumerate(upstream))
-        self.lines.append(Line("submit", {"mission": {"robot": robot, **fields}}, picks))
+        self.lines.append(ScriptStep("submit", {"mission": {"robot": robot, **fields}}, picks))
         return self
 
     def refused(self, *upstream: JSON) -> _Script:
-        self.lines.append(Line("submit", {"mission": {"robot": A, "upstream": list(upstream)}}, ((MISSION, 0),)))
+        self.lines.append(ScriptStep("submit", {"mission": {"robot": A, "upstream": list(upstream)}}, ((MISSION, 0),)))
         return self
 
     def look(self) -> _Script:
-        self.lines += [Line("settle"), Line("statuses", {})]
+        self.lines += [ScriptStep("settle"), ScriptStep("statuses", {})]
         return self
 
     def wait(self, seconds: float = PAUSE) -> _Script:
-        self.lines.append(Line("drive", {"event": "advance", "seconds": seconds}))
+        self.lines.append(ScriptStep("drive", {"event": "advance", "seconds": seconds}))
         return self.look()
 
     def connect(self) -> _Script:
-        self.lines.append(Line("drive", {"event": "connect"}))
+        self.lines.append(ScriptStep("drive", {"event": "connect"}))
         return self
 
     def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> _Script:
-        self.lines.append(Line("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),)))
+        self.lines.append(
+            ScriptStep("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),))
+        )
         return self.look()
 
     def robot(self, link: int, robot: str) -> _Script:
@@ -71,17 +73,17 @@ class _Script:
         uuid = {"uuid": pick("uuid", UUID)}
         head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
         payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
-        self.lines.append(Line("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
+        self.lines.append(ScriptStep("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
         return self.wait()
 
     def raw(self, link: int, text: str) -> _Script:
         params = {"event": "line", "connection": pick("connection", LINK), "line": text}
-        self.lines.append(Line("drive", params, ((LINK, link),)))
+        self.lines.append(ScriptStep("drive", params, ((LINK, link),)))
         return self.look()
 
     def drop(self, link: int) -> _Script:
         params = {"event": "disconnect", "connection": pick("connection", LINK)}
-        self.lines.append(Line("drive", params, ((LINK, link),)))
+        self.lines.append(ScriptStep("drive", params, ((LINK, link),)))
         return self.wait()
 
 

@@ -17,7 +17,7 @@ from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.independence import Part, concerned, parts
-from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Heard, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
 from missionfsm.isaac.server.readings import (
     AI_02,
@@ -48,11 +48,11 @@ from missionfsm.isaac.server.state import (
     topic,
 )
 from missionfsm.isaac.server.time import calmed, passes, settled, unseen
-from missionfsm.isaac.shared.line import Said
-from missionfsm.kernel.codec import Garbled
+from missionfsm.isaac.shared.line import LineContent
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, Assumption
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
 
@@ -185,7 +185,7 @@ def _link_at(server: Server, ref: int | None) -> int | None:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _line(server: Server, heard: Heard, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _line(server: Server, heard: Incoming, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
@@ -319,7 +319,7 @@ def _shown(server: Server) -> Iterator[Step]:
 
 def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
     """Whether an answer is one that is allowed; how a mission is called whose robot was lost is nowhere said."""
-    if isinstance(came, Garbled):
+    if isinstance(came, Malformed):
         return Mismatch(OPERATIONS["statuses"].promises[0].id, came.says)
     if allowed == came:
         return (Match(),)
@@ -357,8 +357,8 @@ def _broken(one: str, other: str) -> str:
     return (OPERATIONS["statuses"].promises[0] if pair == {"queued", "created"} else rules.SENT).id
 
 
-def _matches(view: Sends, content: Said | Garbled) -> tuple[Match, ...] | Mismatch:
-    if isinstance(content, Garbled):
+def _matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
+    if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
     if content.kind != "mission":
         return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
@@ -420,7 +420,7 @@ POSSIBILITIES = tuple(
 def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | None, ...]) -> tuple[str, ...]:
     """The rules that a server breaks that sends a mission now: before its upstreams, to another robot, or twice."""
     link = next((one for one in server.links if topic(one.slot) == at), None)
-    if link is None or not isinstance(content, Said) or any(ref is not None for ref in refs):
+    if link is None or not isinstance(content, LineContent) or any(ref is not None for ref in refs):
         return ()
     alike = [one for one in server.missions if (one.channel, one.config) == (content.channel, content.what)]
     queued = [one for one in alike if one.status is Status.QUEUED]
@@ -434,7 +434,7 @@ _DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 
-def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int = ANYTHING) -> Spec:
+def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int = UNCONSTRAINED) -> Spec:
     """The mission server with the rules of these operations, and with these readings decided from the start."""
     left = tuple(
         (one.id, "".join(letters))

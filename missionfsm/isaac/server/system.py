@@ -14,7 +14,7 @@ from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.shared.profiles import AS_SHIPPED, DOCUMENTED, SHIPPED_SERVER
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt, as_text, new, pick, upcoming
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import to_the_letter
 from missionfsm.kernel.system import System
@@ -25,11 +25,11 @@ _OTHER = pick("mission", 1)
 _STATUSES = ("running", "success", "failure")
 
 
-def _submit(**mission: JSON) -> Prompt:
-    return Prompt("submit", {"mission": mission})
+def _submit(**mission: JSON) -> Input:
+    return Input("submit", {"mission": mission})
 
 
-def _good() -> Iterator[Prompt]:
+def _good() -> Iterator[Input]:
     first, second = ROBOTS
     for robot in ROBOTS:
         yield _submit(robot=robot)
@@ -45,7 +45,7 @@ def _good() -> Iterator[Prompt]:
     yield _submit(robot=first, channel="mission", status_channel="mission_status", start_timeout=5.0)
 
 
-def _odd() -> Iterator[Prompt]:
+def _odd() -> Iterator[Input]:
     robot = ROBOTS[0]
     yield _submit()
     yield _submit(robot=None)
@@ -73,8 +73,8 @@ def _odd() -> Iterator[Prompt]:
     yield _submit(robot=robot, channel=3)
     yield _submit(robot=robot, channel="")
     yield _submit(robot=robot, priority=3)
-    yield Prompt("submit", {"mission": "carter"})
-    yield Prompt("submit", {})
+    yield Input("submit", {"mission": "carter"})
+    yield Input("submit", {})
 
 
 def _line(
@@ -145,14 +145,14 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
     channel = (world or {}).get("nameChannel", "name")
     good = tuple(_good())
     return Alphabet(
-        prompts=(*good, *good, *good, *_odd(), Prompt("statuses", {})),
-        plain=(
+        inputs=(*good, *good, *good, *_odd(), Input("statuses", {})),
+        core_inputs=(
             _submit(robot=ROBOTS[0]),
             _submit(robot=ROBOTS[0], upstream=[_MISSION]),
-            Prompt("statuses", {}),
+            Input("statuses", {}),
         ),
         drives=tuple(_drives(channel)),
-        plain_drives=(
+        core_drives=(
             {"event": "connect"},
             {"event": "disconnect", "connection": pick("connection", 0)},
             _says(ROBOTS[0], channel),
@@ -160,7 +160,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
             _EVERY_CLOCK,
         ),
         worlds=({}, {"nameChannel": "who"}),
-        look=Prompt("statuses", {}),
+        look=Input("statuses", {}),
         scripts=SCRIPTS,
     )
 
@@ -173,8 +173,8 @@ SYSTEM = System(
     CODEC,
     alphabet,
     NAMING,
-    bends=BENDS,
-    twists=TWISTS,
+    message_mutations=BENDS,
+    step_mutations=TWISTS,
     sketches=SKETCHES,
     plans=PLANS,
     shapes=shapes,

@@ -14,7 +14,7 @@ from attrs import astuple, frozen
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line
 from missionfsm.isaac.wire.messages import Message, MissionProto, MissionStatusProto, TextProto, Uuid
-from missionfsm.kernel.codec import JSON, Garbled
+from missionfsm.kernel.codec import JSON, Malformed
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import Document
 
@@ -27,7 +27,7 @@ _HEADER_INTEGERS = ("pubtime", "acqtime", "proto")
 
 
 @frozen(cache_hash=True)
-class Said:
+class LineContent:
     """One message, without its mission's identifier and its times.
 
     Attributes:
@@ -94,18 +94,18 @@ def _plain(value: Any) -> Any:  # noqa: ANN401 - JSON
     return value
 
 
-def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], Said | Garbled]:
+def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], LineContent | Malformed]:
     """The names in a line (the payload's identifier, then if `header` is asked for the header's), and the rest."""
     if not isinstance(line, str):
-        return (), Garbled(f"a line is text, not {strictjson.shown(line)}")
+        return (), Malformed(f"a line is text, not {strictjson.shown(line)}")
     if "\n" in line.removesuffix("\n"):
-        return (), Garbled("the line holds newlines, which separate messages")
+        return (), Malformed("the line holds newlines, which separate messages")
     found = decode_line(line.removesuffix("\n").removesuffix("\r").encode(errors="surrogatepass"))
     if not found:
-        return (), Garbled("the line is empty")
+        return (), Malformed("the line is empty")
     first = found[0]
     if isinstance(first, WireError):
-        return (), Garbled(f"{first.path}: {first.problem}" if first.path else first.problem)
+        return (), Malformed(f"{first.path}: {first.problem}" if first.path else first.problem)
     raw = json.loads(line)
     return _named(first, raw, header=header)
 
@@ -119,14 +119,14 @@ def stamp(line: object) -> int | None:
         return None
 
 
-def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], Said | Garbled]:
+def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], LineContent | Malformed]:
     payload = message.payload
     own = message.header.uuid if message.header.uuid is not None and message.header.uuid.value else None
     borrowed = own is not None and not isinstance(payload, TextProto) and own == payload.uuid
     marks = (_bare(raw), own is not None, borrowed, _unsigned(raw["header"].get("proto")))
     channel = message.header.channel
     if isinstance(payload, TextProto):
-        return (), Said("text", channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
+        return (), LineContent("text", channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
     names: list[Name] = []
     named = payload.uuid is not None and payload.uuid.value != 0
     if named and payload.uuid is not None:
@@ -136,18 +136,18 @@ def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ..
         names.append(uuid_name(message.header.uuid))
     if isinstance(payload, MissionProto):
         if raw["payload"].get("config") is None:
-            return tuple(names), Garbled("payload.config is missing: a MissionProto carries its configuration")
+            return tuple(names), Malformed("payload.config is missing: a MissionProto carries its configuration")
         what = canonical(payload.config)
         if what is None:
-            return tuple(names), Garbled("the configuration is no JSON object")
+            return tuple(names), Malformed("the configuration is no JSON object")
         form = "text" if isinstance((raw["payload"].get("config") or {}).get("serialized"), str) else "object"
-        return tuple(names), Said("mission", channel, what, form, named, header_named, *marks)
+        return tuple(names), LineContent("mission", channel, what, form, named, header_named, *marks)
     assert isinstance(payload, MissionStatusProto)  # noqa: S101 - the only kind that is left
     written = raw["payload"].get("missionStatus")
     form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
     if form == "upper" and written != written.upper():
-        return tuple(names), Garbled(f"payload.missionStatus is written {strictjson.shown(written)}")
-    return tuple(names), Said("status", channel, payload.mission_status.value, form, named, header_named, *marks)
+        return tuple(names), Malformed(f"payload.missionStatus is written {strictjson.shown(written)}")
+    return tuple(names), LineContent("status", channel, payload.mission_status.value, form, named, header_named, *marks)
 
 
 def _unsigned(proto: JSON) -> bool:
@@ -165,16 +165,16 @@ def _bare(raw: JSON) -> tuple[str, ...]:
     return tuple(found)
 
 
-def to_json(said: Said | Garbled) -> JSON:
+def to_json(said: LineContent | Malformed) -> JSON:
     """What is left of a line once its names are apart, as JSON; `from_json` undoes it."""
-    if isinstance(said, Garbled):
+    if isinstance(said, Malformed):
         return {"garbled": said.says}
     return [*astuple(said)]
 
 
-def from_json(rest: JSON) -> Said | Garbled:
+def from_json(rest: JSON) -> LineContent | Malformed:
     """What `to_json` was made of."""
     if isinstance(rest, dict):
-        return Garbled(rest["garbled"])
+        return Malformed(rest["garbled"])
     kind, channel, what, form, named, header_named, bare, *marks = rest
-    return Said(kind, channel, what, form, named, header_named, tuple(bare), *marks)
+    return LineContent(kind, channel, what, form, named, header_named, tuple(bare), *marks)

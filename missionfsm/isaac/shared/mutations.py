@@ -8,7 +8,7 @@ from collections.abc import Callable
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed, unsigned
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import Bend
+from missionfsm.kernel.system import MessageMutation
 
 
 def changed(change: Callable[[JSON], object]) -> Callable[[JSON], JSON]:
@@ -43,17 +43,23 @@ def mission_type(message: JSON) -> None:
     message["header"].update(proto=str(signed(TYPE_IDS[MissionProto])))
 
 
-def line_bends(envelope: str, integers: str, channel: str) -> tuple[Bend, ...]:
+def line_mutations(envelope: str, integers: str, channel: str) -> tuple[MessageMutation, ...]:
     """Wrong lines, for the rules about the envelope, about integers and about the channel of messages."""
     return (
-        Bend(envelope, "sends the payload alone", lambda line: strictjson.compact(json.loads(line)["payload"])),
-        Bend(envelope, "sends one message on several lines", lambda line: json.dumps(json.loads(line), indent=1)),
-        Bend(envelope, "sends half a line", lambda line: line[: len(line) // 2]),
-        Bend(integers, "writes the mission's identifier in numbers", changed(_bare_uuid)),
-        Bend(
+        MessageMutation(
+            envelope, "sends the payload alone", lambda line: strictjson.compact(json.loads(line)["payload"])
+        ),
+        MessageMutation(
+            envelope, "sends one message on several lines", lambda line: json.dumps(json.loads(line), indent=1)
+        ),
+        MessageMutation(envelope, "sends half a line", lambda line: line[: len(line) // 2]),
+        MessageMutation(integers, "writes the mission's identifier in numbers", changed(_bare_uuid)),
+        MessageMutation(
             integers,
             "writes the time as a number",
             changed(lambda message: message["header"].update(pubtime=int(message["header"]["pubtime"]))),
         ),
-        Bend(channel, "sends on another channel", changed(lambda one: one["header"].update(channel="elsewhere"))),
+        MessageMutation(
+            channel, "sends on another channel", changed(lambda one: one["header"].update(channel="elsewhere"))
+        ),
     )

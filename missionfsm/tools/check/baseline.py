@@ -10,7 +10,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 
-class Expected:
+class Baseline:
     """Rules that an implementation is known to break, and how often it was seen to.
 
     Args:
@@ -33,7 +33,7 @@ class Expected:
         return tuple(rule for rule, times in self.met.items() if not times)
 
 
-def excused(verdict: Verdict, known: Expected) -> Verdict:
+def excused(verdict: Verdict, known: Baseline) -> Verdict:
     """The verdict on something in which violations may be known: one whose violation is known is no bad one."""
     if verdict.violation is None or not known(verdict.violation):
         return verdict

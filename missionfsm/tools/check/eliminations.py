@@ -20,7 +20,7 @@ from missionfsm.tools.check.phrases import described, event_words
 
 
 @frozen(eq=False)
-class Ruling:
+class Elimination:
     """The event that ruled a reading out, and the request that it answers where it is an answer.
 
     `at` is how many events that ruled something out came before it in its conversation.
@@ -44,7 +44,7 @@ class Ruling:
         return tuple(rule.id for rule in operation.refusals if rule.code == self.event.answer.code)
 
 
-class Rulings:
+class Eliminations:
     """The readings that one conversation has ruled out so far, each with the event that did it.
 
     Attributes:
@@ -54,7 +54,7 @@ class Rulings:
 
     def __init__(self, belief: Belief | Parted) -> None:
         self.seen: set[Node] = {belief.node}
-        self.found: dict[tuple[str, str], Ruling] = {}
+        self.found: dict[tuple[str, str], Elimination] = {}
         self._belief = belief
         self._left = _left(belief.node)
 
@@ -75,7 +75,7 @@ class Rulings:
         self._left &= left
         spec = self._belief.spec
         request = asked if isinstance(event, Returned) else None
-        ruling = Ruling(spec, event, request, len(self.found))
+        ruling = Elimination(spec, event, request, len(self.found))
         for ambiguity in spec.ambiguities:
             for letter in ambiguity.possible(gone & ambiguity.group):
                 self.found[ambiguity.id, letter] = ruling
@@ -94,7 +94,7 @@ def _left(node: Node) -> int:
 
 
 def by_ambiguity(
-    ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Ruling]
+    ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Elimination]
 ) -> dict[str, dict[str, str]]:
     """Ambiguity id to letter to the event that ruled it out, in words, in the order of the ambiguities."""
     told = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Mismatch, Spec
@@ -15,7 +15,7 @@ from missionfsm.tools.check.nearest import CODE, Candidate, Circumstances, Neare
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 
-MOST = 8
+MAX_ALTERNATIVES = 8
 """How many alternatives a person is shown."""
 
 ACCUSED = 3
@@ -63,7 +63,8 @@ def _allowed(spec: Spec, candidates: Iterable[Candidate]) -> tuple[Allowed, ...]
         if one.what and one.allowed and (before is None or len(one.assumes) < len(before.assumes)):
             merged[one.what] = one
     return tuple(
-        Allowed(one.what, rules_in_words(spec, one.rules), one.assumes) for one in list(merged.values())[:MOST]
+        Allowed(one.what, rules_in_words(spec, one.rules), one.assumes)
+        for one in list(merged.values())[:MAX_ALTERNATIVES]
     )
 
 
@@ -159,7 +160,7 @@ def _against_message(nearest: Nearest, event: Received) -> Found:
     notes = [problem.says for one in lightest for problem in one.problems]
     due = [one for one in candidates if not one.passing] or candidates
     notes += _strangers(nearest, event)
-    if isinstance(event.content, Garbled):
+    if isinstance(event.content, Malformed):
         return due, rules, notes[:1]
     return (
         candidates,
@@ -194,7 +195,7 @@ def _still_due(nearest: Nearest) -> Found:
                 rules += delivery.unowed if channel.last or not delivery.first else delivery.first
                 last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
                 notes.append(f"{where} did not show {wanted}{last}")
-        if len(found) > MOST:
+        if len(found) > MAX_ALTERNATIVES:
             break
     return found, rules, notes[:2]
 

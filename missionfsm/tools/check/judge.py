@@ -16,7 +16,7 @@ from missionfsm.oracle.belief import Automaton, Belief, Tally
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
-from missionfsm.tools.check.eliminations import Rulings, by_ambiguity
+from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent
 from missionfsm.tools.check.nearest import Call, Circumstances
@@ -94,7 +94,7 @@ class Judge:
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, BUDGET)
-        self.rulings = Rulings(self.belief)
+        self.rulings = Eliminations(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
         self.quiet = None if settled_after is None else Quiet(settled_after)

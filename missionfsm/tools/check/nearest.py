@@ -14,7 +14,7 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from missionfsm.kernel.codec import Garbled
+from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Name, Received, Returned
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
@@ -22,7 +22,7 @@ from missionfsm.kernel.spec import Delivery, Mismatch, Spec, Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError
-from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 MOST_LOOKED_AT = 200
@@ -60,7 +60,7 @@ class Circumstances:
     """
 
     request: Any = None
-    rulings: Mapping[tuple[str, str], Ruling] = {}
+    rulings: Mapping[tuple[str, str], Elimination] = {}
     recent: tuple[Call, ...] = ()
 
 
@@ -201,7 +201,7 @@ class Nearest:
         return [*problems, *self._names(here, names, given, event.names, unordered=answer.unordered)]
 
     def _shape(self, answer: Answer, given: Answer) -> Problem:
-        if isinstance(given.shape, Garbled):
+        if isinstance(given.shape, Malformed):
             return Problem(f"the result is malformed: {given.shape.says}", (), SHAPE)
         wrong = self.spec.answers(answer.shape, given.shape) if self.spec.answers else None
         if isinstance(wrong, Mismatch):
@@ -272,7 +272,7 @@ class Nearest:
         ways = self.moves.matches(owed, message.content)
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
-            least = SHAPE if ways.near or isinstance(message.content, Garbled) else VALUE
+            least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
             return [Problem(ways.says, (ways.rule,), least + further)]
         found: list[list[Problem]] = []
         for way in ways:

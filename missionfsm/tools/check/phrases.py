@@ -9,14 +9,14 @@ from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Rece
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.text import printable
-from missionfsm.tools.check.verdict import Broken
+from missionfsm.tools.check.verdict import CitedRule
 
 
-def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[Broken, ...]:
+def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[CitedRule, ...]:
     """Rules as a person is told them, each once."""
     known = spec.rules_by_id
     found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
-    return tuple(Broken(rule.id, rule.says, str(rule.cite)) for rule in found)
+    return tuple(CitedRule(rule.id, rule.says, str(rule.cite)) for rule in found)
 
 
 def described(spec: Spec, value: Any) -> str:  # noqa: ANN401 - a request, a view, a state or an event of any system

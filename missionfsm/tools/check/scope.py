@@ -7,14 +7,14 @@ from collections.abc import Iterable, Mapping
 
 from attrs import evolve
 
-from missionfsm.kernel.readings import ANYTHING, Ambiguity, clashes, constrain, meet, unflagged
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, clashes, constrain, meet, unflagged
 from missionfsm.kernel.rules import OK, UNIMPLEMENTED
 from missionfsm.kernel.spec import Spec
 from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, Untested
-from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
-Rulings = Mapping[tuple[str, str], Ruling]
+Eliminations = Mapping[tuple[str, str], Elimination]
 """Ambiguity id and letter to the event that ruled the letter out."""
 
 Answers = Mapping[str, Mapping[str, int]]
@@ -52,7 +52,7 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 
 
 def flagged(
-    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, ways: Iterable[int] = ()
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Eliminations, ways: Iterable[int] = ()
 ) -> tuple[str, ...]:
     """What is explained, and yet departs from the letter of the text or from itself, a line each.
 
@@ -62,7 +62,7 @@ def flagged(
     """
     left = {one.id: readings.get(one.id, tuple(one.readings)) for one in spec.ambiguities}
     departing = [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(left[one.id])]
-    followed = meet(ANYTHING, (one[left[one.id]] for one in spec.ambiguities if left[one.id]))
+    followed = meet(UNCONSTRAINED, (one[left[one.id]] for one in spec.ambiguities if left[one.id]))
     apart = list(clashes(spec.ambiguities, followed))
     least = min(((_departing(spec, way), clashes(spec.ambiguities, way), way) for way in ways), key=_size, default=None)
     if least is not None:
@@ -85,7 +85,7 @@ def _departing(spec: Spec, assumed: int) -> list[Ambiguity]:
     return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(one.possible(assumed))]
 
 
-def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> str:
+def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Eliminations) -> str:
     says = "; or: ".join(ambiguity.readings[letter] for letter in letters)
     event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), rulings)
     where = f" (seen where {event})" if event else ""
@@ -93,7 +93,7 @@ def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings)
 
 
 def _incoherences(
-    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Rulings
+    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Eliminations
 ) -> Iterable[str]:
     """A line for every question that is read differently where it is asked alike, with an event for each side."""
     said: set[str | None] = set()
@@ -108,7 +108,7 @@ def _incoherences(
         yield f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
 
 
-def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Rulings) -> str:
+def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Eliminations) -> str:
     """The event that ruled out the last of some letters, as far as that is known."""
     found = [rulings[ambiguity.id, letter] for letter in letters if (ambiguity.id, letter) in rulings]
     return str(max(found, key=lambda ruling: ruling.at)) if found else ""

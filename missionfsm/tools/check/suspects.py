@@ -15,7 +15,7 @@ from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import described, rules_in_words
 from missionfsm.tools.check.verdict import Violation
 
-MOST = 2
+MAX_SUSPECTS = 2
 """Of how many answers it is told that everything would be explained without one of them; more of them say nothing."""
 
 
@@ -80,7 +80,7 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         return violation
     answered = "return" in violation.history[-1]
     found = [one for one in suspects(system, violation.history, readings) if not answered or one.code != OK]
-    if not found or len(found) > MOST:
+    if not found or len(found) > MAX_SUSPECTS:
         return violation
     notes = tuple(f"without this answer everything is explained: {one.says}" for one in found)
     rules = violation.rules

@@ -30,7 +30,7 @@ class Outcome(enum.Enum):
 
 
 @frozen
-class Broken:
+class CitedRule:
     """A rule in question, as a person is told it."""
 
     id: str
@@ -46,7 +46,7 @@ class Allowed:
     """Something that would have been right in the place of what was observed."""
 
     what: str
-    rules: tuple[Broken, ...] = ()
+    rules: tuple[CitedRule, ...] = ()
     assumes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -77,7 +77,7 @@ class Violation:
         sides: the conversations that contradict one another, where no single one of them is wrong.
     """
 
-    rules: tuple[Broken, ...]
+    rules: tuple[CitedRule, ...]
     observed: str
     expected: tuple[Allowed, ...]
     notes: tuple[str, ...] = ()

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import ANY_NAME, Prompt, pick
+from missionfsm.kernel.alphabet import ANY_NAME, Input, pick
 from missionfsm.kernel.codec import JSON
 
 WRONG_NAME = "no-such-name"
 """A name that nothing has."""
 
 SETTLE = "settle"
-CANCEL = Prompt("cancel", {"stream": pick("stream")})
+CANCEL = Input("cancel", {"stream": pick("stream")})
 """To give up a stream; every system that has streams has it."""
 
 

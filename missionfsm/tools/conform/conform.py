@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.tools.check.baseline import Expected, held_against
+from missionfsm.tools.check.baseline import Baseline, held_against
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.narrate import story
@@ -116,7 +116,7 @@ def conform(  # noqa: PLR0913 - every one has a default
         SubjectError: the adapter failed, and nothing was found before.
         ValueError: `readings` names something that does not exist.
     """
-    known = Expected(expected)
+    known = Baseline(expected)
     plan = plan or Plan(
         examples, tours, examples + tours, steps, FILLS if tours >= TOURS else tours - round(LED * tours)
     )
@@ -165,7 +165,7 @@ def _has_found(run: Run) -> bool:
 
 
 def verdict_of(
-    run: Run, seed: int, known: Expected | None = None, *, advice: bool = True, asks_again: bool = True
+    run: Run, seed: int, known: Baseline | None = None, *, advice: bool = True, asks_again: bool = True
 ) -> Verdict:
     """What a run came to.
 
@@ -174,7 +174,7 @@ def verdict_of(
         advice: see `conform`.
         asks_again: whether the implementation is asked again, to make short what was found.
     """
-    known, ledger = known or Expected(), run.ledger
+    known, ledger = known or Baseline(), run.ledger
     advice = advice and not _has_found(run) and not run.enough()
     outcome, because, violation, followed = Outcome.CONFORMS, "", None, ledger.readings
     exercised = run.narrowing.exercised()
@@ -250,7 +250,7 @@ def _can_be_called(run: Run) -> bool:
     """Whether any call but a subscription succeeds in a fresh instance, or nobody can ask any more what was found."""
     world = run.guide.worlds[0]
     try:
-        for prompt in run.guide.alphabets[0].plain:
+        for prompt in run.guide.alphabets[0].core_inputs:
             if run.enough():
                 return _has_found(run)
             if prompt.method in run.system.codec.streams or prompt.method in run.partner.absent:

@@ -8,12 +8,12 @@ from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import ANYTHING, choose, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, choose, meet
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.verdict import PER, RATE
-from missionfsm.tools.explore.explore import Labels, references
+from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import recognised
 
 BOUNDS = Bounds(2, goals=2, batch=2)
@@ -54,7 +54,7 @@ class Census:
         self.ways: Counter[str] = Counter()
         self.worlds: dict[str, set[int]] = {}
         spec = system.spec
-        self._assumed = meet(ANYTHING, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
+        self._assumed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
         self._shown: dict[Hashable, tuple[str, ...]] = {}
         self._all = system.alphabet({}, BOUNDS).worlds
         for world, params in enumerate(self._all):
@@ -75,8 +75,8 @@ class Census:
     def _look(self, world: int, start: Any, params: Any) -> None:  # noqa: ANN401 - of any system
         spec = self.system.spec
         alphabet = self.system.alphabet(params, BOUNDS)
-        plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
-        everything = Labels.of(self.system, alphabet.prompts, alphabet.drives)
+        plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
+        everything = Labels.of(self.system, alphabet.inputs, alphabet.drives)
         size = spec.size
         situations, found, todo = set[Hashable](), {start}, [start]
         for here in todo:  # grows while it is walked
@@ -96,10 +96,10 @@ class Census:
     def _moves(self, here: Any, labels: Labels) -> Iterator[list[Step]]:  # noqa: ANN401 - a state of any system
         spec = self.system.spec
         for request, free in labels.requests:
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 yield self._possible(spec.outcomes(here, request, refs))
         for event, free in labels.events:
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 yield self._possible(spec.drives[event.name].steps(here, event, refs))
         yield self._possible((*spec.urgent(here), *spec.spontaneous(here)))
 

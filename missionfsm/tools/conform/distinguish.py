@@ -30,8 +30,8 @@ from missionfsm.tools.conform.handshake import AdapterInfo
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shrink import shrink
 from missionfsm.tools.placeholders import fill, ways
-from missionfsm.tools.reference.model import Model, Reply, Snapshot
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.model import Reference, Reply, Snapshot
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 EFFORT = 8_000
 """How many steps of references the search on one ambiguity may take where its experiments are to be tried."""
@@ -149,7 +149,7 @@ class Lab:
 
     def play(self, letter: tuple[str, str], world: JSON, actions: Iterable[Action]) -> Conversation:
         """The conversation with the reference that follows a reading besides what has been decided."""
-        subject = Reference(self.guide.system, {**self.choice, letter[0]: letter[1]})
+        subject = ReferenceSubject(self.guide.system, {**self.choice, letter[0]: letter[1]})
         conversation = Conversation(Partner(self.guide.system, subject, self.info), world, self.automaton)
         for action in actions:
             if self.enough() or not conversation.perform(action):
@@ -165,7 +165,7 @@ class _Search:
         self.system = lab.system
         self.ambiguity = ambiguity
         self.letters = letters
-        self.models = [Model(self.system, {**lab.choice, ambiguity.id: letter}) for letter in letters]
+        self.models = [Reference(self.system, {**lab.choice, ambiguity.id: letter}) for letter in letters]
         self.wanted = set(itertools.permutations(letters, 2))
         self.doubts = dict.fromkeys(letters, 0)
         self.effort = lab.effort
@@ -297,11 +297,11 @@ class _Search:
         self._once.add(once)
         return False
 
-    def _seen_of(self, model: Model, reply: Reply) -> Hashable:
+    def _seen_of(self, model: Reference, reply: Reply) -> Hashable:
         sent = tuple((one.channel, self._text(model, one.view, one.names)) for one in reply.sent)
         return reply.happened, reply.answer, reply.names, sent
 
-    def _text(self, model: Model, view: Any, names: tuple[Name, ...]) -> str:  # noqa: ANN401 - of any system
+    def _text(self, model: Reference, view: Any, names: tuple[Name, ...]) -> str:  # noqa: ANN401 - of any system
         key = (view, names, model.choice)
         text = self._written.get(key)
         if text is None:
@@ -357,7 +357,7 @@ class _Search:
 def _plain(guide: Guide, world: int) -> Iterator[int]:
     """Which of the prepared prompts and drives of a world are those that bring the system on, by identity."""
     alphabet = guide.alphabets[world]
-    wanted = {repr(one.params) for one in alphabet.plain} | {repr(one) for one in alphabet.plain_drives}
+    wanted = {repr(one.params) for one in alphabet.core_inputs} | {repr(one) for one in alphabet.core_drives}
     for calls in guide.calls[world].values():
         yield from (id(call.prompt) for call in calls if repr(call.prompt.params) in wanted)
     for events in guide.events[world].values():

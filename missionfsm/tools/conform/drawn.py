@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.reporting import with_reporter
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from missionfsm.kernel.alphabet import ANY_NAME, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.tools.conform.actions import CANCEL, SETTLE, Bindings, NameRef
@@ -130,7 +130,7 @@ def _stopping() -> Iterator[None]:
 def _call_rule(run: Run, method: str) -> Any:  # noqa: ANN401 - a rule of Hypothesis
     def call(self: Any, data: st.DataObject) -> None:  # noqa: ANN401 - the machine
         alphabet = run.guide.alphabets[self.world]
-        prompts: list[Prompt] = [one for one in alphabet.prompts if one.method == method]
+        prompts: list[Input] = [one for one in alphabet.inputs if one.method == method]
         if not prompts:
             return
         prompt = data.draw(st.sampled_from(prompts))

@@ -14,13 +14,13 @@ from typing import Any
 
 from attrs import frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
 from missionfsm.oracle.explanation import Explanation
-from missionfsm.oracle.successors import Moves
+from missionfsm.oracle.successors import Successors
 from missionfsm.tools.conform.actions import CANCEL, Bindings, NameRef
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.placeholders import fill, is_template, kind_of, slots, ways
@@ -33,7 +33,7 @@ ENOUGH = 6
 _MADE_UP = 1_000_003
 """Serial numbers of names that templates are read with."""
 
-MOST = 120
+MAX_PROPOSALS = 120
 """How many proposals are enough in any case."""
 
 
@@ -65,7 +65,7 @@ class Template:
 class Call:
     """A prompt without stand-ins but perhaps for one name, and what it says."""
 
-    prompt: Prompt
+    prompt: Input
     request: Any
     named: bool
 
@@ -109,7 +109,7 @@ class Guide:
     def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
         """The calls of each operation; those that are the same request in other words only once."""
         found: dict[str, dict[Any, Call]] = {}
-        for prompt in alphabet.prompts:
+        for prompt in alphabet.inputs:
             if is_template(prompt.params):
                 continue
             names, rest = self.system.codec.split(prompt.method, prompt.params)
@@ -162,7 +162,7 @@ class Guide:
             found += self._filled(conversation, here, shape, self.templates[world].get(label, ()))
             if label == CANCEL.method:
                 found += _cancellations(conversation, shape, phase)
-            enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MOST
+            enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MAX_PROPOSALS
             if enough and not rare:
                 break
         if rare:
@@ -282,7 +282,7 @@ def _cancellations(conversation: Conversation, shape: Hashable, phase: Hashable)
         yield Proposal(CANCEL.method, CANCEL.params, None, edge, shape, phase, ((0, ref),))
 
 
-def rested(moves: Moves, here: Explanation) -> Explanation:
+def rested(moves: Successors, here: Explanation) -> Explanation:
     """Where an explanation comes to rest."""
     while step := next((one for one in moves.urgent(here.state) if meet(here.assumed, one.assumes)), None):
         taken = moves.advance(here, step)
@@ -294,7 +294,7 @@ def rested(moves: Moves, here: Explanation) -> Explanation:
 
 def _prepared_templates(system: System, alphabet: Alphabet) -> dict[str, list[Template]]:
     """The prompts and drives with stand-ins, by the name of the operation or the drive."""
-    asked = {repr(one.params): (one.method, one.params) for one in alphabet.prompts if is_template(one.params)}
+    asked = {repr(one.params): (one.method, one.params) for one in alphabet.inputs if is_template(one.params)}
     driven = {repr(one): ("drive", one) for one in alphabet.drives if is_template(one)}
     found: dict[str, list[Template]] = {}
     for method, params in (*asked.values(), *driven.values()):

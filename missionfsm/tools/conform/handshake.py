@@ -12,7 +12,7 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Line
+from missionfsm.kernel.alphabet import Alphabet, Bounds, ScriptStep
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
@@ -127,10 +127,10 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
 
         return evolve(
             whole,
-            prompts=tuple(one for one in whole.prompts if has(one.method, one.params)),
-            plain=tuple(one for one in whole.plain if has(one.method, one.params)),
+            inputs=tuple(one for one in whole.inputs if has(one.method, one.params)),
+            core_inputs=tuple(one for one in whole.core_inputs if has(one.method, one.params)),
             drives=tuple(one for one in whole.drives if one["event"] in drives),
-            plain_drives=tuple(one for one in whole.plain_drives if one["event"] in drives),
+            core_drives=tuple(one for one in whole.core_drives if one["event"] in drives),
             worlds=worlds,
             look=whole.look if whole.look and whole.look.method in methods else None,
             scripts=tuple(script for one in whole.scripts if (script := _possible(one, drives, has))),
@@ -140,7 +140,7 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
     return evolve(system, alphabet=alphabet, codec=evolve(system.codec, methods=methods, streams=streams))
 
 
-def _possible(script: tuple[Line, ...], drives: tuple[str, ...], has: Any) -> tuple[Line, ...]:  # noqa: ANN401 - a function
+def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Any) -> tuple[ScriptStep, ...]:  # noqa: ANN401 - a function
     """A script up to the first thing that an adapter does not have."""
     done = []
     for line in script:

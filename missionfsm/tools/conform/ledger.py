@@ -7,7 +7,7 @@ from collections import Counter
 from attrs import define, field
 
 from missionfsm.kernel.system import System
-from missionfsm.tools.check.eliminations import Ruling
+from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.contradiction import inconsistent
 from missionfsm.tools.conform.conversation import Conversation
@@ -38,7 +38,7 @@ class Ledger:
     oddities: dict[str, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     settled_by: dict[tuple[str, str], Conversation] = field(factory=dict)
-    rulings: dict[tuple[str, str], Ruling] = field(factory=dict)
+    rulings: dict[tuple[str, str], Elimination] = field(factory=dict)
     contradiction: str | None = None
     aside: set[str] = field(factory=set)
     notes: list[str] = field(factory=list)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
-from missionfsm.tools.check.baseline import Expected
+from missionfsm.tools.check.baseline import Baseline
 from missionfsm.tools.check.scope import held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import verdict_of
@@ -45,7 +45,7 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         SubjectError: the implementation failed.
         ValueError: `readings` names something that does not exist.
     """
-    known = Expected(expected)
+    known = Baseline(expected)
     run = Run.of(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
     run.ledger.notes += notes
     if play(run):

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from attrs import define, field
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Prompt
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
@@ -125,9 +125,9 @@ class Run:
             self._alphabets[key] = self.system.alphabet(world, self.bounds)
         return self._alphabets[key]
 
-    def simpler(self, world: JSON, method: str) -> tuple[Prompt, ...]:
+    def simpler(self, world: JSON, method: str) -> tuple[Input, ...]:
         """Plain requests that may stand in for a call."""
-        return tuple(one for one in self.alphabet(world).plain if one.method == method)
+        return tuple(one for one in self.alphabet(world).core_inputs if one.method == method)
 
     # Having conversations.
 

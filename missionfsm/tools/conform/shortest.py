@@ -10,14 +10,14 @@ from collections.abc import Callable, Iterator
 
 from attrs import define, evolve, field
 
-from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Input
 from missionfsm.oracle.belief import Node
 from missionfsm.tools.conform.actions import CANCEL, SETTLE, WRONG_NAME, Action, NameRef
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.shrink import unexplained
 from missionfsm.tools.placeholders import is_template, kind_of, slots, ways
 
-MOST = 3_000
+MAX_TRIED = 3_000
 """How many things are done at most."""
 
 
@@ -44,14 +44,14 @@ def shortest(  # noqa: PLR0913 - the last two have a default
         the shortest; none where nothing was found within these bounds.
     """
     kinds = {action.method for action in found.actions}
-    own = tuple(Prompt(one.method, one.params) for one in found.actions if one.method not in (SETTLE, "drive"))
+    own = tuple(Input(one.method, one.params) for one in found.actions if one.method not in (SETTLE, "drive"))
     events = tuple(one.params for one in found.actions if one.method == "drive")
     like = evolve(
         alphabet,
-        prompts=own,
-        plain=tuple(one for one in alphabet.plain if one.method in kinds),
+        inputs=own,
+        core_inputs=tuple(one for one in alphabet.core_inputs if one.method in kinds),
         drives=events,
-        plain_drives=tuple(one for one in alphabet.plain_drives if one in events),
+        core_drives=tuple(one for one in alphabet.core_drives if one in events),
     )
     return everything(attempt, like, depth, shows=shows, enough=enough)
 
@@ -74,7 +74,7 @@ class _Search:
     alphabet: Alphabet
     shows: Callable[[Conversation], bool]
     enough: Callable[[], bool]
-    left: int = MOST
+    left: int = MAX_TRIED
     seen: set[Node] = field(factory=set)
     serials: Iterator[int] = field(factory=lambda: itertools.count(1))
 
@@ -124,14 +124,14 @@ class _Search:
 
     def _actions(self, here: Conversation) -> Iterator[tuple[Action, bool]]:
         """Everything worth doing here, and whether it brings the system on."""
-        plain = (*self.alphabet.plain, *(Prompt("drive", one) for one in self.alphabet.plain_drives))
-        others = (*self.alphabet.prompts, CANCEL, *(Prompt("drive", one) for one in self.alphabet.drives))
+        plain = (*self.alphabet.core_inputs, *(Input("drive", one) for one in self.alphabet.core_drives))
+        others = (*self.alphabet.inputs, CANCEL, *(Input("drive", one) for one in self.alphabet.drives))
         for prompt in {repr(one): one for one in (*plain, *others)}.values():
             for action in _named(here, prompt, self.alphabet.wrong_names):
                 yield action, prompt in plain
 
 
-def _named(here: Conversation, prompt: Prompt, wrong: tuple[str, ...]) -> Iterator[Action]:
+def _named(here: Conversation, prompt: Input, wrong: tuple[str, ...]) -> Iterator[Action]:
     """A prompt with each of the names that were given, and with one that was not."""
     if is_template(prompt.params):
         wanted = slots(prompt.params)

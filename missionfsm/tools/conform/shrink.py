@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from attrs import define, evolve
 
-from missionfsm.kernel.alphabet import Prompt
+from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.tools.conform.actions import Action
 from missionfsm.tools.conform.conversation import Conversation
@@ -27,7 +27,7 @@ def unexplained(conversation: Conversation) -> bool:
 def shrink(  # noqa: PLR0913 - the last three have a default
     found: Conversation,
     attempt: Attempt,
-    simpler: Callable[[JSON, str], tuple[Prompt, ...]],
+    simpler: Callable[[JSON, str], tuple[Input, ...]],
     usual: JSON,
     shows: Callable[[Conversation], bool] = unexplained,
     *,
@@ -52,7 +52,7 @@ def shrink(  # noqa: PLR0913 - the last three have a default
 class _Shrinker:
     best: Conversation
     attempt: Attempt
-    simpler: Callable[[JSON, str], tuple[Prompt, ...]]
+    simpler: Callable[[JSON, str], tuple[Input, ...]]
     usual: JSON
     shows: Callable[[Conversation], bool]
     keep: Callable[[Conversation], None]

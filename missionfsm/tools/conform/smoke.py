@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 from attrs import define, field, frozen
 
-from missionfsm.kernel.codec import JSON, Garbled, UnreadableError
+from missionfsm.kernel.codec import JSON, Malformed, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, MissingMethodError, Notification, Subject, SubjectError
 from missionfsm.kernel.system import System
@@ -123,7 +123,7 @@ class _Smoke:
             return
         self._try("settle", lambda: self._empty("settle", {}))
         for method in given.codec.methods:
-            prompts = (*alphabet.plain, *alphabet.prompts)
+            prompts = (*alphabet.core_inputs, *alphabet.inputs)
             fitting = (one.params for one in prompts if one.method == method and not is_template(one.params))
             self._try(method, functools.partial(self._call, world, method, next(fitting, {})))
         for name in self.info.drives:
@@ -182,7 +182,7 @@ class _Smoke:
         exchange = self._ask(method, params)
         if exchange.error is None:
             shape = self.system.codec.answer(method, exchange.result)[0].shape
-            if isinstance(shape, Garbled):
+            if isinstance(shape, Malformed):
                 self.faults.append(f"{method}: {brief(exchange.result)} came, which is no answer to it: {shape.says}")
         self._empty("settle", {})
         if exchange.error is None and method in self.system.codec.streams:
@@ -209,7 +209,7 @@ class _Smoke:
     def _wrong(self, message: JSON) -> Iterator[str]:
         for _, _, rest in self.system.codec.strip(message):
             content = self.system.codec.content(rest)
-            if isinstance(content, Garbled):
+            if isinstance(content, Malformed):
                 yield content.says
 
 

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 from attrs import define
 
-from missionfsm.kernel.alphabet import Line
+from missionfsm.kernel.alphabet import ScriptStep
 from missionfsm.tools.conform.actions import WRONG_NAME, NameRef
 from missionfsm.tools.conform.guide import Proposal
 from missionfsm.tools.conform.reach import Reach
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.placeholders import kind_of, slots
 
-Scripts = tuple[tuple[Line, ...], ...]
+Scripts = tuple[tuple[ScriptStep, ...], ...]
 
 SETTLED = 0.6
 """How often a tour waits for everything to settle after a step."""
@@ -53,7 +53,7 @@ def play(run: Run, most: int | None = None) -> bool:
     return True
 
 
-def _follow(run: Run, line: Line) -> bool:
+def _follow(run: Run, line: ScriptStep) -> bool:
     wanted = slots(line.params)
     picks = tuple(_named(run, wanted, line.picks))
     # A name without a kind goes where `ANY_NAME` stands, not into a slot.
@@ -96,7 +96,7 @@ def fill(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
 
 
 def _filled(  # noqa: PLR0913 - what one conversation needs
-    run: Run, reach: Reach, draw: random.Random, world: int, way: tuple[Line, ...], steps: int
+    run: Run, reach: Reach, draw: random.Random, world: int, way: tuple[ScriptStep, ...], steps: int
 ) -> int | None:
     """How much was done where it was done too seldom; None where something cannot be explained."""
     run.start(run.guide.worlds[world])

@@ -15,7 +15,7 @@ from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore.explore import Labels, references
+from missionfsm.tools.explore.explore import Labels, bindings
 
 State = Any
 BY_ITSELF = "by itself"
@@ -80,7 +80,7 @@ class _Explorer:
         self._spec: Spec = system.spec
         self._sketch = sketch
         self._assumed = assumed
-        self._labels = Labels.of(system, sketch.prompts, sketch.drives)
+        self._labels = Labels.of(system, sketch.inputs, sketch.drives)
         self._first = self._spec.initial(system.codec.world(sketch.world))
 
     def quotient(self) -> Quotient:
@@ -119,11 +119,11 @@ class _Explorer:
         spec, label = self._spec, self._sketch.label
         requests, events = self._labels.requests, self._labels.events
         for number, (request, free) in enumerate(requests):
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 for step in self._possible(spec.outcomes(here, request, refs)):
                     yield number, label(here, request, refs), step
         for number, (event, free) in enumerate(events, len(requests)):
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 for step in self._possible(spec.drives[event.name].steps(here, event, refs)):
                     yield number, label(here, event, refs), step
         for step in self._possible(spec.spontaneous(here)):

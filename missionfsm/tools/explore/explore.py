@@ -10,9 +10,9 @@ from typing import Any
 
 from attrs import field, frozen
 
-from missionfsm.kernel.alphabet import ANY_NAME, Bounds, Prompt
+from missionfsm.kernel.alphabet import ANY_NAME, Bounds, Input
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.readings import ANYTHING, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import ONCE_HAD, Invariant, Spec, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.placeholders import fill, slots
@@ -33,7 +33,7 @@ class Labels:
     events: tuple[tuple[Any, Free], ...]
 
     @classmethod
-    def of(cls, system: System, prompts: Iterable[Prompt], drives: Iterable[JSON]) -> Labels:
+    def of(cls, system: System, prompts: Iterable[Input], drives: Iterable[JSON]) -> Labels:
         """The requests of some prompts, each once, and the events of some drives."""
         requests, events = [], []
         for prompt in prompts:
@@ -144,11 +144,11 @@ class Exploration:
 def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
     """Every step from a state: calls with every answer, drives, and what the system does by itself."""
     for request, free in labels.requests:
-        for refs in references(spec, state, free):
+        for refs in bindings(spec, state, free):
             for step in spec.outcomes(state, request, refs):
                 yield Transition(request, step)
     for event, free in labels.events:
-        for refs in references(spec, state, free):
+        for refs in bindings(spec, state, free):
             for step in spec.drives[event.name].steps(state, event, refs):
                 yield Transition(event, step)
     for step in (*spec.urgent(state), *spec.spontaneous(state)):
@@ -160,7 +160,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     start: State,
     labels: Labels,
     most: int,
-    assumed: int = ANYTHING,
+    assumed: int = UNCONSTRAINED,
     *,
     forget_ended: bool = False,
 ) -> Reached:
@@ -252,7 +252,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     bounds: Bounds | None = None,
     *,
     world: JSON = None,
-    assumed: int = ANYTHING,
+    assumed: int = UNCONSTRAINED,
     invariants: tuple[Invariant, ...] | None = None,
     forget_ended: bool = False,
 ) -> Exploration:
@@ -272,7 +272,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     spec = system.spec
     usual = system.alphabet({}, bounds).worlds[0] if world is None else world
     alphabet = system.alphabet(usual, bounds)
-    labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
+    labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
     start = spec.initial(system.codec.world(usual))
     found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
     checked = spec.invariants if invariants is None else invariants
@@ -283,7 +283,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
     groups = Counter(map(spec.abstraction.situation, found))
     representatives = {spec.abstraction.situation(here): here for here in found}
-    everything = Labels.of(system, alphabet.prompts, alphabet.drives)
+    everything = Labels.of(system, alphabet.inputs, alphabet.drives)
     tally = _Tally(spec)
     for situation, here in representatives.items():
         tally.add(here, labels, groups[situation], assumed)
@@ -323,7 +323,7 @@ class _Tally:
 
 
 def firings(
-    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = ANYTHING, settled: Collection[str] = ()
+    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = UNCONSTRAINED, settled: Collection[str] = ()
 ) -> dict[str, tuple[bool, bool]]:
     """For every refusal that is not settled: whether some call in some state meets it, and whether some call does not.
 
@@ -341,7 +341,7 @@ def firings(
             operation = spec.operations[spec.request_operation(request)]
             if all(all(found.get(rule.id, ())) for rule in operation.refusals):
                 continue  # no call of it can add anything
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 outcomes = spec.outcomes(here, request, refs)
                 met = {rule for step in outcomes if meet(assumed, step.assumes) for rule in step.rules}
                 for rule in operation.refusals:
@@ -350,7 +350,7 @@ def firings(
     return {rule: (fires, rests) for rule, (fires, rests) in found.items()}
 
 
-def references(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None, ...]]:
+def bindings(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None, ...]]:
     """Every way in which names can be those of a state, or not any more."""
     positions = (None, *((ONCE_HAD,) if spec.recalls else ()), *range(spec.names(here)))
     return itertools.product(*(positions if one else (None,) for one in free))

@@ -19,8 +19,8 @@ from missionfsm.kernel.history import Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore.explore import Labels, references
-from missionfsm.tools.reference.model import Model, Reply, Snapshot
+from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.reference.model import Reference, Reply, Snapshot
 
 ONCE = "it had no effect, so the retry is the first call"
 AGAIN = "answered OK once more, and nothing more is done"
@@ -112,14 +112,14 @@ def hazards(system: System, bounds: Bounds | None = None, choice: Mapping[str, s
     bounds = bounds or Bounds()
     world = system.alphabet({}, bounds).worlds[0]
     alphabet = system.alphabet(world, bounds)
-    labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
-    model = Model(system, choice)
+    labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
+    model = Reference(system, choice)
     search = _Search(system, model, labels, bounds)
     return Hazards(system.name, bounds, search.run(world))
 
 
 class _Search:
-    def __init__(self, system: System, model: Model, labels: Labels, bounds: Bounds) -> None:
+    def __init__(self, system: System, model: Reference, labels: Labels, bounds: Bounds) -> None:
         self._system = system
         self._model = model
         self._labels = labels
@@ -153,7 +153,7 @@ class _Search:
         for request, free in self._labels.requests:
             if spec.operations[spec.request_operation(request)].streaming:
                 continue
-            for refs in references(spec, here.state, free):
+            for refs in bindings(spec, here.state, free):
                 if all(ref is not None and ref >= 0 for ref in refs):
                     names = tuple(here.names[ref] for ref in refs if ref is not None)
                     after, reply = self._model.call(here, request, names)

@@ -11,7 +11,7 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore.explore import Labels, references
+from missionfsm.tools.explore.explore import Labels, bindings
 
 BOUNDS = Bounds(2, goals=2, batch=2)
 SITUATIONS = 12
@@ -53,7 +53,7 @@ class _Look:
         self._assumed = choose(self.spec.ambiguities)
         usual = system.alphabet({}, BOUNDS).worlds[0]
         alphabet = system.alphabet(usual, BOUNDS)
-        self._labels = Labels.of(system, alphabet.plain, alphabet.plain_drives)
+        self._labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
         self._found = tuple(self._situations(self.spec.initial(system.codec.world(usual))))
         self._succeeds: dict[Any, bool] = {}
 
@@ -80,10 +80,10 @@ class _Look:
     def _onward(self, here: State) -> Iterator[Step]:
         spec = self.spec
         for request, free in self._labels.requests:
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 yield from spec.outcomes(here, request, refs)
         for event, free in self._labels.events:
-            for refs in references(spec, here, free):
+            for refs in bindings(spec, here, free):
                 yield from spec.drives[event.name].steps(here, event, refs)
         yield from spec.urgent(here)
         yield from spec.spontaneous(here)
@@ -108,7 +108,7 @@ class _Look:
         for here in self._found:
             became = self._unseen(here, sorted(missing))
             for request, free in self._labels.requests:
-                for refs in references(self.spec, here, free):
+                for refs in bindings(self.spec, here, free):
                     steps = self._possible(self.spec.outcomes(here, request, refs))
                     rules = {rule for step in steps if step.answer and step.answer.code != OK for rule in step.rules}
                     if not rules <= tested and not any(self._can_succeed(one, request, refs) for one in became):

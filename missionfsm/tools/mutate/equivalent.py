@@ -15,11 +15,11 @@ from attrs import evolve, frozen
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import ANYTHING, Assumption, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.tools.explore.explore import Labels, references
-from missionfsm.tools.reference.model import Model, recognised
+from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.reference.model import Reference, recognised
 
 
 @frozen
@@ -59,13 +59,13 @@ def straight(message: JSON) -> JSON:
     return message
 
 
-class Honest:
+class ReferenceSteps:
     """The reference under the readings that a broken model follows, and what it takes to explain its answers.
 
     What it remembers serves every model that breaks something else under the same readings.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Reference) -> None:
         self.model = model
         self._sets: dict[frozenset[str], frozenset[str]] = {}
         self._known: dict[Any, tuple[Step, Options, frozenset[str]]] = {}
@@ -108,8 +108,8 @@ class Honest:
 
 
 def excuse(  # noqa: PLR0913 - what an implementation is made of
-    honest: Honest,
-    model: Model,
+    honest: ReferenceSteps,
+    model: Reference,
     rule: str,
     operation: str | None,
     bend: Callable[[JSON], JSON],
@@ -137,7 +137,7 @@ def excuse(  # noqa: PLR0913 - what an implementation is made of
     return _words(system, model, explorer.alternatives, states) if came_up else ""
 
 
-def _words(system: System, model: Model, alternatives: tuple[int, ...], states: int) -> str:
+def _words(system: System, model: Reference, alternatives: tuple[int, ...], states: int) -> str:
     own = {one.id: one.possible(model.choice)[0] for one in system.spec.ambiguities}
 
     def others(assumed: int) -> list[str]:
@@ -165,8 +165,8 @@ class _Explorer:
     def __init__(  # noqa: PLR0913 - what an exploration is made of
         self,
         system: System,
-        model: Model,
-        honest: Honest,
+        model: Reference,
+        honest: ReferenceSteps,
         rule: str,
         operation: str | None,
         bend: Callable[[JSON], JSON],
@@ -180,7 +180,7 @@ class _Explorer:
         self.operation = operation
         self.bend = bend
         self.scope = scope
-        self.alternatives: tuple[int, ...] = (ANYTHING,)
+        self.alternatives: tuple[int, ...] = (UNCONSTRAINED,)
         self.came_up = bend is not straight
         self.rules_differ = model.system.spec is not system.spec
         self._required: set[Options] = {_FREE}
@@ -198,8 +198,8 @@ class _Explorer:
 
     def _walk(self, world: JSON) -> int:
         alphabet = self.system.alphabet(world, self.scope.bounds)
-        plain = Labels.of(self.system, alphabet.plain, alphabet.plain_drives)
-        own = Labels.of(self.system, (one for one in alphabet.prompts if one.method == self.operation), ())
+        plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
+        own = Labels.of(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
         start = self.spec.initial(self.system.codec.world(world))
         extent, abstraction = self.spec.extent, self.spec.abstraction
@@ -239,7 +239,7 @@ class _Explorer:
             raise _GuiltyError
         yield from self._asked_all(here, labels)
         for event, free in labels.events:
-            for refs in references(self.spec, here, free):
+            for refs in bindings(self.spec, here, free):
                 allowed = self.spec.drives[event.name].steps(here, event, refs)
                 own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
                 self.came_up = self.came_up or (own is not None and self.rule in own.rules)
@@ -250,7 +250,7 @@ class _Explorer:
 
     def _asked_all(self, here: Any, labels: Labels) -> Iterator[Step]:  # noqa: ANN401 - of any system
         for request, free in labels.requests:
-            for refs in references(self.spec, here, free):
+            for refs in bindings(self.spec, here, free):
                 step, options = self._asked(here, request, refs)
                 self._require(options)
                 yield step
@@ -313,7 +313,7 @@ class _Explorer:
 
 
 def shown(
-    model: Model, emission: Emission, named: int, bend: Callable[[JSON], JSON] = straight
+    model: Reference, emission: Emission, named: int, bend: Callable[[JSON], JSON] = straight
 ) -> tuple[tuple[Match, ...], ...] | Mismatch:
     """Ways to explain each part of the message that a model makes of an emission, or what is wrong with one.
 

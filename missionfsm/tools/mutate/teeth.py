@@ -35,10 +35,10 @@ from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.tour import play, tour
-from missionfsm.tools.mutate.equivalent import Honest, excuse
+from missionfsm.tools.mutate.equivalent import ReferenceSteps, excuse
 from missionfsm.tools.mutate.equivalent import straight as as_it_is
-from missionfsm.tools.reference.model import Model, Twist, straight
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.model import Reference, Twist, straight
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
 """Conversations before it is asked whether an implementation is allowed; after it, until it survives; steps of each."""
@@ -71,13 +71,13 @@ class Mutant:
         """The rule and how it is broken."""
         return f"{self.rule} {self.kind}"
 
-    def subject(self, system: System, seconds: Callable[[int], float] = float) -> Reference:
-        """The implementation, to be asked; `seconds` are its timestamps, see `Reference`."""
+    def subject(self, system: System, seconds: Callable[[int], float] = float) -> ReferenceSubject:
+        """The implementation, to be asked; `seconds` are its timestamps, see `ReferenceSubject`."""
         return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend, seconds)
 
 
 @frozen
-class Bite:
+class MutantResult:
     """What came of one mutant."""
 
     mutant: str
@@ -88,11 +88,11 @@ class Bite:
 
 
 @frozen
-class Teeth:
+class MutationReport:
     """What came of all mutants."""
 
     system: str
-    bites: tuple[Bite, ...]
+    bites: tuple[MutantResult, ...]
     untested: tuple[str, ...]
 
     @property
@@ -101,12 +101,12 @@ class Teeth:
         return sum(bite.killed for bite in self.bites)
 
     @property
-    def allowed(self) -> tuple[Bite, ...]:
+    def allowed(self) -> tuple[MutantResult, ...]:
         """Survivors that do nothing that the documents forbid, within the bounds that were explored."""
         return tuple(bite for bite in self.bites if not bite.killed and bite.because)
 
     @property
-    def missed(self) -> tuple[Bite, ...]:
+    def missed(self) -> tuple[MutantResult, ...]:
         """Survivors that nothing excuses."""
         return tuple(bite for bite in self.bites if not bite.killed and not bite.because)
 
@@ -150,8 +150,8 @@ def teeth(
     seed: int = 0,
     only: str = "",
     part: tuple[int, int] = (0, 1),
-    progress: Callable[[Bite], None] = lambda _: None,
-) -> Teeth:
+    progress: Callable[[MutantResult], None] = lambda _: None,
+) -> MutationReport:
     """Judge every mutant of a system.
 
     Args:
@@ -169,18 +169,18 @@ def teeth(
             bites.append(_bite(system, mutant, automaton, guide, seed))
             progress(bites[-1])
     untested = tuple(rule.id for rule in system.spec.all_rules if rule.id not in tested)
-    return Teeth(system.name, tuple(bites), untested)
+    return MutationReport(system.name, tuple(bites), untested)
 
 
-def joined(system: System, parts: Iterable[Teeth]) -> Teeth:
+def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:
     """What came of all mutants, from what came of each part of them, in the order of the rules."""
     parts = tuple(parts)
     found = {bite.mutant: bite for part in parts for bite in part.bites}
     ordered = tuple(found[mutant.name] for mutant in mutants(system) if mutant.name in found)
-    return Teeth(system.name, ordered, parts[0].untested)
+    return MutationReport(system.name, ordered, parts[0].untested)
 
 
-class _Broken(Reference):
+class _Broken(ReferenceSubject):
     """The reference with a rule broken: what it cannot answer any more, it answers with nothing."""
 
     def _call(self, method: str, params: JSON) -> Exchange:
@@ -190,7 +190,7 @@ class _Broken(Reference):
             return Exchange({})
 
 
-def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> Bite:
+def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> MutantResult:
     broken = mutant.subject(system)
     because = ""
     for fresh, conversations in enumerate((FIRST, *ROUNDS)):
@@ -202,15 +202,15 @@ def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, se
             toured = functools.partial(tour, run, draw, conversations, STEPS, mutant.favour)
             right = toured() if fresh else _at_first(system, run, toured)
         except GibberishError:  # it does not even speak the protocol any more
-            return Bite(mutant.name, mutant.rule, killed=True)
+            return MutantResult(mutant.name, mutant.rule, killed=True)
         if not right:
             length = len(run.found.judge.history) - 1 if run.found else 0
-            return Bite(mutant.name, mutant.rule, killed=True, length=length)
+            return MutantResult(mutant.name, mutant.rule, killed=True, length=length)
         if not fresh:
             because = _excuse(system, mutant, broken.model, guide.worlds)
         if because:
             break
-    return Bite(mutant.name, mutant.rule, killed=False, because=because)
+    return MutantResult(mutant.name, mutant.rule, killed=False, because=because)
 
 
 def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
@@ -219,15 +219,15 @@ def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
 
 
 @functools.lru_cache(maxsize=2)
-def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> Honest:
+def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> ReferenceSteps:
     """The reference under some readings; the mutants of a rule follow each other and share it.
 
     Those with the readings of the reference come again and again, so that it is in nobody's way that two are kept.
     """
-    return Honest(Model(system, dict(choice)))
+    return ReferenceSteps(Reference(system, dict(choice)))
 
 
-def _excuse(system: System, mutant: Mutant, model: Model, worlds: tuple[JSON, ...]) -> str:
+def _excuse(system: System, mutant: Mutant, model: Reference, worlds: tuple[JSON, ...]) -> str:
     honest = _honest(system, tuple(sorted(mutant.choice.items())))
     return excuse(honest, model, mutant.rule, mutant.favour, mutant.bend, worlds)
 
@@ -243,13 +243,13 @@ def mutants(system: System) -> Iterator[Mutant]:
             yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
         for promised in operation.promises:
             yield from _of_promise(spec, promised, operation.name)
-    own = {bend.rule for bend in system.bends} | {one.rule for one in system.twists if one.at}
+    own = {bend.rule for bend in system.message_mutations} | {one.rule for one in system.step_mutations if one.at}
     for rule in spec.rules:
         if rule.id not in own:
             yield from _of_promise(spec, rule, None)
-    for bend in system.bends:
+    for bend in system.message_mutations:
         yield Mutant(bend.rule, bend.says, {}, None, spec, bend=bend.bend)
-    for one in system.twists:
+    for one in system.step_mutations:
         yield Mutant(
             one.rule,
             one.says,

@@ -1,7 +1,7 @@
 """The deterministic reference of a spec: what one implementation does that follows one choice of readings.
 
-A `Snapshot` is an immutable value: a state, the names it has given out, its open channels. A `Model` computes from a
-snapshot and what is asked of it the next snapshot and everything that an observer sees. It keeps nothing but a memo.
+A `Snapshot` is an immutable value: a state, the names it has given out, its open channels. A `Reference` computes from
+a snapshot and what is asked of it the next snapshot and everything that an observer sees. It keeps nothing but a memo.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.spec import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 
-REMEMBERED = 1_000
+MAX_REMEMBERED = 1_000
 """How many steps a model remembers; states that list all that has ended are large."""
 
 
@@ -108,7 +108,7 @@ def recognised(
     return tuple(system.spec.matches(view, codec.content(rest)) for _, _, rest in codec.strip(message))
 
 
-class Model:
+class Reference:
     """The reference of a system under one choice of readings.
 
     Args:
@@ -159,7 +159,7 @@ class Model:
             if step is None:
                 message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
                 raise AssertionError(message)
-            if len(self._chosen) >= REMEMBERED:
+            if len(self._chosen) >= MAX_REMEMBERED:
                 self._chosen.clear()
             self._chosen[key] = step
         return step

@@ -9,15 +9,15 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.tools.reference.model import Model, Reply, Sent, Snapshot, Twist, straight
+from missionfsm.tools.reference.model import Reference, Reply, Sent, Snapshot, Twist, straight
 
 
-class Reference:
+class ReferenceSubject:
     """The reference model of a system behind the adapter protocol, in this process.
 
     Args:
         system: the system.
-        choice, twist: the readings that it follows, and what is broken; see `missionfsm.tools.reference.model.Model`.
+        choice, twist: the readings that it follows, and what is broken; see `Reference`.
         bend: a message to the one that is sent in its place; for one that is broken.
         seconds: the number of an event to its timestamp, in seconds since the epoch.
 
@@ -33,7 +33,7 @@ class Reference:
         bend: Callable[[JSON], JSON] = lambda message: message,
         seconds: Callable[[int], float] = float,
     ) -> None:
-        self.model = Model(system, choice, twist=twist)
+        self.model = Reference(system, choice, twist=twist)
         self.rules: tuple[str, ...] = ()
         self._says = {name: rule.says for name, rule in system.spec.rules_by_id.items()}
         self._bend = bend

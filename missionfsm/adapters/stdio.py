@@ -109,6 +109,7 @@ class Child:
         timeout: seconds that an answer may take.
         stopped: asked while an answer is waited for: whether the run was stopped, so that it is not waited for long.
         trace: told of every line in both directions.
+        folder: where the program is started; None is where this one runs.
 
     Raises:
         SubjectError: the program cannot be started.
@@ -121,6 +122,7 @@ class Child:
         *,
         stopped: Callable[[], bool] = lambda: False,
         trace: Trace = lambda _, __: None,
+        folder: str | None = None,
     ) -> None:
         self.command = tuple(command)
         self.timeout = timeout
@@ -131,7 +133,7 @@ class Child:
         pipe = subprocess.PIPE
         try:
             self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
-                self.command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True
+                self.command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True, cwd=folder
             )
         except OSError as error:
             message = f"cannot start {self.command[0]}: {error.strerror}"

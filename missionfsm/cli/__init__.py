@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
-from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, wire
+from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, teeth, wire
 from missionfsm.cli.common import BAD_INPUT, DONE, complain, say
 from missionfsm.cli.defaults import defaults
 from missionfsm.cli.helping import Command, Program
@@ -33,7 +33,7 @@ for _command in (
     judging.check,
     judging.smoke,
     judging.explore,
-    judging.teeth,
+    teeth.teeth,
     listing.rules,
     listing.readings,
     listing.schema,

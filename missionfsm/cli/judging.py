@@ -46,8 +46,8 @@ from missionfsm.cli.overgrpc import (
     Wire,
     WorldFile,
 )
-from missionfsm.cli.pages import HtmlFile, write_explorer, write_report, write_teeth
-from missionfsm.cli.printing import in_github, say_annotations, say_verdict, stamped
+from missionfsm.cli.pages import HtmlFile, write_explorer, write_report
+from missionfsm.cli.printing import JsonFile, in_github, say_annotations, say_verdict, stamped, told
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.system import System
@@ -57,10 +57,6 @@ from missionfsm.tools.check.verdict import Verdict
 
 if TYPE_CHECKING:
     from missionfsm.kernel.subject import Subject
-    from missionfsm.tools.conform.smoke import Smoke
-    from missionfsm.tools.explore.explore import Exploration
-    from missionfsm.tools.explore.hazards import Hazards
-    from missionfsm.tools.mutate.teeth import MutationReport
 
 Readings = Annotated[
     list[str] | None, typer.Option("--reading", metavar="AM-09=a", help="A reading that has to be followed; repeat it.")
@@ -73,7 +69,6 @@ ProfileName = Annotated[
         help="Readings of Isaac's systems together: documented (nothing departs from the text) or as-shipped.",
     ),
 ]
-JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
 NoFlagged = Annotated[
     bool, typer.Option("--no-flagged", help="What is explained, and yet departs from the text, is a violation.")
 ]
@@ -325,7 +320,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             stop(str(error), BAD_INPUT)
         finally:
             child.close()
-    troubles = _told(verdict, json, verbose=verbose)
+    troubles = told(verdict, json, verbose=verbose)
     with troubles.kept():
         _annotate(github, [(None, "", verdict)], json)
     with troubles.kept():
@@ -354,7 +349,7 @@ def smoke(
 
     refuse_outputs({"--json": json})
     found = looked_at(the_system(system), lambda: Child(command, timeout))
-    troubles = _told(found, json)
+    troubles = told(found, json)
     troubles.end(DONE if found.is_adapter else ADAPTER_FAILED)
 
 
@@ -372,18 +367,6 @@ def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, 
             meant = f"; is {near[0]} meant?" if near else f"; there are {', '.join(known)}"
             stop(f"--{option} {name}: {judged.name} has no such call{meant}", BAD_INPUT)
     return named
-
-
-def _told(
-    found: Verdict | Exploration | MutationReport | Hazards | Smoke, json: str | None, *, verbose: bool = False
-) -> Troubles:
-    """Tell what was found and write it as JSON; what went wrong with either is kept."""
-    troubles = Troubles()
-    with troubles.kept():
-        say_verdict(found.told(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
-    with troubles.kept():
-        write_json(json, stamped(found.to_json()))
-    return troubles
 
 
 def _annotate(wanted: bool | None, judged: list[tuple[str | None, str, Verdict]], json: str | None) -> None:
@@ -576,37 +559,12 @@ def explore(  # noqa: PLR0913 - options of the command
 
         if html is not None or forget_ended:
             stop("--hazards: it goes with no --html and no --forget-ended", BAD_INPUT)
-        _told(retries(explored, bounds, readings), json).end(DONE)
+        told(retries(explored, bounds, readings), json).end(DONE)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
-    troubles = _told(found, json)
+    troubles = told(found, json)
     with troubles.kept():
         write_explorer(html, explored, bounds, assumed)
     troubles.end(DONE if found.holds else FAILED)
-
-
-def teeth(  # noqa: PLR0913 - options of the command
-    system: SystemName,
-    only: Annotated[str, typer.Option(help="Judge only implementations with this in their name.")] = "",
-    seed: Annotated[int, typer.Option(help="The same seed asks the same, in as many processes.")] = 0,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
-    json: JsonFile = None,
-    html: HtmlFile = None,
-) -> None:
-    """Break every rule, one at a time, and see whether the oracle notices."""
-    from missionfsm.app.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415
-
-    judged = the_system(system)
-    refuse_outputs({"--json": json, "--html": html})
-    total = sum(only in mutant.name for mutant in mutants(judged))
-    if not total:
-        stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
-    with Bar("implementations", total) as bar:
-        found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, progress=bar.one_more)
-    troubles = _told(found, json)
-    with troubles.kept():
-        write_teeth(html, judged, found)
-    troubles.end(FAILED if found.missed or found.untested else DONE)
 
 
 def adapter(

@@ -9,14 +9,18 @@ import shlex
 import shutil
 import sys
 import textwrap
+from typing import Annotated, Protocol
 
+import typer
 from attrs import frozen
 
 from missionfsm.adapters.outputs import STDOUT, to_stdout
-from missionfsm.cli.common import readable, say, say_shown
+from missionfsm.cli.common import Troubles, readable, say, say_shown, write_json
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import shown
+from missionfsm.tools.check.verdict import Verdict
 
+JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
 HANG = 4
 """Columns by which a line goes in where it is folded."""
 _WORST_FIRST = (
@@ -116,3 +120,20 @@ def say_annotations(lines: list[str], *, json: str | None) -> None:
             print(line, file=sys.stderr, flush=True)  # noqa: T201 - the command line speaks
         else:
             say(line)
+
+
+class Found(Protocol):
+    """What a command has found: a text for people, and JSON."""
+
+    def to_json(self) -> JSON:
+        """As it is written for programs."""
+
+
+def told(found: Found, json: str | None, *, verbose: bool = False) -> Troubles:
+    """Tell what was found and write it as JSON; what went wrong with either is kept."""
+    troubles = Troubles()
+    with troubles.kept():
+        say_verdict(found.told(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
+    with troubles.kept():
+        write_json(json, stamped(found.to_json()))
+    return troubles

@@ -24,8 +24,9 @@ from missionfsm.cli.common import (
     the_system,
     write_json,
 )
-from missionfsm.cli.judging import JsonFile, Readings
+from missionfsm.cli.judging import Readings
 from missionfsm.cli.overgrpc import Beginning, TokenFile, needs_grpc, read_token, read_world, target_address
+from missionfsm.cli.printing import JsonFile
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import signal
 import sys
 
 import pytest
@@ -14,6 +15,10 @@ from missionfsm.cli import main
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("long", settings.get_profile("untimed"), max_examples=2_000)  # --hypothesis-profile long
 settings.load_profile("untimed")
+
+# A shell that runs a script in the background has SIGINT ignored, and with it whatever a test starts and ends with one.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

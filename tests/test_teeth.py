@@ -84,7 +84,10 @@ def test_processes_end_with_the_one_that_started_them(number: int) -> None:
     while len(started := children(judging.pid)) < 3 and time.monotonic() < until:  # two, and one that tracks
         time.sleep(0.05)
     judging.send_signal(number)
-    assert judging.wait(10) == 130
+    try:
+        assert judging.wait(10) == 130
+    finally:
+        judging.terminate()
     until = time.monotonic() + 5
     while (left := [one for one in started if Path(f"/proc/{one}").exists()]) and time.monotonic() < until:
         time.sleep(0.05)

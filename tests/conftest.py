@@ -16,9 +16,11 @@ settings.register_profile("untimed", deadline=None, suppress_health_check=[Healt
 settings.register_profile("long", settings.get_profile("untimed"), max_examples=2_000)  # --hypothesis-profile long
 settings.load_profile("untimed")
 
-# A shell that runs a script in the background has SIGINT ignored, and with it whatever a test starts and ends with one.
+# A shell that runs a script in the background has SIGINT ignored, and `nohup` SIGHUP; so would be what a test starts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.mutate.teeth import mutants
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grpc"))
-from broken import Searcher
+from brokenserver import Searcher
 from onwire import accepted, alternatives, proxied
 
 EVERY = int(os.environ.get("EVERY", "1"))

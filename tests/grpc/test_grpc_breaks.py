@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 import pytest
-from broken import Searcher
+from brokenserver import Searcher
 from commandline import CommandLine
 from relay import Relay
 

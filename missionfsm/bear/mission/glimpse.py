@@ -30,7 +30,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
 from missionfsm.kernel.spec import Glimpses, Middle
 
-MAX_STATES = 16
+MAX_STATES = 32
 """How many robots are imagined behind one message at most."""
 
 
@@ -56,11 +56,13 @@ def _robots(world: World, content: Seen) -> Iterator[Robot]:
     for active in (True, False) if rest and rest[0].state is State.STATE_PAUSED else (_runs(rest),):
         heads = tuple(_active(world, rest[0])) if active else (None,)
         waiting = rest[1:] if active else rest
-        pending = tuple(_waiting(world, one) for one in waiting)
-        for head in heads:
-            yield Robot(world, done, head, pending, fresh=False)
-            if head is None and pending:
-                yield Robot(world, done, None, pending, halted=True, fresh=False)
+        # Those that wait are of the likeliest kinds, or else all of the least likely.
+        queues = [tuple(_waiting(world, one, which) for one in waiting) for which in (0, -1)]
+        for pending in dict.fromkeys(queues):
+            for head in heads:
+                yield Robot(world, done, head, pending, fresh=False)
+                if head is None and pending:
+                    yield Robot(world, done, None, pending, halted=True, fresh=False)
 
 
 def _runs(rest: tuple[MissionState, ...]) -> bool:
@@ -81,23 +83,26 @@ def _active(world: World, message: MissionState) -> Iterator[Mission]:
                 yield Mission(kind, goals, _state(message), goal, finishing)
 
 
-def _waiting(world: World, message: MissionState) -> Mission:
-    kind = _kinds(world, message)[0]
+def _waiting(world: World, message: MissionState, which: int) -> Mission:
+    kind = _kinds(world, message)[which]
     goals = () if kind in GOALLESS else message.goals
     return Mission(kind, goals, goal=NOT_CHOSEN if kind in AUTOMATIC else 0)
 
 
 def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
-    """The kinds that a mission of this type may have, of those that behave alike only one."""
+    """The kinds that a mission of this type may have, the likeliest first, of those that are shown alike only one."""
     told = message.mission_type or MissionType()
     known = [kind for kind, types in TYPES.items() if told in types or told == FAMILY_TYPES.get((kind, world.family))]
-    known.sort(key=lambda kind: told not in TYPES[kind])  # what is told as it is assumes nothing
+    known.sort(key=lambda kind: told not in TYPES[kind])  # what is told by its own type assumes nothing
     if not known or told == MissionType():
         known += [kind for kind in AM_26 if FAMILY[kind] in (None, world.family)]
     kinds = known if message.goals else []
     if not kinds:
         kinds = [Kind.RETURN] if len(message.goals) > 1 else [Kind.CHARGE, Kind.RETURN]
-    alike = {(kind in PATROLS, kind in AUTOMATIC, kind in GOALLESS and kind): kind for kind in reversed(kinds)}
+    alike = {
+        (kind in PATROLS, kind in AUTOMATIC, kind in GOALLESS and kind, told in TYPES.get(kind, ())): kind
+        for kind in reversed(kinds)
+    }
     return tuple(reversed(alike.values()))
 
 

@@ -155,7 +155,12 @@ def test_what_was_not_tested_is_said_with_the_reason() -> None:
             "door/ring/it-answers": "ring never succeeded: INVALID_ARGUMENT 2 times, FAILED_PRECONDITION",
         },
         ("lock",),
+        operations=3,
+        all_drives=1,
     )
     assert untested(DOOR, {"knock": {OK: 1}}, ("lock",), ("door/knock/it-answers",)) == Untested(
-        {"ring": "was not tried", "open": "was not tried"}, {"door/knock/it-answers": "never came up"}, ()
+        {"ring": "was not tried", "open": "was not tried"},
+        {"door/knock/it-answers": "never came up"},
+        operations=3,
+        all_drives=1,
     )

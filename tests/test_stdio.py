@@ -29,9 +29,9 @@ CHILD = """
 import json, os, signal, sys, time
 from missionfsm.systems import system
 from missionfsm.adapters.stdio import _respond
-from missionfsm.tools.reference.subject import Reference
+from missionfsm.tools.reference.subject import ReferenceSubject
 
-reference = Reference(system("bear.mission"))
+reference = ReferenceSubject(system("bear.mission"))
 
 def send(value):
     sys.stdout.write(value if isinstance(value, str) else json.dumps(value))

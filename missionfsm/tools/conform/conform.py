@@ -57,6 +57,12 @@ class Plan:
     fills: int = FILLS
 
     @classmethod
+    def beside(cls, examples: int, tours: int, steps: int) -> Plan:
+        """So many that are drawn and so many tours; of the other kinds no more than fits them."""
+        fills = FILLS if tours >= TOURS else tours - round(LED * tours)
+        return cls(examples, tours, examples + tours, steps, fills)
+
+    @classmethod
     def sharing(cls, conversations: int, steps: int = STEPS) -> Plan:
         """So many conversations in all, shared among the kinds as by default."""
         whole = cls()
@@ -117,9 +123,7 @@ def conform(  # noqa: PLR0913 - every one has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Baseline(expected)
-    plan = plan or Plan(
-        examples, tours, examples + tours, steps, FILLS if tours >= TOURS else tours - round(LED * tours)
-    )
+    plan = plan or Plan.beside(examples, tours, steps)
     run = Run.of(
         system,
         subject,

@@ -116,15 +116,14 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
     )
     drives = tuple(one for one in info.drives if one not in without)
 
+    def has(method: str, params: JSON) -> bool:
+        if method not in methods or not isinstance(params, dict):
+            return False
+        return not info.binary or system.codec.carries(method, params)
+
     def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
         whole = system.alphabet(world, bounds)
         worlds = whole.worlds if info.world is None else (info.world,)
-
-        def has(method: str, params: JSON) -> bool:
-            if method not in methods or not isinstance(params, dict):
-                return False
-            return not info.binary or system.codec.carries(method, params)
-
         return evolve(
             whole,
             inputs=tuple(one for one in whole.inputs if has(one.method, one.params)),
@@ -137,7 +136,17 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
         )
 
     streams = tuple(one for one in system.codec.streams if one in methods)
-    return evolve(system, alphabet=alphabet, codec=evolve(system.codec, methods=methods, streams=streams))
+    matrix = system.matrix
+    if any(drive.by_itself and name not in drives for name, drive in system.spec.drives.items()):
+        matrix = None  # in which situation it is, is seldom sure while it moves by itself
+    if matrix is not None:
+        ways = {
+            situation: tuple(way for way in ways if _possible(way, drives, has) == way)
+            for situation, ways in matrix.ways.items()
+        }
+        matrix = evolve(matrix, ways=ways)
+    codec = evolve(system.codec, methods=methods, streams=streams)
+    return evolve(system, alphabet=alphabet, codec=codec, matrix=matrix)
 
 
 def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Any) -> tuple[ScriptStep, ...]:  # noqa: ANN401 - a function

@@ -88,7 +88,7 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
         return True
 
     run.expects = keep
-    search(run, Plan(examples, tours, examples + tours, steps), seed)
+    search(run, Plan.beside(examples, tours, steps), seed)
     return Survey(verdict_of(run, seed, advice=False), tuple(findings.values()))
 
 

@@ -30,7 +30,7 @@ COMPLEX = {
         "transition.TransitionFunction._received",
         "transition._pairings",
     },
-    "tools.reference": {"model.Model._take"},
+    "tools.reference": {"model.Reference._take"},
     # Readers of what others wrote: a case for each thing that may be wrong with it.
     "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
     "app": {"recorded._Judges._take", "watched._unwrapped"},

@@ -173,6 +173,10 @@ class Walker:
 HIDDEN = "something else"
 
 
+UNTOLD = {("AI-10", "d")}
+"""Readings that a picture cannot tell: a status that names no mission is about the robot's current one."""
+
+
 def check(name: str, sketch: Sketch, choice: dict[str, str], seeds: int) -> None:
     """Wherever the reference goes it goes along the moves of the picture, and what is not shown leaves no node."""
     system = systems.system(name)
@@ -201,6 +205,8 @@ def test_every_step_under_another_reading_is_in_its_picture(name: str, sketch: S
     ambiguities = systems.system(name).spec.ambiguities
     others = ((one.alike or one.id, letter) for one in ambiguities for letter in one.readings if letter != one.default)
     for question, letter in dict.fromkeys(others):
+        if (question, letter) in UNTOLD:
+            continue
         check(name, sketch, {question: letter}, seeds=1)
 
 

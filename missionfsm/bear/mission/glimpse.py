@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.bear.mission.readings import AM_26
 from missionfsm.bear.mission.state import (
@@ -56,9 +56,7 @@ def _robots(world: World, content: Seen) -> Iterator[Robot]:
     for active in (True, False) if rest and rest[0].state is State.STATE_PAUSED else (_runs(rest),):
         heads = tuple(_active(world, rest[0])) if active else (None,)
         waiting = rest[1:] if active else rest
-        # Those that wait are of the likeliest kinds, or else all of the least likely.
-        queues = [tuple(_waiting(world, one, which) for one in waiting) for which in (0, -1)]
-        for pending in dict.fromkeys(queues):
+        for pending in _queues(world, waiting):
             for head in heads:
                 yield Robot(world, done, head, pending, fresh=False)
                 if head is None and pending:
@@ -81,6 +79,11 @@ def _active(world: World, message: MissionState) -> Iterator[Mission]:
         for goal in places:
             for finishing in (False, True):
                 yield Mission(kind, goals, _state(message), goal, finishing)
+
+
+def _queues(world: World, waiting: Sequence[MissionState]) -> Iterable[tuple[Mission, ...]]:
+    """What waits: all of the likeliest kinds, or else all of the least likely."""
+    return dict.fromkeys(tuple(_waiting(world, one, which) for one in waiting) for which in (0, -1))
 
 
 def _waiting(world: World, message: MissionState, which: int) -> Mission:

@@ -14,6 +14,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, ScriptStep
 from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
@@ -136,17 +137,20 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
         )
 
     streams = tuple(one for one in system.codec.streams if one in methods)
-    matrix = system.matrix
-    if any(drive.by_itself and name not in drives for name, drive in system.spec.drives.items()):
-        matrix = None  # in which situation it is, is seldom sure while it moves by itself
-    if matrix is not None:
-        ways = {
-            situation: tuple(way for way in ways if _possible(way, drives, has) == way)
-            for situation, ways in matrix.ways.items()
-        }
-        matrix = evolve(matrix, ways=ways)
+    matrix = system.matrix and _reached(system.matrix, system, drives, has)
     codec = evolve(system.codec, methods=methods, streams=streams)
     return evolve(system, alphabet=alphabet, codec=codec, matrix=matrix)
+
+
+def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Any) -> Matrix | None:  # noqa: ANN401 - a function
+    """The matrix with the ways that an adapter has; None where it moves by itself."""
+    if any(drive.by_itself and name not in drives for name, drive in system.spec.drives.items()):
+        return None  # in which situation it is, is seldom sure while it moves by itself
+    ways = {
+        situation: tuple(way for way in ways if _possible(way, drives, has) == way)
+        for situation, ways in matrix.ways.items()
+    }
+    return evolve(matrix, ways=ways)
 
 
 def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Any) -> tuple[ScriptStep, ...]:  # noqa: ANN401 - a function

@@ -173,8 +173,9 @@ class Walker:
 HIDDEN = "something else"
 
 
-UNTOLD = {("AI-10", "d")}
-"""Readings that a picture cannot tell: a status that names no mission is about the robot's current one."""
+UNTOLD = {("AI-10", "d"), ("AI-39", "b")}
+"""Readings that a picture cannot tell: a status that names no mission is about the robot's current one; while time
+passes once, a scheduling pass sends a mission and its time runs out."""
 
 
 def check(name: str, sketch: Sketch, choice: dict[str, str], seeds: int) -> None:

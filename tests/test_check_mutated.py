@@ -17,7 +17,7 @@ from typing import Any
 
 import orjson
 import pytest
-from traffic import MISSION, walk
+from traffic import MISSION, one_more, walk
 
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
@@ -86,16 +86,7 @@ def history(name: str, seed: int = 3) -> list[Any]:
     prompts = [one for one in (*alphabet.core_inputs, *alphabet.inputs) if "$" not in str(one.params)]
     drives = [one for one in (*alphabet.core_drives, *alphabet.drives) if "$" not in str(one)]
     for number in range(1, 9):
-        if prompts and random.random() < 0.5:
-            prompt = random.choice(prompts)
-            exchange = reference.exchange(prompt.method, prompt.params)
-            answer = {"error": exchange.error} if exchange.error else {"result": exchange.result}
-            lines += [{"call": number, "method": prompt.method, "params": prompt.params}, {"return": number, **answer}]
-        else:
-            drive = random.choice(drives)
-            exchange = reference.exchange("drive", drive)
-            lines += [{"drive": drive}] * exchange.result["happened"]
-        lines += [one.params for one in exchange.after]
+        lines += one_more(reference, random, number, prompts, drives)
     return lines
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import orjson
 import pytest
 from commandline import CommandLine
-from traffic import navigate, readings_at_random, walk
+from traffic import navigate, one_more, readings_at_random, walk
 
 from missionfsm.app.asked import judged_system
 from missionfsm.kernel.alphabet import Bounds
@@ -63,16 +63,7 @@ def status_log(seed: int, steps: int) -> list[Any]:
     prompts = [one for one in alphabet.inputs if "$" not in str(one.params)]
     drives = [one for one in alphabet.drives if one["event"] in ("report", "restart", "fault")]
     for number in range(1, steps + 1):
-        if random.random() < 0.5:
-            prompt = random.choice(prompts)
-            exchange = reference.exchange(prompt.method, prompt.params)
-            answer = {"error": exchange.error} if exchange.error else {"result": exchange.result}
-            lines += [{"call": number, "method": prompt.method, "params": prompt.params}, {"return": number, **answer}]
-        else:
-            drive = random.choice(drives)
-            exchange = reference.exchange("drive", drive)
-            lines += [{"drive": drive}] * exchange.result["happened"]
-        lines += [one.params for one in exchange.after]
+        lines += one_more(reference, random, number, prompts, drives)
         lines += [{"settled": True}] * (random.random() < 0.2)
     return lines
 

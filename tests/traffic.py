@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from random import Random
 from typing import Any
 
+from missionfsm.kernel.alphabet import Input
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.kernel.system import System
 from missionfsm.systems import system
@@ -112,3 +114,20 @@ def readings_at_random(seed: int, of: System = MISSION) -> dict[str, str]:
     random = Random(seed)
     some = random.sample(of.spec.ambiguities, len(of.spec.ambiguities) // 4)
     return {one.id: random.choice(tuple(one.readings)) for one in some}
+
+
+def one_more(
+    reference: ReferenceSubject, random: Random, number: int, prompts: Sequence[Input], drives: Sequence[JSON]
+) -> list[Any]:
+    """The lines of a call with that number, or of a drive that happened, and of what came with it."""
+    if prompts and random.random() < 0.5:
+        prompt = random.choice(prompts)
+        exchange = reference.exchange(prompt.method, prompt.params)
+        answer = {"error": exchange.error} if exchange.error else {"result": exchange.result}
+        lines: list[Any] = [{"call": number, "method": prompt.method, "params": prompt.params}]
+        lines.append({"return": number, **answer})
+    else:
+        drive = random.choice(drives)
+        exchange = reference.exchange("drive", drive)
+        lines = [{"drive": drive}] * exchange.result["happened"]
+    return [*lines, *(one.params for one in exchange.after)]

@@ -61,7 +61,7 @@ COMPLEX = {
         "time.calmed",
     },
     # Commands: an option after the other.
-    "cli": {"defaults.defaults", "diagram.diagram", "isaac.dispatch", "judging.check", "judging.conform"},
+    "cli": {"defaults.defaults", "diagram.diagram", "dispatch.dispatch", "check.check", "conform.conform"},
     # To be taken apart.
     "pages": {"actions.Doings._filled", "graph.Graph._made"},
     "tools.check": {

@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
-from missionfsm.cli import diagram, isaac, isaac_robot, judging, listing, teeth, wire
+from missionfsm.cli import adapter, check, conform, diagram, dispatch, explore, listing, proxy, robot, serve, teeth
 from missionfsm.cli.common import BAD_INPUT, DONE, complain, say
 from missionfsm.cli.defaults import defaults
 from missionfsm.cli.helping import Command, Program
@@ -29,21 +29,21 @@ app = typer.Typer(
     help=__doc__,
 )
 for _command in (
-    judging.conform,
-    judging.check,
-    judging.smoke,
-    judging.explore,
+    conform.conform,
+    check.check,
+    adapter.smoke,
+    explore.explore,
     teeth.teeth,
     listing.rules,
     listing.readings,
     listing.schema,
     listing.new,
     diagram.diagram,
-    judging.adapter,
-    isaac.dispatch,
-    isaac_robot.robot,
-    wire.serve,
-    wire.proxy,
+    adapter.adapter,
+    dispatch.dispatch,
+    robot.robot,
+    serve.serve,
+    proxy.proxy,
 ):
     app.command(cls=Command)(_command)
 

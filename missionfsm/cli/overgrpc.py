@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
 TokenFile = Annotated[
     str | None, typer.Option("--token", metavar="FILE", help="A file that holds the token callers have to send.")
 ]
+Certificate = Annotated[str, typer.Option(metavar="FILE", help="For TLS at the own port, in PEM.")]
+Key = Annotated[str, typer.Option(metavar="FILE", help="For TLS at the own port, in PEM.")]
+SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="bear.mission or bear.status.")]
 
 
 def needs_grpc() -> None:
@@ -54,6 +59,24 @@ def read_token(path: str | None) -> str:
     if not token or not token.isascii() or not token.isprintable():
         stop(f"{path}: it holds no token of printable ASCII", BAD_INPUT)
     return token
+
+
+@contextlib.contextmanager
+def bad_input() -> Iterator[None]:
+    """What a user asked that cannot be ends in one line."""
+    try:
+        yield
+    except OSError as error:
+        named = f"{error.filename}: " if error.filename else ""
+        stop(f"{named}{error.strerror or error}", BAD_INPUT)
+    except ValueError as error:  # UnreadableError is one
+        stop(str(error), BAD_INPUT)
+
+
+def both_or_neither(certificate: str, key: str) -> None:
+    """Refuse a certificate without its key, and a key without its certificate."""
+    if bool(certificate) != bool(key):
+        stop("--tls-certificate and --tls-key: one does not go without the other", BAD_INPUT)
 
 
 GrpcAddress = Annotated[

@@ -20,7 +20,7 @@ from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
 from missionfsm.isaac.runtime.missions import RobotOffline, RobotOnline, Status
 
 APP = (
-    "import typer; from missionfsm.cli.isaac import dispatch; from missionfsm.cli.isaac_robot import robot; "
+    "import typer; from missionfsm.cli.dispatch import dispatch; from missionfsm.cli.robot import robot; "
     "app = typer.Typer(); app.command()(dispatch); app.command()(robot); app()"
 )
 

@@ -1,0 +1,294 @@
+"""The command that judges an implementation, through its adapter, a socket or gRPC."""
+
+from __future__ import annotations
+
+import difflib
+import secrets
+import sys
+import time
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from attrs import define
+
+from missionfsm.cli.common import (
+    BAD_INPUT,
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    choice,
+    one_line_errors,
+    profiled,
+    refuse_options,
+    refuse_outputs,
+    stop,
+    the_system,
+)
+from missionfsm.cli.helping import SystemName
+from missionfsm.cli.options import (
+    DAY,
+    Github,
+    JunitFile,
+    KnownFile,
+    NoFlagged,
+    ProfileName,
+    Readings,
+    Transport,
+    Verbose,
+    finite,
+)
+from missionfsm.cli.overgrpc import (
+    Beginning,
+    Force,
+    GrpcAddress,
+    KeepaliveSeconds,
+    MetadataEntries,
+    SettleSeconds,
+    TlsFile,
+    TokenFile,
+    Wire,
+    WorldFile,
+)
+from missionfsm.cli.pages import HtmlFile, write_report
+from missionfsm.cli.printing import JsonFile, told
+from missionfsm.cli.progress import Bar
+from missionfsm.cli.reports import annotate, known_violations, write_junit, write_record
+from missionfsm.kernel.system import System
+
+if TYPE_CHECKING:
+    from missionfsm.kernel.subject import Subject
+
+
+GRPC_EXAMPLES = 20
+"""Conversations over gRPC, where silence has to be waited for."""
+
+TOLERANCE = 0.2
+"""Seconds that times may be off over TCP."""
+
+
+@define
+class TimeLimit:
+    """The seconds that a run may take, from when its adapter is there: what is slow to start does not use them up."""
+
+    seconds: float | None
+    began: float | None = None
+
+    def reached(self) -> bool:
+        """Whether they have passed; the first time that it is asked, they begin."""
+        if self.began is None:
+            self.began = time.monotonic()
+        return self.over
+
+    @property
+    def over(self) -> bool:
+        """Whether they have begun and passed."""
+        began, seconds = self.began, self.seconds
+        return began is not None and seconds is not None and time.monotonic() > began + seconds
+
+
+def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
+    system: SystemName,
+    command: Annotated[
+        list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")
+    ] = None,
+    examples: Annotated[
+        int | None, typer.Option(min=1, help="Conversations in all, each from a reset on: some 300, or 5 in real time.")
+    ] = None,
+    steps: Annotated[int, typer.Option(min=1, help="Calls and drives in a conversation, at most.")] = 40,
+    seed: Annotated[int | None, typer.Option(help="The same seed asks the same.")] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option("--time", metavar="SECONDS", min=0.1, callback=finite, help="Begin no further step after that."),
+    ] = None,
+    reading: Readings = None,
+    profile: ProfileName = None,
+    no_flagged: NoFlagged = False,
+    expect_violations: KnownFile = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="CALL", help="Make this call and no others; repeat it, or use commas.")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(metavar="CALL", help="Leave this call or drive out; repeat it, or use commas.")
+    ] = None,
+    distinguish: Annotated[
+        bool, typer.Option("--distinguish", help="Try at the end to tell readings apart that are still open.")
+    ] = False,
+    timeout: Annotated[
+        float, typer.Option(min=0.01, max=DAY, callback=finite, help="Seconds that an answer may take.")
+    ] = 10.0,
+    tcp: Annotated[
+        str | None,
+        typer.Option(metavar="HOST:PORT", help="Judge the mission server that listens there (isaac.server)."),
+    ] = None,
+    missions: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="With --tcp: the server's mission file; the command after -- starts it."),
+    ] = None,
+    tcp_listen: Annotated[
+        int | None,
+        typer.Option(
+            metavar="PORT",
+            min=1,
+            max=65535,
+            help="Judge the robot that connects there; the command after -- starts it.",
+        ),
+    ] = None,
+    grpc: GrpcAddress = None,
+    world: WorldFile = None,
+    settle: SettleSeconds = None,
+    force: Force = False,
+    token: TokenFile = None,
+    tls: TlsFile = None,
+    metadata: MetadataEntries = None,
+    keepalive: KeepaliveSeconds = None,
+    transport: Annotated[
+        Transport | None,
+        typer.Option(help="With --grpc: whether messages may be lost, doubled or made up on the way."),
+    ] = None,
+    begins: Annotated[
+        Beginning | None,
+        typer.Option(help="With --grpc: whether the robot is begun anew, or is in use and left so."),
+    ] = None,
+    others: Annotated[
+        bool, typer.Option("--others", help="With --grpc: others use the robot at the same time.")
+    ] = False,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(min=0, callback=finite, help=f"Over TCP: seconds that times may be off; {TOLERANCE} by default."),
+    ] = None,
+    trace: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write every line that is sent and that comes, with its time; - is stdout."),
+    ] = None,
+    record: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="Write the history of a violation; as a pytest function to .py, as Mermaid to .mmd."
+        ),
+    ] = None,
+    json: JsonFile = None,
+    html: HtmlFile = None,
+    junit: JunitFile = None,
+    github: Github = None,
+    verbose: Verbose = False,
+) -> None:
+    """Judge an implementation behind the adapter protocol."""
+    from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.tracefile import tracing  # noqa: PLC0415
+    from missionfsm.app.bridged import Sockets, bridged  # noqa: PLC0415
+    from missionfsm.cli.signals import interruptible  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415
+
+    judged = the_system(system)
+    readings = profiled(profile, choice(reading), judged)
+    calls: dict[str, Any] = {
+        option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))
+    }
+    known = known_violations(expect_violations, judged)
+    outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit, "--trace": trace}
+    refuse_outputs(outputs, (expect_violations, missions))
+    limit = TimeLimit(seconds)
+    own = [sys.executable, "-m", "missionfsm", "adapter", system]
+    sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
+    wire = None
+    if grpc is None:
+        options = {
+            "--world": world,
+            "--settle": settle,
+            "--force": force,
+            "--token": token,
+            "--tls": tls,
+            "--metadata": metadata,
+            "--keepalive": keepalive,
+            "--transport": transport,
+            "--begins": begins,
+            "--others": others,
+        }
+        refuse_options(options, "without --grpc")
+    else:
+        wire = Wire(
+            grpc,
+            world=world,
+            settle=settle,
+            force=force,
+            token=token,
+            tls=tls,
+            metadata=metadata or [],
+            keepalive=keepalive,
+            begins=begins or Beginning.FRESH,
+            others=others,
+            strict=transport is Transport.STRICT,
+        )
+        judged = wire.system(system)
+        refuse_options(
+            {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
+            "where --grpc says which server is judged",
+        )
+    if sockets.wanted:
+        refuse_options(
+            {"--only": only, "--without": without, "--trace": trace, "--distinguish": distinguish}, "over TCP"
+        )
+    else:
+        refuse_options({"--tolerance": tolerance}, "without --tcp or --tcp-listen")
+    with one_line_errors(), interruptible() as interruption, tracing(trace) as traced:
+
+        def enough() -> bool:
+            return interruption.asked or limit.reached()
+
+        try:
+            bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
+        except ValueError as error:
+            stop(str(error), BAD_INPUT)
+        if wire is not None:
+            child: Subject = wire.subject(system, timeout)
+            examples = examples or GRPC_EXAMPLES
+        elif bridge:
+            child = bridge.subject
+        else:
+            child = Child(command or own, timeout, stopped=lambda: interruption.asked or limit.over, trace=traced)
+        plan = Plan(steps=steps) if examples is None else Plan.sharing(examples, steps)
+        try:
+            with Bar("conversations", bridge.conversations if bridge else plan.conversations(judged)) as bar:
+                asked: dict[str, Any] = {
+                    "seed": secrets.randbits(32) if seed is None else seed,
+                    "readings": readings,
+                    "no_flagged": no_flagged,
+                    "expected": known,
+                    "enough": enough,
+                    "progress": bar.conversation,
+                }
+                if bridge:
+                    verdict = bridge.judge(steps, **asked)
+                else:
+                    # What nobody is told need not be thought about: it takes as long as a third of the run.
+                    advice = verbose or json is not None or html is not None
+                    verdict = judge(judged, child, plan=plan, distinguish=distinguish, advice=advice, **calls, **asked)
+        except ValueError as error:
+            stop(str(error), BAD_INPUT)
+        finally:
+            child.close()
+    troubles = told(verdict, json, verbose=verbose)
+    with troubles.kept():
+        annotate(github, [(None, "", verdict)], json)
+    with troubles.kept():
+        write_report(html, ("", None, verdict))
+    with troubles.kept():
+        write_junit(junit, [(verdict.implementation or system, verdict)])
+    with troubles.kept():
+        write_record(record, judged, verdict)
+    troubles.end(
+        FAILED if verdict.violation else INTERRUPTED if interruption.asked else DONE if verdict.conforms else FAILED
+    )
+
+
+def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, ...]:
+    """The calls, or with --without the calls and drives, that an option names; bad input if there is no such one."""
+    named = tuple(name.strip() for one in given or () for name in one.split(",") if name.strip())
+    known = (*judged.codec.methods, *(judged.spec.drives if option == "without" else ()))
+    for name in named:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            meant = f"; is {near[0]} meant?" if near else f"; there are {', '.join(known)}"
+            stop(f"--{option} {name}: {judged.name} has no such call{meant}", BAD_INPUT)
+    return named

@@ -1,0 +1,68 @@
+"""What the commands that judge write beside their verdicts, and the list of what is known to be broken."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from missionfsm.cli.common import BAD_INPUT, one_line_errors, stop, the_system
+from missionfsm.cli.printing import in_github, say_annotations
+from missionfsm.kernel.system import System
+from missionfsm.systems import names
+from missionfsm.tools.check.verdict import Verdict
+
+
+def annotate(wanted: bool | None, judged: list[tuple[str | None, str, Verdict]], json: str | None) -> None:
+    """Write what GitHub shows beside the files, where it is wanted: each verdict with its file and its robot."""
+    if not in_github(wanted):
+        return
+    from missionfsm.tools.check.github import workflow_commands  # noqa: PLC0415 - commands load what they need
+
+    named = ((path, robot or verdict.implementation or verdict.system, verdict) for path, robot, verdict in judged)
+    say_annotations(list(workflow_commands(named)), json=json)
+
+
+def write_junit(path: str | None, named: list[tuple[str, Verdict]]) -> None:
+    """Write verdicts for build servers, if that is wanted."""
+    if path is None:
+        return
+    from missionfsm.adapters.outputs import write_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.check.junit import junit  # noqa: PLC0415
+
+    write_whole(path, junit(named))
+
+
+def write_record(path: str | None, system: System, verdict: Verdict) -> None:
+    """Write the history of a violation in the form that the name of the file asks for, if there is one."""
+    if path is None or verdict.violation is None:
+        return
+    from missionfsm.adapters.outputs import write_history, write_whole  # noqa: PLC0415
+    from missionfsm.tools.check.narrate import as_mermaid, as_pytest  # noqa: PLC0415
+
+    history = verdict.violation.history
+    form = Path(path).suffix
+    if form == ".py":
+        name = re.sub(r"\W+", "_", Path(path).stem.removeprefix("test_")).strip("_") or system.name.replace(".", "_")
+        write_whole(path, as_pytest(history, name).encode())
+    elif form == ".mmd":
+        write_whole(path, as_mermaid(system, history).encode())
+    else:
+        write_history(path, history)
+
+
+def known_violations(path: str | None, judged: System | None = None) -> tuple[str, ...]:
+    """The rules of a system, or of all, that a file lists as known to be broken; bad input if one of them is none."""
+    if path is None:
+        return ()
+    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
+    from missionfsm.tools.check.baseline import read_expected  # noqa: PLC0415
+
+    with one_line_errors():
+        data = read_whole(path)
+    try:
+        return read_expected(data.decode(), [one.spec for one in ([judged] if judged else map(the_system, names()))])
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        stop(f"{path}:{line}: byte 0x{data[error.start]:02x} is not UTF-8", BAD_INPUT)
+    except ValueError as error:
+        stop(f"{path}:{error}", BAD_INPUT)

@@ -21,7 +21,8 @@ from missionfsm.kernel.alphabet import Bounds, Naming
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, choose, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Emission, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
 

@@ -9,7 +9,8 @@ from missionfsm.kernel.codec import JSON, Codec, Malformed, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK, Document, Operation, decide, rule
-from missionfsm.kernel.spec import Delivery, Drive, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Delivery, Drive, Spec
+from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
 
 NAME = "lamp"

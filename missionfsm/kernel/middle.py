@@ -16,7 +16,8 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.spec import ONCE_HAD, Drive, Emission, Match, Mismatch, Opening, Spec, Step, View
+from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step, View
 from missionfsm.kernel.values import value
 
 LOG_01 = Ambiguity(

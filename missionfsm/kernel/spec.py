@@ -18,99 +18,17 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any, Protocol
+from typing import Any
 
 from attrs import field, frozen
 
+from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.focus import Focus
-from missionfsm.kernel.history import Answer, Event
+from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
-from missionfsm.kernel.values import value
-
-State = Any
-"""A frozen, hashable value of the system."""
-
-ONCE_HAD = -1
-"""In the place of the position of a name: the state has it no more."""
-
-View = Any
-"""What one message shows, as a frozen, hashable value; names are left out and stand beside it."""
-
-
-@value
-class Emission:
-    """A message that a step owes to every channel that its topic concerns.
-
-    `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
-    the state after the step.
-    `only` is the assumption without which the message is not sent at all; such a message may always be left out.
-    `optional` is a message that may be left out whatever is assumed, and that may come at any time, settled or not,
-    until something later is shown. One that `stays` is optional as well, and may come more than once.
-    `certain` is a message that comes even where the state after the step does not last.
-    """
-
-    topic: Hashable
-    view: View
-    refs: tuple[int, ...] | None = None
-    only: Assumption | None = None
-    optional: bool = False
-    stays: bool = False
-    certain: bool = False
-
-
-@value
-class Opening:
-    """A channel that a step opens: its topic, and its name as a reference like those in `Step.names`.
-
-    `owed` are the messages that it starts with. `kind` is what its name is one of: ``stream`` or ``connection``.
-    """
-
-    topic: Hashable
-    ref: int
-    owed: tuple[Emission, ...] = ()
-    kind: str = "stream"
-
-
-@value
-class Step:
-    """Something that may happen, with the state after it.
-
-    Names are referred to by number: 0…n-1 are those of the state before, n… are new ones that this step adds, and -1,
-    -2… are the first, second… that the event itself brought along (a connection's).
-
-    Attributes:
-        after: the state after it; the very same object where nothing changes.
-        names: the names of `after`, in order; None keeps those before.
-        emits: what subscribers come to see, in order.
-        opens: channels that come into being.
-        closes: topics whose channels are gone, with what was still owed to them.
-        clears: topics whose channels owe nothing any more, and offer nothing: what was on its way is lost.
-        withdraws: topics whose channels offer nothing any more; what they owe stays.
-        rules: ids of the rules that justify it.
-        assumes: the readings without which it does not happen.
-        answer: for the outcome of a call, what is answered.
-        refs: the names that the answer mentions, in order.
-        label: what happened, for people.
-        applied: False for an outcome that may still take effect after its answer (a deadline that passed).
-        kinds: what the names that it adds are names of, in order, for a model that makes them up.
-    """
-
-    after: State
-    names: tuple[int, ...] | None = None
-    emits: tuple[Emission, ...] = ()
-    opens: tuple[Opening, ...] = ()
-    closes: tuple[Hashable, ...] = ()
-    clears: tuple[Hashable, ...] = ()
-    withdraws: tuple[Hashable, ...] = ()
-    rules: tuple[str, ...] = ()
-    assumes: tuple[Assumption, ...] = ()
-    answer: Answer | None = None
-    refs: tuple[int, ...] = ()
-    label: str = ""
-    applied: bool = True
-    kinds: tuple[str, ...] = ()
+from missionfsm.kernel.step import Match, Mismatch, State, Step, View
 
 
 @frozen
@@ -126,30 +44,6 @@ class Failure:
     assumes: tuple[Assumption, ...] = ()
     open_ended: bool = False
     drive: str | None = None
-
-
-@value
-class Match:
-    """One way in which a message can be the showing of a view.
-
-    `names` pairs each position among the names of the view with a position among those of the message.
-    """
-
-    assumes: tuple[Assumption, ...] = ()
-    names: tuple[tuple[int, int], ...] = ()
-    rules: tuple[str, ...] = ()
-
-
-@frozen
-class Mismatch:
-    """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong.
-
-    A `near` one is what is owed but for that, so that it is likelier meant than a message that nothing owes.
-    """
-
-    rule: str
-    says: str
-    near: bool = False
 
 
 @frozen
@@ -211,59 +105,6 @@ class Invariant:
     name: str
     says: str
     holds: Callable[[State], bool]
-
-
-Code = Any
-"""What stands for a state in a `Shortcut`: hashable, and quick to tell apart."""
-
-
-class Shortcut(Protocol):
-    """Every step of a system within bounds, on codes that stand for its states."""
-
-    def encode(self, state: State, /) -> Code:
-        """The code of a state."""
-
-    def decode(self, code: Code, /) -> State:
-        """The state with a code."""
-
-    def successors(self, code: Code, /) -> list[Code]:
-        """The codes after every step, in any order and perhaps some twice."""
-
-
-@frozen
-class Abstraction:
-    """How a search and an exploration look at states: which they tell apart, and how large they take them to be.
-
-    It decides where they look; what a system does, it does not change.
-
-    Attributes:
-        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
-            outcomes, and the same events happen in the same ways.
-        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
-        idle_shape: the same for what changes nothing; None where it is `shape`.
-        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
-        place: (state, position of a name) to where it stands, as far as a search tells places apart.
-        size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
-            names.
-        extent: the same for exploration; None where that is the number of its names.
-        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
-            readings, since every step may follow any; None where states remember neither.
-        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
-            ways, but for what is forgotten.
-        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: the steps of the system, only
-            faster.
-    """
-
-    situation: Callable[[State], Hashable] = lambda state: state
-    shape: Callable[[State], Hashable] = lambda state: state
-    idle_shape: Callable[[State], Hashable] | None = None
-    phase: Callable[[State], Hashable] = lambda _: None
-    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
-    size: Callable[[State], int] | None = None
-    extent: Callable[[State], int] | None = None
-    outline: Callable[[State], State] | None = None
-    forget_ended: Callable[[State], State] | None = None
-    shortcut: Callable[..., Shortcut] | None = None
 
 
 @frozen
@@ -411,7 +252,7 @@ class Spec:
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
     foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...], frozenset[str]], bool] | None = None
     succeeds: Callable[[State, tuple[int, ...], Any, tuple[int, ...], tuple[int, ...]], bool] | None = None
-    abstraction: Abstraction = Abstraction()
+    abstraction: Abstraction = field(factory=Abstraction)
     parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()

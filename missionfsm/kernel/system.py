@@ -13,7 +13,8 @@ from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.picture import Plan, Sketch
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.shapes import Shapes
-from missionfsm.kernel.spec import Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Step
 
 
 @frozen

@@ -16,7 +16,8 @@ from typing import Any
 from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 

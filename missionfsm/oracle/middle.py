@@ -15,7 +15,8 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
 from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.spec import Glimpses, Match, Mismatch, Spec, View
+from missionfsm.kernel.spec import Glimpses, Spec
+from missionfsm.kernel.step import Match, Mismatch, View
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,

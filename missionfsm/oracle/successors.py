@@ -12,7 +12,8 @@ from typing import Any
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, by_bit, meet
-from missionfsm.kernel.spec import ONCE_HAD, Failure, Match, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Failure, Spec
+from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
 from missionfsm.kernel.transport import MADE_BY_CLIENTS, MADE_UP
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (

@@ -16,7 +16,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Refs
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.spec import Match, Mismatch, Step
+from missionfsm.kernel.step import Match, Mismatch, Step
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import (

@@ -12,7 +12,7 @@ from attrs import field, frozen
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.pages.naming import TEXT, Writer, dumped, put
 from missionfsm.tools.placeholders import kind_of, slots

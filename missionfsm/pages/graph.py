@@ -2,7 +2,7 @@
 
 Much is the same in many states, so doings (what is asked or happens), effects (what comes of it) and the parts of
 messages are kept once and referred to by number. The page follows names by itself: an effect says which names of the
-state it keeps and how many it adds, as a `missionfsm.kernel.spec.Step` does.
+state it keeps and how many it adds, as a `missionfsm.kernel.step.Step` does.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Emission, Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.system import System
 from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Request, State, Tried
 from missionfsm.pages.naming import PLACES, TEXT, Shared, Writer, dumped

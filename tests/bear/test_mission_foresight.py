@@ -22,7 +22,7 @@ from missionfsm.bear.mission.stream import Listing, listing
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.oracle import window
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict

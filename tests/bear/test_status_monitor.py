@@ -16,7 +16,7 @@ from missionfsm.bear.status.state import Endpoint
 from missionfsm.bear.status.stream import Seen, View, matches
 from missionfsm.bear.status.values import CHECKS
 from missionfsm.kernel.codec import Malformed
-from missionfsm.kernel.spec import Mismatch
+from missionfsm.kernel.step import Mismatch
 from missionfsm.oracle.belief import Automaton
 
 BATTERY, NAVIGATION, NETWORK = "SubscribeBatteryStatus", "SubscribeNavigationStatus", "SubscribeNetworkStatus"

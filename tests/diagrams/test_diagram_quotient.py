@@ -15,7 +15,8 @@ from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.picture import Refs, Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
-from missionfsm.kernel.spec import ONCE_HAD, Delivery, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Delivery, Spec
+from missionfsm.kernel.step import ONCE_HAD, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.draw import diagram as picture
 from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay

@@ -25,7 +25,8 @@ from missionfsm.kernel.history import (
     Settled,
 )
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.spec import Emission, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Emission, Mismatch, Step
 
 Things = tuple[int, ...]
 

@@ -8,7 +8,8 @@ from toys import FLAKY_LAMP, LAMP, PLAIN_TICKETS, TICKETS, Event, spec
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Name, Received, Returned, Settled
 from missionfsm.kernel.history import Event as Observed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, UNAVAILABLE
-from missionfsm.kernel.spec import Drive, Emission, Opening, Spec, Step
+from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.step import Emission, Opening, Step
 from missionfsm.oracle.belief import Automaton, Belief
 
 ONE, TWO = ("stream", 1), ("stream", 2)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, choose
-from missionfsm.kernel.spec import Emission, Opening, Step
+from missionfsm.kernel.step import Emission, Opening, Step
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,

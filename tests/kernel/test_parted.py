@@ -12,7 +12,8 @@ from toys import QUESTIONS, Refs, Request, spec
 from missionfsm.kernel.history import Answer, Called, Event, Returned
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Parting, Step
+from missionfsm.kernel.spec import Parting
+from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Automaton, Belief
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.transcript import Transcript

@@ -18,7 +18,8 @@ from missionfsm.kernel.rules import (
     RESOURCE_EXHAUSTED,
     UNAVAILABLE,
 )
-from missionfsm.kernel.spec import Delivery, Drive, Emission, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.spec import Delivery, Drive, Spec
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 
 Request = tuple[Any, ...]
 """Operation, then its arguments."""

@@ -8,7 +8,7 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import system
 from missionfsm.tools.reference.subject import ReferenceSubject

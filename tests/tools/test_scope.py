@@ -20,7 +20,8 @@ from missionfsm.kernel.rules import (
     Waiver,
     promise,
 )
-from missionfsm.kernel.spec import Drive, Spec, Step
+from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Automaton, Belief
 from missionfsm.tools.check.eliminations import Eliminations
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, untested

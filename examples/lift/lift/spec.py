@@ -20,7 +20,8 @@ from missionfsm.kernel.rules import (
     promise,
     rule,
 )
-from missionfsm.kernel.spec import Delivery, Drive, Emission, Failure, Invariant, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 
 NAME = "lift"
 PAGE = Document("Lift", "The lift's manual")

@@ -82,7 +82,8 @@ from missionfsm.kernel.rules import (
     Rule,
     decide,
 )
-from missionfsm.kernel.spec import ONCE_HAD, Failure
+from missionfsm.kernel.spec import Failure
+from missionfsm.kernel.step import ONCE_HAD
 from missionfsm.kernel.values import value
 
 Assumed = tuple[Assumption, ...]
@@ -103,7 +104,7 @@ class Outcome:
     assumes: Assumed = ()
     rules: tuple[str, ...] = ()
     applied: bool = True
-    """See `missionfsm.kernel.spec.Step`."""
+    """See `missionfsm.kernel.step.Step`."""
 
 
 @functools.lru_cache(maxsize=100_000)

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.spec import SPEC
 from missionfsm.bear.mission.state import Mission, Robot
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import MessageMutation, StepMutation
 
 

@@ -60,21 +60,12 @@ from missionfsm.bear.mission.stream import (
 )
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.wire.messages import State
+from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, Waiver, promise
-from missionfsm.kernel.spec import (
-    Abstraction,
-    Delivery,
-    Drive,
-    Emission,
-    Invariant,
-    Match,
-    Mismatch,
-    Opening,
-    Spec,
-    Step,
-)
+from missionfsm.kernel.spec import Delivery, Drive, Invariant, Spec
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 
 _MOVES = {
     trigger: promise(

@@ -278,7 +278,7 @@ def apply(edit: Edit, robot: Robot) -> Robot:
 def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Which names an edit keeps, in the order of the missions after it, and which belong to missions that vanish.
 
-    Names are referred to as in `missionfsm.kernel.spec.Step`: 0… are those before, the added ones follow.
+    Names are referred to as in `missionfsm.kernel.step.Step`: 0… are those before, the added ones follow.
     """
     ended, here = len(robot.done), len(robot.done) + (robot.active is not None)
     done, active = list(range(ended)), list(range(ended, here))

@@ -51,7 +51,7 @@ from missionfsm.bear.wire.messages import (
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Rule, promise
-from missionfsm.kernel.spec import Match, Mismatch
+from missionfsm.kernel.step import Match, Mismatch
 from missionfsm.kernel.values import value
 
 TOPIC = "mission status"

@@ -64,7 +64,8 @@ from missionfsm.kernel.rules import (
     Operation,
     decide,
 )
-from missionfsm.kernel.spec import Emission, Failure, Opening, Step
+from missionfsm.kernel.spec import Failure
+from missionfsm.kernel.step import Emission, Opening, Step
 
 Assumed = tuple[Assumption, ...]
 TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)

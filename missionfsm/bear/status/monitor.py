@@ -27,7 +27,7 @@ from missionfsm.bear.wire.problem import Problem
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.sequence import relation
-from missionfsm.kernel.spec import Mismatch
+from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import brief
 
 MAX_REMEMBERED = 50_000

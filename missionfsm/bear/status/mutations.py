@@ -13,7 +13,7 @@ from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import GET, MAPS, SINGLES, Endpoint
 from missionfsm.bear.status.stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, Promised
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import MessageMutation, StepMutation
 
 Change = Callable[[dict[str, JSON]], None]

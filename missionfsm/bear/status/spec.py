@@ -38,10 +38,12 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
 from missionfsm.bear.status.values import faults
+from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Event, Received
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation, Waiver
-from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Middle, Mismatch, Parting, Spec
+from missionfsm.kernel.spec import Delivery, Drive, Invariant, Middle, Parting, Spec
+from missionfsm.kernel.step import Mismatch
 
 
 def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:

@@ -58,7 +58,7 @@ from missionfsm.bear.wire.messages import MissionState, State
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
-from missionfsm.kernel.spec import Match, Mismatch
+from missionfsm.kernel.step import Match, Mismatch
 from missionfsm.kernel.text import brief
 
 Assumed = tuple[Assumption, ...]

@@ -43,7 +43,7 @@ from missionfsm.isaac.robot.state import (
 )
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Rule
-from missionfsm.kernel.spec import Emission, Opening, Step
+from missionfsm.kernel.step import Emission, Opening, Step
 
 Refs = tuple[int | None, ...]
 STATUSES, NAMES = "statuses", "names"

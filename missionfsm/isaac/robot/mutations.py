@@ -10,7 +10,7 @@ from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.isaac.shared.mutations import changed, line_mutations, mission_type, swapped, unsigned_type
-from missionfsm.kernel.spec import Emission, Step
+from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
 Twist = Callable[[Codelet, Step], Step | None]

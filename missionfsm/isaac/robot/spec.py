@@ -12,7 +12,8 @@ from missionfsm.isaac.robot.readings import AMBIGUITIES
 from missionfsm.isaac.robot.rules import RULES
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM, Codelet
 from missionfsm.isaac.robot.stream import delivery, matches, sequence
-from missionfsm.kernel.spec import Abstraction, Drive, Invariant, Spec
+from missionfsm.kernel.abstraction import Abstraction
+from missionfsm.kernel.spec import Drive, Invariant, Spec
 
 _SAYS: Callable[[str], Invariant] = lambda state: Invariant(  # noqa: E731 - one line of a table
     f"the-codelet-is-{state.lower()}", f"Some codelet is {state}.", lambda here: here.state == state

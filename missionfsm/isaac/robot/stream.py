@@ -11,7 +11,8 @@ from missionfsm.isaac.robot.state import Introduction, Report
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.spec import Delivery, Match, Mismatch
+from missionfsm.kernel.spec import Delivery
+from missionfsm.kernel.step import Match, Mismatch
 
 RULES = {"running": rules.RUNNING, **FINAL}
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}

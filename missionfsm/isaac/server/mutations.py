@@ -9,7 +9,7 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status, topic
 from missionfsm.isaac.shared.mutations import changed, line_mutations
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
 Twist = Callable[[Server, Step], Step | None]

@@ -49,12 +49,14 @@ from missionfsm.isaac.server.state import (
 )
 from missionfsm.isaac.server.time import calmed, passes, settled, unseen
 from missionfsm.isaac.shared.line import LineContent
+from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
-from missionfsm.kernel.spec import Abstraction, Delivery, Drive, Invariant, Match, Mismatch, Opening, Spec, Step
+from missionfsm.kernel.spec import Delivery, Drive, Invariant, Spec
+from missionfsm.kernel.step import Match, Mismatch, Opening, Step
 
 
 def _step(

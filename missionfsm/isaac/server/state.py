@@ -16,7 +16,7 @@ from attrs import evolve
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.spec import Emission
+from missionfsm.kernel.step import Emission
 from missionfsm.kernel.values import value
 
 SYSTEM = "isaac.server"

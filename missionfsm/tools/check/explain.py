@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Mismatch, Spec
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel

@@ -18,7 +18,8 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Name, Received, Returned
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Delivery, Mismatch, Spec, Step
+from missionfsm.kernel.spec import Delivery, Spec
+from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError

@@ -10,7 +10,7 @@ from typing import Any
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import UNCONSTRAINED, choose, meet
 from missionfsm.kernel.rules import Rule
-from missionfsm.kernel.spec import Mismatch, Step
+from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.verdict import PER, RATE
 from missionfsm.tools.explore.explore import Labels, bindings

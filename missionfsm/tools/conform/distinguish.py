@@ -18,7 +18,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.readings import Ambiguity, meet
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
 from missionfsm.tools.check.narrate import story

@@ -17,7 +17,7 @@ from attrs import frozen
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import meet
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.successors import Successors

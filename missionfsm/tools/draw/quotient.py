@@ -13,7 +13,8 @@ from attrs import frozen
 from missionfsm.kernel.picture import Sketch
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, bindings
 

@@ -13,7 +13,8 @@ from attrs import field, frozen
 from missionfsm.kernel.alphabet import ANY_NAME, Bounds, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import UNCONSTRAINED, meet
-from missionfsm.kernel.spec import ONCE_HAD, Invariant, Spec, Step
+from missionfsm.kernel.spec import Invariant, Spec
+from missionfsm.kernel.step import ONCE_HAD, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.placeholders import fill, slots
 

@@ -9,7 +9,7 @@ from typing import Any
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, bindings
 

@@ -16,7 +16,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
-from missionfsm.kernel.spec import Emission, Match, Mismatch, Step
+from missionfsm.kernel.step import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import Reference, recognised

@@ -27,7 +27,8 @@ from missionfsm.kernel.rules import (
     Operation,
     Rule,
 )
-from missionfsm.kernel.spec import Spec, Step
+from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.subject import Exchange, GibberishError
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton

@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
-from missionfsm.kernel.spec import ONCE_HAD, Emission, Match, Mismatch, Step
+from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 
 MAX_REMEMBERED = 1_000

@@ -1,0 +1,62 @@
+"""How states are told apart where not all of them can be looked at: by a search, and by an exploration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, Protocol
+
+from attrs import frozen
+
+from missionfsm.kernel.step import State
+
+Code = Any
+"""What stands for a state in a `Shortcut`: hashable, and quick to tell apart."""
+
+
+class Shortcut(Protocol):
+    """Every step of a system within bounds, on codes that stand for its states."""
+
+    def encode(self, state: State, /) -> Code:
+        """The code of a state."""
+
+    def decode(self, code: Code, /) -> State:
+        """The state with a code."""
+
+    def successors(self, code: Code, /) -> list[Code]:
+        """The codes after every step, in any order and perhaps some twice."""
+
+
+@frozen
+class Abstraction:
+    """How a search and an exploration look at states: which they tell apart, and how large they take them to be.
+
+    It decides where they look; what a system does, it does not change.
+
+    Attributes:
+        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
+            outcomes, and the same events happen in the same ways.
+        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
+        idle_shape: the same for what changes nothing; None where it is `shape`.
+        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
+        place: (state, position of a name) to where it stands, as far as a search tells places apart.
+        size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
+            names.
+        extent: the same for exploration; None where that is the number of its names.
+        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
+            readings, since every step may follow any; None where states remember neither.
+        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
+            ways, but for what is forgotten.
+        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: the steps of the system, only
+            faster.
+    """
+
+    situation: Callable[[State], Hashable] = lambda state: state
+    shape: Callable[[State], Hashable] = lambda state: state
+    idle_shape: Callable[[State], Hashable] | None = None
+    phase: Callable[[State], Hashable] = lambda _: None
+    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
+    size: Callable[[State], int] | None = None
+    extent: Callable[[State], int] | None = None
+    outline: Callable[[State], State] | None = None
+    forget_ended: Callable[[State], State] | None = None
+    shortcut: Callable[..., Shortcut] | None = None

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from typing import Any, Protocol
+from collections.abc import Callable, Hashable, Iterable
+from typing import Protocol
 
 from attrs import frozen
 
-from missionfsm.kernel.step import State
-
-Code = Any
-"""What stands for a state in a `Shortcut`: hashable, and quick to tell apart."""
+from missionfsm.kernel.terms import Code, Incident, Request, State
 
 
 class Shortcut(Protocol):
@@ -24,6 +21,30 @@ class Shortcut(Protocol):
 
     def successors(self, code: Code, /) -> list[Code]:
         """The codes after every step, in any order and perhaps some twice."""
+
+
+class Compiled(Protocol):
+    """What makes a `Shortcut`."""
+
+    def __call__(
+        self,
+        requests: Iterable[tuple[Request, tuple[bool, ...]]],
+        events: Iterable[Incident],
+        assumed: int,
+        most: int,
+        /,
+        *,
+        forget_ended: bool = False,
+    ) -> Shortcut:
+        """The steps that some requests and events take, under some readings.
+
+        Args:
+            requests: each with what may be the name of something there, of each of its names.
+            events: what may happen.
+            assumed: the readings that are possible.
+            most: how large a state may be (see `Abstraction.extent`).
+            forget_ended: what has ended is only counted.
+        """
 
 
 @frozen
@@ -46,8 +67,7 @@ class Abstraction:
             readings, since every step may follow any; None where states remember neither.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
-        shortcut: (requests, events, assumed, most names, forget_ended) to a `Shortcut`: the steps of the system, only
-            faster.
+        shortcut: what makes the steps of the system again, only faster.
     """
 
     situation: Callable[[State], Hashable] = lambda state: state
@@ -59,4 +79,4 @@ class Abstraction:
     extent: Callable[[State], int] | None = None
     outline: Callable[[State], State] | None = None
     forget_ended: Callable[[State], State] | None = None
-    shortcut: Callable[..., Shortcut] | None = None
+    shortcut: Compiled | None = None

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from attrs import frozen
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Name
 
 ANY_NAME = "$name"
-"""Stands in a prompt's params for a name that the tester picks: one seen so far, or a wrong one."""
+"""Stands in an input's params for a name that the tester picks: one seen so far, or a wrong one."""
 
 
 def pick(kind: str, slot: int = 0) -> JSON:
@@ -36,7 +36,7 @@ def as_text(value: JSON) -> JSON:
     return {"$text": value}
 
 
-def _plainly(name: Any) -> JSON:  # noqa: ANN401 - a name
+def _plainly(name: Name) -> JSON:
     return name[1] if isinstance(name, tuple) else name
 
 
@@ -49,10 +49,10 @@ class Naming:
     where it is not said what it is a name of.
     """
 
-    write: Callable[[Any], JSON] = _plainly
-    make: Callable[[str, int], Any] = lambda kind, serial: (kind, serial)
-    shown: Callable[[int], Any] = lambda serial: f"n{serial}"
-    given: Callable[[int], Any] = lambda serial: f"name-{serial}"
+    write: Callable[[Name], JSON] = _plainly
+    make: Callable[[str, int], Name] = lambda kind, serial: (kind, serial)
+    shown: Callable[[int], Name] = lambda serial: f"n{serial}"
+    given: Callable[[int], Name] = lambda serial: f"name-{serial}"
 
 
 @frozen(init=False)

@@ -8,6 +8,7 @@ from typing import Any
 from attrs import Factory, field, frozen
 
 from missionfsm.kernel.history import Answer, Mark, Name
+from missionfsm.kernel.terms import Incident, Request, View, World
 
 JSON = Any
 """What a JSON text stands for: dicts, lists, texts, numbers, booleans and None."""
@@ -73,20 +74,20 @@ class Codec:
 
     methods: tuple[str, ...]
     streams: tuple[str, ...]
-    world: Callable[[JSON], Any]
+    world: Callable[[JSON], World]
     split: Callable[[str, JSON], tuple[tuple[Name, ...], JSON]]
-    request: Callable[[str, JSON], Any]
+    request: Callable[[str, JSON], Request]
     answer: Callable[[str, JSON], tuple[Answer, tuple[Name, ...]]]
     strip: Callable[[JSON], tuple[Part, ...]]
     content: Callable[[JSON], Hashable]
-    drive: Callable[[JSON], tuple[Any, tuple[Name, ...]]]
-    write_request: Callable[[Any, tuple[Name, ...]], JSON]
+    drive: Callable[[JSON], tuple[Incident, tuple[Name, ...]]]
+    write_request: Callable[[Request, tuple[Name, ...]], JSON]
     write_answer: Callable[[str, Answer, tuple[Name, ...]], JSON]
-    write_message: Callable[[Any, tuple[Name, ...], int, int, float], JSON]
-    write_world: Callable[[Any], JSON]
-    write_drive: Callable[[Any, tuple[Name, ...]], JSON]
-    write_happened: Callable[[Any, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}
-    happened: Callable[[JSON], tuple[Any, tuple[Name, ...]]] = field(
+    write_message: Callable[[View, tuple[Name, ...], int, int, float], JSON]
+    write_world: Callable[[World], JSON]
+    write_drive: Callable[[Incident, tuple[Name, ...]], JSON]
+    write_happened: Callable[[Incident, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}
+    happened: Callable[[JSON], tuple[Incident, tuple[Name, ...]]] = field(
         default=Factory(lambda self: self.drive, takes_self=True)
     )
     measured: tuple[str, ...] = ()

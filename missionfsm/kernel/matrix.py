@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from attrs import frozen
 
 from missionfsm.kernel.alphabet import Bounds, ScriptStep
+from missionfsm.kernel.terms import Incident, Refs, Request, State
 
 
 @frozen(eq=False)
@@ -24,7 +24,7 @@ class Matrix:
         bounds: how large what is asked may be.
     """
 
-    situation: Callable[[Any], str | None]
-    columns: Callable[[Any, Any, tuple[int | None, ...]], tuple[str, ...]]
+    situation: Callable[[State], str | None]
+    columns: Callable[[State, Request | Incident, Refs], tuple[str, ...]]
     ways: Mapping[str, tuple[tuple[ScriptStep, ...], ...]]
     bounds: Bounds

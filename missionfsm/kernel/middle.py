@@ -10,14 +10,14 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Hashable
-from typing import Any
 
 from attrs import evolve
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Drive, Spec
-from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step, View
+from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step
+from missionfsm.kernel.terms import Content, View
 from missionfsm.kernel.values import value
 
 LOG_01 = Ambiguity(
@@ -70,7 +70,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
     if middle.glimpses is None:
         return evolve(spec, anywhere=anywhere)
 
-    def matches(view: View, content: Any) -> tuple[Match, ...] | Mismatch:  # noqa: ANN401 - of any system
+    def matches(view: View, content: Content) -> tuple[Match, ...] | Mismatch:
         if view is ANY:
             return Mismatch("", content.says) if isinstance(content, Malformed) else (Match(),)
         return spec.matches(view, content)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
-
-Refs = tuple[int | None, ...]
+from missionfsm.kernel.terms import Incident, Refs, Request, State, View
 
 
 @frozen(eq=False)
@@ -34,11 +32,11 @@ class Sketch:
 
     name: str
     title: str
-    node: Callable[[Any], str | None]
-    label: Callable[[Any, Any, Refs], str | None]
-    within: Callable[[Any], bool]
-    simple: Callable[[Any, int], Any] = lambda state, _: state
-    shows: Callable[[Any], str | None] = lambda _: None
+    node: Callable[[State], str | None]
+    label: Callable[[State, Request | Incident, Refs], str | None]
+    within: Callable[[State], bool]
+    simple: Callable[[State, int], State] = lambda state, _: state
+    shows: Callable[[View], str | None] = lambda _: None
     inputs: tuple[Input, ...] = ()
     drives: tuple[JSON, ...] = ()
     world: JSON = field(factory=dict)

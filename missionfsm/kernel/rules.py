@@ -5,11 +5,11 @@ from __future__ import annotations
 import inspect
 import itertools
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
 
 from attrs import evolve, field, frozen
 
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
+from missionfsm.kernel.terms import Request, State
 
 OK = "OK"
 UNKNOWN = "UNKNOWN"
@@ -89,7 +89,7 @@ class Waiver:
         return f"{self.name}: {self.says} [{self.cite}]"
 
 
-Condition = Callable[[Any, Any], bool]
+Condition = Callable[[State, Request], bool]
 
 
 @frozen
@@ -118,7 +118,7 @@ class Rule:
     kind: str = ""
     id: str = ""
 
-    def __call__(self, state: Any, call: Any) -> bool:  # noqa: ANN401 - a rule of any system
+    def __call__(self, state: State, call: Request) -> bool:
         """Whether the condition of a refusal holds."""
         return self.holds is not None and self.holds(state, call)
 
@@ -128,7 +128,7 @@ class Rule:
         return evolve(self, id="/".join((*middle, self.name)))
 
 
-def _words(function: Callable[..., Any]) -> tuple[str, str, str]:
+def _words(function: Condition) -> tuple[str, str, str]:
     text = inspect.getdoc(function) or ""
     says, _, argues = text.partition("\n")
     if not says:
@@ -201,7 +201,7 @@ class Operation:
             streaming,
         )
 
-    def blocking(self, state: Any, call: Any) -> tuple[Rule, ...]:  # noqa: ANN401 - of any system
+    def blocking(self, state: State, call: Request) -> tuple[Rule, ...]:
         """The refusals whose condition holds."""
         return tuple(rule for rule in self.refusals if rule(state, call))
 

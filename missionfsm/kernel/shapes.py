@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from attrs import Factory, frozen
 
-TEXT: Mapping[str, Any] = {"type": "string"}
-NUMBER: Mapping[str, Any] = {"type": "number"}
-BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
-OBJECT: Mapping[str, Any] = {"type": "object"}
+from missionfsm.kernel.codec import JSON
+
+Schema = Mapping[str, JSON]
+"""A JSON Schema, or some by name."""
+
+TEXT: Schema = {"type": "string"}
+NUMBER: Schema = {"type": "number"}
+BOOLEAN: Schema = {"type": "boolean"}
+OBJECT: Schema = {"type": "object"}
 
 
-def record(fields: Mapping[str, Any], required: tuple[str, ...] = (), *, more: bool = False) -> dict[str, Any]:
+def record(fields: Schema, required: tuple[str, ...] = (), *, more: bool = False) -> dict[str, JSON]:
     """The schema of an object with these members; `more` says whether it may have others."""
-    found: dict[str, Any] = {"type": "object", "properties": dict(fields)}
+    found: dict[str, JSON] = {"type": "object", "properties": dict(fields)}
     if required:
         found["required"] = list(required)
     if not more:
@@ -38,12 +42,12 @@ class Shapes:
         definitions: what the others refer to as ``#/$defs/NAME``.
     """
 
-    world: Mapping[str, Any] = Factory(dict)
-    drives: Mapping[str, Any] = Factory(dict)
-    happened: Mapping[str, Any] = Factory(dict)
-    requests: Mapping[str, Any] = Factory(dict)
-    results: Mapping[str, Any] = Factory(dict)
-    messages: tuple[Mapping[str, Any], ...] = ()
+    world: Schema = Factory(dict)
+    drives: Schema = Factory(dict)
+    happened: Schema = Factory(dict)
+    requests: Schema = Factory(dict)
+    results: Schema = Factory(dict)
+    messages: tuple[Schema, ...] = ()
     lines: bool = False
     connections: bool = False
-    definitions: Mapping[str, Any] = Factory(dict)
+    definitions: Schema = Factory(dict)

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any
 
 from attrs import field, frozen
 
@@ -28,7 +27,8 @@ from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
-from missionfsm.kernel.step import Match, Mismatch, State, Step, View
+from missionfsm.kernel.step import Match, Mismatch, Step
+from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, View, World
 
 
 @frozen
@@ -89,10 +89,10 @@ class Drive:
     """
 
     name: str
-    steps: Callable[[State, Any, tuple[int | None, ...]], tuple[Step, ...]]
+    steps: Callable[[State, Incident, Refs], tuple[Step, ...]]
     by_itself: tuple[Hashable, ...] = ()
     cite: Citation | None = None
-    renumbers: Callable[[Any], tuple[Hashable, ...]] | None = None
+    renumbers: Callable[[Incident], tuple[Hashable, ...]] | None = None
     ends: bool = False
     impossible: tuple[str, ...] = ()
     waits: Callable[[State], bool] = lambda _: False
@@ -117,7 +117,7 @@ class Parting:
         whose: an event to the part that it is about; None where it is about all of them.
     """
 
-    parts: Callable[[Any, frozenset[str]], tuple[Hashable, ...]]
+    parts: Callable[[World, frozenset[str]], tuple[Hashable, ...]]
     part: Callable[[Spec, Hashable], Spec]
     whose: Callable[[Event], Hashable | None]
 
@@ -137,9 +137,9 @@ class Glimpses:
     """
 
     world: Callable[[State], Hashable]
-    shown: Callable[[Any, Any], tuple[tuple[State, View], ...]]
-    samples: Callable[[Any], tuple[State, ...]]
-    topic: Callable[[Any], Hashable]
+    shown: Callable[[World, Content], tuple[tuple[State, View], ...]]
+    samples: Callable[[World], tuple[State, ...]]
+    topic: Callable[[Content], Hashable]
     follows: Callable[[State, tuple[int, ...], State, tuple[int, ...]], bool]
 
 
@@ -222,47 +222,47 @@ class Spec:
 
     system: str
     title: str
-    initial: Callable[[Any], State]
+    initial: Callable[[World], State]
     operations: Mapping[str, Operation]
-    outcomes: Callable[[State, Any, tuple[int | None, ...]], tuple[Step, ...]]
+    outcomes: Callable[[State, Request, Refs], tuple[Step, ...]]
     drives: Mapping[str, Drive]
     urgent: Callable[[State], tuple[Step, ...]]
-    matches: Callable[[View, Any], tuple[Match, ...] | Mismatch]
+    matches: Callable[[View, Content], tuple[Match, ...] | Mismatch]
     delivery: Callable[[Hashable], Delivery]
     sequence: Callable[[str], tuple[Assumption, ...] | Mismatch]
     names: Callable[[State], int]
-    request_operation: Callable[[Any], str]
+    request_operation: Callable[[Request], str]
     ambiguities: tuple[Ambiguity, ...] = ()
-    failing: Callable[[Any, str], Failure | None] = lambda _, __: None
-    looks: Callable[[View, Any], Hashable] = lambda _, __: None
+    failing: Callable[[Request, str], Failure | None] = lambda _, __: None
+    looks: Callable[[View, Content], Hashable] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
     silent_for: Callable[[State, Focus], tuple[Step, ...]] | None = None
     calmed: Callable[[State], State] = lambda state: state
     closing: Callable[[State, Hashable], tuple[Step, ...]] | None = None
     concerns: Callable[[Hashable, Hashable], bool] = operator.eq
-    describe: Callable[[Any], str] = repr
+    describe: Callable[[Request | View | State], str] = repr
     rules: tuple[Rule, ...] = ()
-    charts: tuple[Chart[Any], ...] = ()
+    charts: tuple[Chart[State], ...] = ()
     invariants: tuple[Invariant, ...] = ()
     possibilities: tuple[Invariant, ...] = ()
-    answers: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None
-    lasting: Callable[[Any], tuple[tuple[tuple[str, Hashable], ...], ...]] | None = None
+    answers: Callable[[Shape, Shape], tuple[Match, ...] | Mismatch] | None = None
+    lasting: Callable[[Content], tuple[tuple[tuple[str, Hashable], ...], ...]] | None = None
     recalls: bool = False
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
-    foresees: Callable[[State, tuple[int, ...], Any, tuple[int, ...], frozenset[str]], bool] | None = None
-    succeeds: Callable[[State, tuple[int, ...], Any, tuple[int, ...], tuple[int, ...]], bool] | None = None
+    foresees: Callable[[State, tuple[int, ...], Content, tuple[int, ...], frozenset[str]], bool] | None = None
+    succeeds: Callable[[State, tuple[int, ...], Request, tuple[int, ...], tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = field(factory=Abstraction)
     parting: Parting | None = None
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
-    unowed: Callable[[State, Hashable, Any, tuple[int | None, ...]], tuple[str, ...]] | None = None
+    unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None
     middle: Middle | None = None
     anywhere: bool = False
     others: bool = False
-    used: Callable[[Any], State] | None = None
+    used: Callable[[World], State] | None = None
 
     def size(self, state: State) -> int:
         """How large a state is for a search."""

@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import Any
 
 from attrs import frozen
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.terms import State, View
 from missionfsm.kernel.values import value
-
-State = Any
-"""A frozen, hashable value of the system."""
 
 ONCE_HAD = -1
 """In the place of the position of a name: the state has it no more."""
-
-View = Any
-"""What one message shows, as a frozen, hashable value; names are left out and stand beside it."""
 
 
 @value

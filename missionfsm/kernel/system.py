@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from attrs import field, frozen
 
@@ -15,6 +14,7 @@ from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.shapes import Shapes
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
+from missionfsm.kernel.terms import State
 
 
 @frozen
@@ -36,11 +36,11 @@ class StepMutation:
 
     rule: str
     says: str
-    twist: Callable[[Any, Step], Step | None]
+    twist: Callable[[State, Step], Step | None]
     at: str = ""
 
 
-def breaks(rule: Rule, **step_mutations: Callable[[Any, Step], Step | None]) -> tuple[StepMutation, ...]:
+def breaks(rule: Rule, **step_mutations: Callable[[State, Step], Step | None]) -> tuple[StepMutation, ...]:
     """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the twist."""
     return tuple(
         StepMutation(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in step_mutations.items()

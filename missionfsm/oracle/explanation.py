@@ -15,7 +15,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
-from missionfsm.kernel.step import Emission, State, Step, View
+from missionfsm.kernel.step import Emission, Step
+from missionfsm.kernel.terms import State, View
 from missionfsm.kernel.values import value
 
 Names = tuple[int, ...]

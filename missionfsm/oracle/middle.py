@@ -16,7 +16,8 @@ from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settle
 from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Glimpses, Spec
-from missionfsm.kernel.step import Match, Mismatch, View
+from missionfsm.kernel.step import Match, Mismatch
+from missionfsm.kernel.terms import View
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,

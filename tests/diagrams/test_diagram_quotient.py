@@ -12,12 +12,13 @@ from attrs import evolve, frozen
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Alphabet, Input
 from missionfsm.kernel.history import Answer, Name
-from missionfsm.kernel.picture import Refs, Sketch
+from missionfsm.kernel.picture import Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import ONCE_HAD, Mismatch, Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Refs
 from missionfsm.tools.draw import diagram as picture
 from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay
 from missionfsm.tools.draw.gallery import Picture

@@ -8,7 +8,8 @@ from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import ANY_NAME, Input
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Refs, Sketch
+from missionfsm.kernel.picture import Sketch
+from missionfsm.kernel.terms import Refs
 
 _MOST = 4
 """Listed missions: enough for two to wait behind one, after another has ended."""

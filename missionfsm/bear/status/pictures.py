@@ -5,7 +5,8 @@ from __future__ import annotations
 from missionfsm.bear.status.state import GET, Endpoint, Fleet, Happening, Request
 from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Refs, Sketch
+from missionfsm.kernel.picture import Sketch
+from missionfsm.kernel.terms import Refs
 
 _OWN, _FOREIGN = "r1", "x1"
 _WORLD: JSON = {

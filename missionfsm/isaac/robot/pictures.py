@@ -5,7 +5,8 @@ from __future__ import annotations
 from missionfsm.isaac.robot.inputs import UNUSABLE, Arrives, Event, Passes
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Refs, Sketch
+from missionfsm.kernel.picture import Sketch
+from missionfsm.kernel.terms import Refs
 
 _MISSION = '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"%s"}}}'
 _DRIVES: tuple[JSON, ...] = (

@@ -10,7 +10,8 @@ from missionfsm.isaac.server.state import ENDED, Mission, Sends, Server, Status
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
 from missionfsm.kernel.alphabet import Input, as_text, pick
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Refs, Sketch
+from missionfsm.kernel.picture import Sketch
+from missionfsm.kernel.terms import Refs
 
 _ROBOTS = ("carter-01", "carter-02")
 _STATUSES = ("running", "success", "failure")

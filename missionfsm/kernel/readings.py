@@ -207,9 +207,19 @@ def clashes(ambiguities: tuple[Ambiguity, ...], assumed: int) -> tuple[tuple[Amb
     )
 
 
-def unflagged(ambiguities: Iterable[Ambiguity]) -> int:
+def unflagged(ambiguities: tuple[Ambiguity, ...]) -> int:
     """What is assumed where nothing departs from the letter of the text."""
-    return meet(UNCONSTRAINED, (one.besides(*one.flagged) for one in ambiguities if one.flagged))
+    return meet(UNCONSTRAINED, _lettered(ambiguities))
+
+
+def departs(ambiguities: tuple[Ambiguity, ...], assumed: int) -> bool:
+    """Whether an execution with these assumptions reads something against the letter of the text."""
+    return not meet(assumed, _lettered(ambiguities))
+
+
+@functools.cache
+def _lettered(ambiguities: tuple[Ambiguity, ...]) -> tuple[Assumption, ...]:
+    return tuple(one.besides(*one.flagged) for one in ambiguities if one.flagged)
 
 
 def by_bit(ambiguities: Iterable[Ambiguity]) -> dict[int, int]:

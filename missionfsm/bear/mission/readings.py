@@ -190,7 +190,7 @@ AM_08 = Ambiguity(
     "Which state does a waiting mission report?",
     {"a": "STATE_DEFAULT", "b": "STATE_UNKNOWN or none", "c": "STATE_PAUSED, if the index does not point at it"},
     default="a",
-    flagged=frozenset("c"),
+    flagged=frozenset("bc"),
 )
 _QUEUE_AFTER_CANCEL = {
     "a": "the next mission starts",
@@ -203,6 +203,7 @@ AM_09 = Ambiguity(
     "What becomes of the queue when the active mission is cancelled?",
     _QUEUE_AFTER_CANCEL,
     default="a",
+    flagged=frozenset("d"),
     alike="AM-09",
 )
 AM_09_SKIP = Ambiguity(
@@ -210,6 +211,7 @@ AM_09_SKIP = Ambiguity(
     "What becomes of the queue when skipping the last goal cancels the active mission?",
     _QUEUE_AFTER_CANCEL,
     default="a",
+    flagged=frozenset("d"),
     alike="AM-09",
 )
 _QUEUE_AFTER_FAILURE = {**_QUEUE_AFTER_CANCEL, "e": "the waiting missions fail too"}
@@ -218,6 +220,7 @@ AM_10 = Ambiguity(
     "What becomes of the queue when the active mission fails?",
     _QUEUE_AFTER_FAILURE,
     default="a",
+    flagged=frozenset("d"),
     alike="AM-10",
 )
 AM_10_START = Ambiguity(
@@ -225,6 +228,7 @@ AM_10_START = Ambiguity(
     "What becomes of the queue when a mission fails as it is to start?",
     _QUEUE_AFTER_FAILURE,
     default="a",
+    flagged=frozenset("d"),
     alike="AM-10",
 )
 AM_11 = _each(
@@ -248,6 +252,7 @@ AM_12_HALTED = _each(
     {"a": "the mission waits with the others", "b": "FAILED_PRECONDITION", "c": "it sets the queue going again"},
     "a",
     APPENDING,
+    flagged="b",
 )
 AM_13 = _each(
     "AM-13",
@@ -268,6 +273,7 @@ AM_14_GAP = Ambiguity(
     "What is current_mission_index when nothing is active but a mission is about to start?",
     {"c": "-1", "d": "the mission before", "e": "the next mission"},
     default="c",
+    flagged=frozenset("de"),
 )
 AM_14_HALTED = Ambiguity(
     "AM-14.halted",
@@ -296,13 +302,20 @@ AM_17_LAST = _each(
     "a",
     _kinds(kind for kind in Kind if kind not in PATROLS | GOALLESS),
 )
-AM_17_PATROL = _each(
-    "AM-17.patrol",
-    "What does skipping the last goal of {} do?",
-    {**_AT_THE_LAST, "f": "it goes on at the first goal"},
-    "f",
-    _kinds(kind for kind in Kind if kind in PATROLS),
-)
+LOOPS = PATROLS - {Kind.SERVI_HOSTING_PATROL}
+"""The patrols of which the page says that they loop, so that another goal follows the last."""
+AM_17_PATROL = {
+    part: one
+    for kinds, flagged in ((LOOPS, "abcd"), (PATROLS - LOOPS, ""))
+    for part, one in _each(
+        "AM-17.patrol",
+        "What does skipping the last goal of {} do?",
+        {**_AT_THE_LAST, "f": "it goes on at the first goal"},
+        "f",
+        _kinds(kind for kind in Kind if kind in kinds),
+        flagged,
+    ).items()
+}
 AM_18 = _each(
     "AM-18",
     "What does skipping the goal of {} do?",
@@ -356,12 +369,14 @@ AM_29 = _each(
     {"a": "FAILED_PRECONDITION", "b": "OK, and nothing changes"},
     "a",
     {"pause": "pausing a paused mission", "resume": "resuming a running mission"},
+    flagged="b",
 )
 AM_30 = Ambiguity(
     "AM-30",
     "When does a finished mission succeed?",
     {"a": "at once", "b": "at its current goal"},
     default="a",
+    flagged=frozenset("b"),
 )
 AM_31 = Ambiguity(
     "AM-31",
@@ -424,6 +439,7 @@ AM_38_DOCK = Ambiguity(
         "g": "INVALID_ARGUMENT",
     },
     default="a",
+    flagged=frozenset("cdg"),
 )
 DOCK, LOCATION = "dock", "location"
 AM_38_BUSY = {
@@ -535,6 +551,7 @@ AM_50_MEMBER = Ambiguity(
     "Which feedback does a base mission of a Servi or Carti robot report?",
     {"c": "that of the mission's kind", "d": "that of the robot's family"},
     default="c",
+    flagged=frozenset("d"),
 )
 AM_51 = _each(
     "AM-51",
@@ -542,6 +559,7 @@ AM_51 = _each(
     {"a": "base_type", "b": "the type of the robot's family"},
     "a",
     _kinds((Kind.BASE_NAVIGATE, Kind.BASE_NAVIGATE_AUTO)),
+    flagged="b",
 )
 _UNABLE = "{}: what is answered where the robot is unable to start a mission?"
 AM_53 = {

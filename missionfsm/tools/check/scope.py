@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from attrs import evolve
 
-from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, clashes, constrain, meet, unflagged
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, clashes, constrain, meet, unflagged
 from missionfsm.kernel.rules import OK, UNIMPLEMENTED
 from missionfsm.kernel.spec import Spec
 from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, Untested
@@ -74,6 +74,27 @@ def flagged(
         *(_departure(one, left[one.id], rulings) for one in departing),
         *_incoherences(apart, left, rulings),
     )
+
+
+def flagged_in_all(
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Eliminations, several: Iterable[Iterable[int]]
+) -> tuple[str, ...]:
+    """What `flagged` says of several conversations that follow the same readings, an ambiguity once.
+
+    Args:
+        several: of each conversation that has one, what its explanations assume.
+    """
+    lines = flagged(spec, readings, rulings)
+    followed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
+    for ways in several:
+        told = {line.partition("=")[0] for line in lines}
+        left = [way & followed for way in sorted(ways) if meet(way, _decided(spec, followed))]
+        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.partition("=")[0] not in told)
+    return lines
+
+
+def _decided(spec: Spec, assumed: int) -> Iterable[Assumption]:
+    return (one.where(assumed & one.group) for one in spec.ambiguities)
 
 
 def _size(way: tuple[list[Ambiguity], tuple[tuple[Ambiguity, Ambiguity], ...], int]) -> int:

@@ -14,7 +14,7 @@ from missionfsm.tools.check.baseline import Baseline, held_against
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.narrate import story
-from missionfsm.tools.check.scope import flagged, held_to_the_text, unchecked, uncovered, untested
+from missionfsm.tools.check.scope import flagged_in_all, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Outcome, Verdict
 from missionfsm.tools.conform.coverage import rare
@@ -213,7 +213,7 @@ def verdict_of(
         left_out,
         violation,
         because,
-        (*flagged(spec, followed, ledger.rulings), *ledger.oddities),
+        (*flagged_in_all(spec, followed, ledger.rulings, ledger.departing), *ledger.oddities),
         unchecked(spec, (*used, *run.partner.info.drives)),
         _untested(run, left_out),
         story(run.system, violation.history) if violation and run.found is not None else "",

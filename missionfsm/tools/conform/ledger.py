@@ -6,6 +6,7 @@ from collections import Counter
 
 from attrs import define, field
 
+from missionfsm.kernel.readings import departs
 from missionfsm.kernel.system import System
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Violation
@@ -26,6 +27,7 @@ class Ledger:
         rulings: ambiguity and letter to the event in that conversation.
         contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
         aside: ambiguities of which it is known that no single reading is followed.
+        departing: of each conversation whose every explanation departs from the text somewhere, what these assume.
         notes: what else there is to know about how the run went.
     """
 
@@ -41,6 +43,7 @@ class Ledger:
     rulings: dict[tuple[str, str], Elimination] = field(factory=dict)
     contradiction: str | None = None
     aside: set[str] = field(factory=set)
+    departing: dict[frozenset[int], None] = field(factory=dict)
     notes: list[str] = field(factory=list)
 
     def note(self, says: str) -> None:
@@ -61,6 +64,9 @@ class Ledger:
         """Enter the readings of a conversation that is explained; the ambiguities of which none is left by now."""
         contradicted = []
         left = done.judge.belief.readings
+        ways = frozenset(one.assumed for one in done.judge.belief.node.explanations)
+        if all(departs(self.system.spec.ambiguities, way) for way in ways):
+            self.departing[ways] = None
         for ambiguity in self.system.spec.ambiguities:
             letters = left.get(ambiguity.id)
             if letters is None or ambiguity.id in self.aside:

@@ -15,7 +15,6 @@ from missionfsm.cli.common import (
     readable,
     refuse_outputs,
     say_shown,
-    the_system,
     write_json,
 )
 from missionfsm.cli.options import (
@@ -36,7 +35,6 @@ from missionfsm.cli.progress import Bar
 from missionfsm.cli.reports import annotate, known_violations, write_junit
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.text import printable
-from missionfsm.systems import names
 from missionfsm.tools.check.verdict import Verdict
 
 
@@ -89,9 +87,7 @@ def check(  # noqa: PLR0913 - options of the command
         "others": others,
         "settled_after": settled_after,
     }
-    known = Baseline(
-        known_violations(expect_violations, *map(the_system, names())) if expect_violations is not None else ()
-    )
+    known = Baseline(known_violations(expect_violations))
     with one_line_errors():
         found = histories(files)
     refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*found, expect_violations))

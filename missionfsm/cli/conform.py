@@ -185,7 +185,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     calls: dict[str, Any] = {
         option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))
     }
-    known = known_violations(expect_violations, judged)
+    known = known_violations(expect_violations, judged=judged)
     outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit, "--trace": trace}
     refuse_outputs(outputs, (expect_violations, missions))
     limit = TimeLimit(seconds)

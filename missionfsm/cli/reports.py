@@ -50,7 +50,7 @@ def write_record(path: str | None, system: System, verdict: Verdict) -> None:
         write_history(path, history)
 
 
-def known_violations(path: str | None, judged: System | None = None) -> tuple[str, ...]:
+def known_violations(path: str | None, *, judged: System | None = None) -> tuple[str, ...]:
     """The rules of a system, or of all, that a file lists as known to be broken; bad input if one of them is none."""
     if path is None:
         return ()

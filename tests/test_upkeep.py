@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -121,6 +123,24 @@ CALLED_BY_OTHERS = {
 def of(path: Path) -> str:
     """The module in a file, without the name of the whole."""
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def fields_left_out(path: Path) -> list[str]:
+    """The fields of a module's classes that their list of attributes does not describe."""
+    left = []
+    for found in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        says = ast.get_docstring(found) or "" if isinstance(found, ast.ClassDef) else ""
+        if isinstance(found, ast.ClassDef) and "Attributes:" in says:
+            described = re.findall(r"^ {4}([a-z_, ]+):", says.partition("Attributes:")[2], re.MULTILINE)
+            names = {name.strip() for line in described for name in line.split(",")}
+            fields = (one.target for one in found.body if isinstance(one, ast.AnnAssign))
+            left += [f"{found.name}.{one.id}" for one in fields if isinstance(one, ast.Name) and one.id not in names]
+    return left
+
+
+def test_the_kernel_describes_every_field() -> None:
+    """Where a class of the kernel lists its attributes, it lists all of them."""
+    assert [left for path in sorted((ROOT / "kernel").glob("*.py")) for left in fields_left_out(path)] == []
 
 
 @pytest.mark.long

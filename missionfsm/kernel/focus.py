@@ -10,11 +10,10 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
 RECEIVED, RETURNED, DRIVEN, ENDED, SETTLED = "received", "returned", "driven", "ended", "settled"
-
-Refs = tuple[int | None, ...]
 
 
 @value(cache_hash=True)

@@ -48,6 +48,8 @@ class Plan:
     """Missions that wait for one another.
 
     Attributes:
+        name: what the files of the picture are called.
+        title: what it shows, in a few words.
         missions: each in a few lines.
         upstream: of each the indices of those that it waits for.
     """

@@ -104,7 +104,11 @@ class Rule:
         name: the condition or the promise as a phrase, words joined by hyphens.
         says: one line for people.
         argues: why the sentence is read so; may be empty.
+        cite: where the sentence stands.
+        code: the gRPC status of a refusal; None for a promise.
+        holds: the condition of a refusal.
         under: the reading that makes the condition refuse, or None where no reading matters.
+        kind: what sort of check a refusal is, where readings rank the sorts (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
     """
 
@@ -164,6 +168,9 @@ class Operation:
     """What a caller may ask, with the rules of its Errors table in the order in which a reader meets them.
 
     Attributes:
+        name: what the document calls it.
+        system: whose it is.
+        cite: where the document describes it.
         refusals: rules with a code, registered under this operation.
         failures: codes that may come at any time without anybody's doing (INTERNAL, DEADLINE_EXCEEDED).
         streaming: whether the answer opens a stream.

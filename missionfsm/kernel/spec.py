@@ -79,9 +79,11 @@ class Drive:
     """Something that a tester may be able to make happen.
 
     Attributes:
+        name: what adapters and histories call it.
         steps: (state, event, refs) to the ways in which it happens; none where it does not apply. `refs` are the
             positions of the event's names among those of the state, as for outcomes.
         by_itself: the events that the environment may produce unseen where nobody drives them.
+        cite: where the documents speak of it, if they do.
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
         ends: what arrived while it was being done, arrived before it (it ends a channel).
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
@@ -162,35 +164,42 @@ class Middle:
 class Spec:
     """A system as a nondeterministic labelled transition system.
 
+    Every system has the first twelve; the others have a default, which says that there is nothing of the kind.
+
     Attributes:
         system: its name on the command line.
         title: what it is, in a few words.
         initial: the state in a world (the parameters that `reset` is given, as a value of the system).
-        used: the same where what was before the reset lives on, but for what is there; None where that is no other.
         operations: what callers may ask, by name.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
             are the positions of the request's names among those of the state, None for one that the state has not, or
             `ONCE_HAD` for one that it had once, if the spec `recalls` names.
-        failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated
-            among the outcomes.
         drives: what a tester may make happen, by name.
         urgent: what must have happened once things have settled.
+        matches: (view, content) to the ways in which the message shows the view, or why it does not.
+        delivery: topic to how its messages travel.
+        sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
+            `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
+        names: how many names a state has.
+        request_operation: request to the name of its operation.
+        ambiguities: the questions that its documents leave open; an assumption is a set of their readings.
+        failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated among
+            the outcomes.
+        looks: (view, content) to what is remembered of a message that came, so that an owed one which looks the same is
+            not due: nobody could tell it from the one before. It is the content itself, or None where only an equal
+            view looks the same, as in systems whose messages have names.
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
         silent_for: (state, what is observed) to those among its urgent and spontaneous steps that are enough to be
             thought of before that, since the others can as well come after it; None: all are.
         calmed: state to the one in which nothing that a step has left open happened before things settled.
-        matches: (view, content) to the ways in which the message shows the view, or why it does not.
-        delivery: topic to how its messages travel.
-        looks: (view, content) to what is remembered of a message that came, so that an owed one which looks the same is
-            not due: nobody could tell it from the one before. It is the content itself, or None where only an equal
-            view looks the same, as in systems whose messages have names.
-        sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
-            `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
+        closing: (state, topic) to the ways in which the system may at any time close the channel of that topic, and an
+            end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
         concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
-        names: how many names a state has.
-        request_operation: request to the name of its operation.
         describe: a request, a view or a state in a few words for people.
         rules: all rules of the system that belong to no operation.
+        charts: the state machines of its documents, each a table: what they are drawn from.
+        invariants: what holds in every state that can be reached.
+        possibilities: what holds in some state that can be reached.
         answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
             why they do not; None where they have to be equal.
         lasting: the content of a message to what of the thing with each of its names may never change as long as it is
@@ -202,14 +211,13 @@ class Spec:
         rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
         foresees: (state, its names, content, names of the content, operations) to whether the state may come to be
             shown as the content, by calls of those operations and whatever steps else; None where nothing is known of
-            that. Names are numbers; one below -1 was not
-            seen yet and may be any. It has to be true wherever it is possible: it only saves a search the trouble.
+            that. Names are numbers; one below -1 was not seen yet and may be any. It has to be true wherever it is
+            possible: it only saves a search the trouble.
         succeeds: (state, its names, request, its names, names of the answer) to whether the state may come to one in
             which the request is answered OK so; None where nothing is known of that. As for `foresees`.
         abstraction: how a search and an exploration look at its states.
+        parting: how it falls into parts that do not touch one another; None where it is one.
         waived: what its documents say and no rule checks.
-        closing: (state, topic) to the ways in which the system may at any time close the channel of that topic,
-            and an end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
             are broken by a message that nothing owes; None where those of the topic's `Delivery` say it.
@@ -218,6 +226,8 @@ class Spec:
         middle: what lets it be judged without its beginning, or None where that cannot be.
         anywhere: whether what is observed began while it was in use (`missionfsm.kernel.middle`).
         others: whether others, whose calls are not observed, use it as well.
+        used: world to the state after a soft reset, in which ids that were given before stay used; None where that is
+            the initial one.
     """
 
     system: str

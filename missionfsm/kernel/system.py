@@ -52,6 +52,10 @@ class System:
     """A specification, how its JSON is read, and what is worth trying (in a world, within bounds).
 
     Attributes:
+        name: what the command line calls it.
+        spec: what it does.
+        codec: how its JSON is read and written.
+        alphabet: (world, bounds) to what is worth trying.
         naming: how its names are made up and written.
         message_mutations, step_mutations: how an implementation may break its promises, besides the ways that fit
             any system.

@@ -13,10 +13,11 @@ from typing import Any
 from attrs import evolve
 
 from missionfsm.kernel.codec import Malformed
-from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Refs
+from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.step import Match, Mismatch, Step
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import (

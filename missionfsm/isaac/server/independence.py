@@ -13,7 +13,8 @@ from collections.abc import Hashable
 from missionfsm.isaac.server.inputs import NAME, Drops, Incoming, Submission
 from missionfsm.isaac.server.readings import AI_19
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Server, topic
-from missionfsm.kernel.focus import DRIVEN, RETURNED, Focus, Refs
+from missionfsm.kernel.focus import DRIVEN, RETURNED, Focus
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
 

@@ -161,6 +161,10 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         message = f"expected: {judged.name} has no rule {unknown[0]!r}"
         raise ValueError(message)
     end = None if seconds is None else time.monotonic() + seconds
+
+    def enough() -> bool:
+        return end is not None and time.monotonic() > end
+
     own: Child | None = None
     if implementation is None:
         subject: Subject = ReferenceSubject(judged)
@@ -168,7 +172,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         message = f"a command is a list, such as {shlex.split(implementation)}"
         raise TypeError(message)
     elif isinstance(implementation, Sequence):
-        subject = own = Child(implementation, timeout)
+        subject = own = Child(implementation, timeout, stopped=enough)
     else:
         subject = implementation
     try:
@@ -183,7 +187,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
             no_flagged=no_flagged,
             expected=expected,
             distinguish=distinguish,
-            enough=lambda: end is not None and time.monotonic() > end,
+            enough=enough,
         )
     finally:
         if own is not None:

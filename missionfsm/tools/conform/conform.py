@@ -37,6 +37,12 @@ part of the tours that is left, since those are led and need not find it."""
 AGAIN = 0.6
 """How often what the surroundings did happens once more at once: goal after goal, say."""
 
+EXPERIMENTS, ADVICE = "telling open readings apart", "what would decide open readings and why rules came up seldom"
+"""What a run that is stopped may not come to, besides conversations."""
+
+LONGEST_SUSPECTED = 60
+"""Lines of a history in which suspects are looked for although the time is up."""
+
 
 @frozen
 class Plan:
@@ -136,18 +142,22 @@ def conform(  # noqa: PLR0913 - every one has a default
         expects=known,
         enough=enough,
     )
+    left = [what for what, wanted in ((EXPERIMENTS, distinguish), (ADVICE, advice)) if wanted]
     try:
         search(run, plan, seed)
         if distinguish and not _has_found(run):
             tell_apart(run)
+            if not enough():
+                left.remove(EXPERIMENTS)
     except SubjectError as error:
         if not enough():
             raise
         run.ledger.note(f"the adapter had not answered when it was stopped: {error}")
-    if enough() and not _has_found(run):
-        left = f" of {plan.conversations(run.system)}"
-        run.ledger.note(f"it was stopped after {run.ledger.examples}{left} conversations")
     verdict = verdict_of(run, seed, known, advice=advice)
+    if enough() and not _has_found(run):
+        done = f"it was stopped after {run.ledger.examples} of {plan.conversations(run.system)} conversations"
+        rest = f"; it did not come to {', nor to '.join(left)}" if left else ""
+        verdict = evolve(verdict, notes=(*verdict.notes, done + rest))
     return held_to_the_text(verdict) if no_flagged else verdict
 
 
@@ -193,7 +203,9 @@ def verdict_of(
         judge = run.found.judge
         assert judge.violation is not None, "what was found was not explained"  # noqa: S101 - shorten keeps it so
         outcome, followed = Outcome.VIOLATES, judge.belief.readings
-        violation = with_suspects(run.system, judge.violation, run.narrowing.asked_for)
+        violation = judge.violation
+        if len(violation.history) <= LONGEST_SUSPECTED or not run.enough():
+            violation = with_suspects(run.system, violation, run.narrowing.asked_for)
     elif ledger.contradiction is not None:
         if asks_again:
             shorten_evidence(run)
@@ -219,7 +231,7 @@ def verdict_of(
         story(run.system, violation.history) if violation and run.found is not None else "",
         by_ambiguity(spec.ambiguities, ledger.rulings),
         tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
-        rare=rare(run.system, exercised, ledger.steps, followed) if advice and not run.enough() else {},
+        rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advice else {},
         known={rule: times for rule, times in known.met.items() if times},
         notes=tuple(ledger.notes),
         advised=advice,

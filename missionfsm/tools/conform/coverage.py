@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from typing import Any
 
 from missionfsm.kernel.alphabet import Bounds
@@ -23,32 +23,50 @@ SITUATIONS = 12
 
 
 def rare(
-    system: System, exercised: Mapping[str, int], steps: int, readings: Mapping[str, tuple[str, ...]]
+    system: System,
+    exercised: Mapping[str, int],
+    steps: int,
+    readings: Mapping[str, tuple[str, ...]],
+    enough: Callable[[], bool] = lambda: False,
 ) -> dict[str, str]:
     """The rules that were exercised less than `RATE` times in `PER` steps, each with the reason.
+
+    None of them where the time was up before all were counted.
 
     Args:
         exercised: rule id to how often it was.
         steps: calls and drives of the run.
         readings: ambiguity id to the readings that are followed, as far as any were ruled out.
+        enough: whether no more should be done.
     """
     seldom = [rule for rule in system.spec.all_rules if exercised.get(rule.id, 0) * PER < RATE * steps]
     if not seldom:
         return {}
-    census = Census(system, readings)
+    census = Census(system, readings, enough)
+    if enough():
+        return {}
     return {rule.id: census.why(rule) for rule in seldom}
 
 
 class Census:
     """How often each rule comes up in the model, within small bounds, under the readings that are followed.
 
+    Args:
+        enough: whether no more should be counted.
+
     Attributes:
         moves: how many ways to do something there are in all situations together.
         ways: rule id to in how many of them it comes up; `worlds`: in which worlds.
     """
 
-    def __init__(self, system: System, readings: Mapping[str, tuple[str, ...]]) -> None:
+    def __init__(
+        self,
+        system: System,
+        readings: Mapping[str, tuple[str, ...]],
+        enough: Callable[[], bool] = lambda: False,
+    ) -> None:
         self.system = system
+        self._enough = enough
         self.readings = readings
         self.moves = self.situations = 0
         self.ways: Counter[str] = Counter()
@@ -87,6 +105,8 @@ class Census:
                 situations.add(situation)
                 self.situations += 1
                 for steps in self._moves(here, everything):
+                    if self._enough():
+                        return
                     self._count(world, steps)
             for step in itertools.chain.from_iterable(self._moves(here, plain)):
                 if step.after not in found and size(step.after) <= BOUNDS.size:

@@ -1,4 +1,8 @@
-"""Conversations that are drawn: a Hypothesis state machine made from the spec."""
+"""Conversations that are drawn: a Hypothesis state machine made from the spec.
+
+Hypothesis draws the same again and counts on it that the same can then be drawn. What an implementation has answered is
+not the same every time, so what is drawn, and from how much, depends on what was drawn before and on nothing else.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +25,8 @@ from missionfsm.tools.placeholders import is_template, kind_of, slots
 
 CHOICES = 12
 """Among how many of the least walked edges a guided step draws."""
+NAMES = 1 << 16
+"""From how many numbers a name is drawn, however many names were given."""
 
 
 class _Found(BaseException):
@@ -96,11 +102,11 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
         def walk_what_was_walked_least(self, data: st.DataObject) -> None:
             # What is drawn must not depend on other conversations, so the guide does not learn from these.
             proposals = run.guide.proposals(run.conversation, self.world)
-            choice = data.draw(st.integers(0, CHOICES - 1))
+            choice, settles = data.draw(st.integers(0, CHOICES - 1)), data.draw(st.booleans())
             if proposals:
                 one = proposals[choice % len(proposals)]
                 self.act(one.method, one.params, one.name, one.picks)
-                if data.draw(st.booleans()):
+                if settles:
                     self.act(SETTLE)
 
         def teardown(self) -> None:
@@ -137,7 +143,8 @@ def _call_rule(run: Run, method: str) -> Any:  # noqa: ANN401 - a rule of Hypoth
         name: NameRef | str | None = None
         if ANY_NAME in repr(prompt.params):
             texts = [given for given, one in run.conversation.given.items() if isinstance(one, str)]
-            name = data.draw(st.sampled_from([*reversed(texts), *alphabet.wrong_names]))
+            names = (*reversed(texts), *alphabet.wrong_names)
+            name = names[data.draw(st.integers(0, NAMES)) % len(names)]
         self.act(method, prompt.params, name, _picks(run, prompt.params, data))
         if data.draw(st.booleans()):
             self.act(SETTLE)
@@ -151,7 +158,7 @@ def _picks(run: Run, params: JSON, data: st.DataObject) -> Bindings:
     picks = []
     for slot, kind in slots(params).items() if is_template(params) else ():
         known = [given for given, name in run.conversation.given.items() if kind_of(name) == kind]
-        choice = data.draw(st.integers(0, len(known)))
+        choice = data.draw(st.integers(0, NAMES)) % (len(known) + 1)
         if choice < len(known):
             picks.append((slot, known[-1 - choice]))
     return tuple(picks)

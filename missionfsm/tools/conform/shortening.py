@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError
-from missionfsm.tools.conform.actions import Action, length
+from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.conform.actions import SETTLE, Action, length
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortest import everything, shortest
@@ -41,11 +42,11 @@ def shortened(run: Run, found: Conversation, *, known: Callable[[Conversation], 
     best = [found]
     seen, tried = 0, 0
     try:
-        again = run.replay(found.world, tuple(found.actions), found.judge.automaton)
+        again = _again(run, found, found.judge.automaton)
         attempt = _Attempt(run, found, 1 if shows(again) else TRIES)
         _shorten(run, found, attempt, best, shows)
         while tried < TRIES and not run.enough():
-            shown = shows(run.replay(best[0].world, tuple(best[0].actions), found.judge.automaton))
+            shown = shows(_again(run, best[0], found.judge.automaton))
             if run.enough() and not shown:
                 break  # it was not had to its end
             tried, seen = tried + 1, seen + shown
@@ -56,6 +57,14 @@ def shortened(run: Run, found: Conversation, *, known: Callable[[Conversation], 
     if run.enough():
         run.ledger.note("the violation was not made as short as can be: the time was up")
     return best[0]
+
+
+def _again(run: Run, found: Conversation, automaton: Automaton) -> Conversation:
+    """The same once more; what was seen before anything was waited for may this time take until all has settled."""
+    tried = run.replay(found.world, tuple(found.actions), automaton)
+    if tried.right and not run.enough():
+        tried.perform(Action(1 + max((action.serial for action in found.actions), default=0), SETTLE))
+    return tried
 
 
 class _Attempt:

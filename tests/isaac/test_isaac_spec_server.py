@@ -102,11 +102,39 @@ def test_a_timeout_has_a_moment(seconds: float, statuses: str) -> None:
 
 
 def test_a_server_that_looks_now_and_then_has_a_second() -> None:
-    """AI-39 b: nothing is owed at once, and within a second of time that passes it is."""
+    """AI-39 b: nothing is owed at once, and within a second of time that passes it is, whose passes have begun."""
     late = History().submit(1).robot(1).settles.waits(1).sends(1, 1).settles
     assert readings(late.judged(), "AI-39") == ("b",)
-    assert not History().submit(1).robot(1).settles.waits(1).settles.judged().conforms
-    assert History().submit(1).robot(1).settles.waits(0.9).settles.judged().conforms
+
+    def waits(seconds: float, begun: History) -> bool:
+        return begun.submit(1).settles.waits(seconds).settles.judged().conforms
+
+    assert [waits(seconds, History().robot(1).waits(3)) for seconds in (0.9, 1.1)] == [True, False]
+    # When the first pass comes is not said, but that passes are a second apart.
+    assert [waits(seconds, History().robot(1)) for seconds in (2.9, 3.1)] == [True, False]
+    named_later = [waits(seconds, History().waits(3).robot(1)) for seconds in (1.9, 2.1)]
+    assert named_later == [True, False]
+
+
+def test_a_pass_sends_before_or_after_it_takes_up_names() -> None:
+    """AI-39.order: to a name that was said just now a mission is sent in the next pass, or in the one after it."""
+    soon = History().waits(3).submit(1).robot(1).settles.waits(0.9).sends(1, 1).settles
+    late = History().waits(3).submit(1).robot(1).settles.waits(1.1).settles.waits(0.8).sends(1, 1).settles
+    assert [readings(one.judged(), "AI-39.order") for one in (soon, late)] == [("n",), ("s",)]
+
+
+def test_a_pass_that_sends_before_it_notices_a_drop() -> None:
+    """AI-39.order s: a mission is sent in vain on a connection that dropped, which may be seen there, and is lost."""
+    shipped = {**SERVER.profiles["as-shipped"], "AI-25.header": "s"}
+
+    def dropped(*, seen: bool, order: str, second: str) -> bool:
+        begun = History().robot(1).waits(6).submit(1).submit(2).drive("disconnect", connection=1).waits(1.5)
+        begun = (begun.sends(1, 1) if seen else begun).settles.shows("FAILED_DISCONNECTED", second)
+        return begun.judged(readings={**shipped, "AI-39.order": order}).conforms
+
+    assert [dropped(seen=seen, order="s", second="QUEUED") for seen in (False, True)] == [True, True]
+    assert [dropped(seen=seen, order="n", second="QUEUED") for seen in (False, True)] == [False, False]
+    assert not dropped(seen=False, order="s", second="FAILED_DISCONNECTED")
 
 
 def test_what_happens_within_one_stretch_of_time() -> None:

@@ -23,6 +23,7 @@ from missionfsm.isaac.server.readings import (
     AI_37,
     AI_38,
     AI_39,
+    AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
     DROP,
@@ -43,16 +44,16 @@ STATUS_CHANNEL = "mission_status"
 
 def connects(move: Move) -> Move:
     """Somebody connects."""
-    slots = {one.slot for one in move.state.links}
+    slots = {one.slot for one in move.state.ends}
     free = next(slot for slot in range(len(slots) + 1) if slot not in slots)
     return move.to(evolve(move.state, links=(*move.state.links, Link(free))))
 
 
-def drops(move: Move, link: Link) -> Moves:
-    """A connection drops."""
+def drops(move: Move, link: Link, *, seen: bool = False) -> Moves:
+    """A connection drops, or is ended by the server; `seen`: what is sent on it all the same may be seen."""
     waiting = any(one.robot == link.name and one.status is Status.QUEUED for one in move.state.missions)
     because = (rules.DROPPED.id,) if link.serves and waiting else ()
-    for after in closed(move.to(move.state, *because), link):
+    for after in closed(move.to(move.state, *because), link, seen=seen):
         yield from _succeeded(after, link)
 
 
@@ -164,7 +165,8 @@ def _named(move: Move, link: Link, key: str) -> Moves:
 def _claims(move: Move, link: Link, key: str) -> Moves:
     """A connection that serves no robot says a name."""
     holder = move.state.serving(key)
-    move = move.link(link.slot, name=key)
+    passes = "b" in move.state.letters(AI_39) and "s" in move.state.letters(AI_39_ORDER)
+    move = move.link(link.slot, name=key, held=LOOK if passes else 0)
     if holder is None:
         yield from _served(move, link)
         return
@@ -172,7 +174,8 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
     newer = slots.index(link.slot) > slots.index(holder.slot)
     for letter, way in ways(move, AI_16, "a", "b", "d", "n"):
         if letter == "n" and "b" in way.state.letters(AI_39):
-            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=LOOK), link, holder, unnoticed=True)
+            fresh = way.state.next_pass(way.at[1])
+            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=fresh), link, holder, unnoticed=True)
         elif letter == "n" or (letter == "a" and newer):
             yield from _takes_over(way, link, holder)
         elif letter == "d":

@@ -10,7 +10,16 @@ from collections.abc import Iterable, Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.readings import AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31, AMBIGUITIES
+from missionfsm.isaac.server.readings import (
+    AI_05,
+    AI_06,
+    AI_07,
+    AI_24_WHOLE,
+    AI_31,
+    AI_39,
+    AI_39_ORDER,
+    AMBIGUITIES,
+)
 from missionfsm.isaac.server.state import DOOM, DROP, SILENT, START, WAITS, Left, Mission, Move, Server
 from missionfsm.kernel.readings import Ambiguity, Assumption
 
@@ -36,10 +45,19 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
     left = dict(move.state.left)
     left[question.id] = letters
     server = move.state
-    after = Server(server.name_channel, server.missions, server.links, tuple(sorted(left.items())), server.tolerance)
+    after = evolve(server, left=tuple(sorted(left.items())))
+    if question.id == AI_39.id and "b" not in letters:
+        after = evolve(_in_order(after), slow=0)
+    if question.id == AI_39_ORDER.id and "s" not in letters:
+        after = _in_order(after)
     if question.id in _ABOUT_CLOCKS:
         after = evolve(after, missions=tuple(_in_time(after, one) for one in after.missions))
     return Move(after, move.sent, move.rules, move.at)
+
+
+def _in_order(server: Server) -> Server:
+    """A server that takes up names and drops before it sends, or all at once."""
+    return evolve(server, gone=(), links=tuple(evolve(one, held=0) if one.held else one for one in server.links))
 
 
 def _in_time(server: Server, mission: Mission) -> Mission:

@@ -40,7 +40,7 @@ def parts(server: Server) -> tuple[Part, ...]:
     def join(one: Hashable, other: Hashable) -> None:
         groups[group(other)] = group(one)
 
-    named = {link.name for link in server.links if link.name is not None}
+    named = {link.name for link in (*server.links, *server.gone) if link.name is not None}
     anybody = "b" in server.letters(AI_19)
     open_ones = [index for index, one in enumerate(server.missions) if one.status not in ENDED]
     for index in open_ones:
@@ -54,7 +54,7 @@ def parts(server: Server) -> tuple[Part, ...]:
             join(index, ("robot", one.robot))
         if one.robot is None and anybody:
             join(index, "anybody")
-    for link in server.links:
+    for link in (*server.links, *server.gone):
         join(("link", link.slot), ("link", link.slot))
         if link.name is not None:
             join(("link", link.slot), ("robot", link.name))
@@ -66,7 +66,7 @@ def parts(server: Server) -> tuple[Part, ...]:
     slots: dict[Hashable, list[int]] = {}
     for index in open_ones:
         missions.setdefault(group(index), []).append(index)
-    for link in server.links:
+    for link in (*server.links, *server.gone):
         slots.setdefault(group(("link", link.slot)), []).append(link.slot)
     return tuple(
         Part(tuple(missions.get(one, ())), tuple(slots.get(one, ()))) for one in dict.fromkeys((*missions, *slots))
@@ -80,7 +80,7 @@ def concerned(server: Server, focus: Focus) -> tuple[Part, ...]:
     slots: set[int] = set()
     names: set[str | None] = set()
     for at in focus.topics:
-        slots |= {link.slot for link in server.links if topic(link.slot) == at}
+        slots |= {link.slot for link in server.ends if topic(link.slot) == at}
     asked = ((focus.what, focus.refs),) if focus.kind in (RETURNED, DRIVEN) else ()
     for what, refs in (*asked, *focus.calls):
         meant = _missions(server, refs)
@@ -107,4 +107,4 @@ def _missions(server: Server, refs: Refs) -> set[int]:
 
 def _slots(server: Server, refs: Refs) -> set[int]:
     first = 2 * len(server.missions)
-    return {server.links[ref - first].slot for ref in refs if ref is not None and ref >= first}
+    return {server.ends[ref - first].slot for ref in refs if ref is not None and ref >= first}

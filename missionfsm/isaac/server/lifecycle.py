@@ -32,6 +32,7 @@ from missionfsm.isaac.server.readings import (
     AI_31,
     AI_36,
     AI_39,
+    AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
     DAY,
@@ -59,24 +60,24 @@ from missionfsm.isaac.shared.line import MICROSECONDS
 Moves = Iterator[Move]
 
 
-def slack(state: Server) -> int:
-    """How much later than it is due something is noticed at the latest, in microseconds."""
-    return state.tolerance + (LOOK if state.letters(AI_39) == "b" else 0)
+def by(state: Server, due: int) -> int:
+    """When something that is due at a moment is noticed at the latest, in microseconds."""
+    return state.tolerance + (state.next_pass(due) if state.letters(AI_39) == "b" else due)
 
 
 def looks(move: Move) -> Move:
     """AI-39 b has been decided: clocks that run may strike later than was thought."""
     missions = tuple(
-        evolve(one, clocks=tuple(_later(clock) for clock in one.clocks)) if one.clocks else one
+        evolve(one, clocks=tuple(_later(move.state, clock) for clock in one.clocks)) if one.clocks else one
         for one in move.state.missions
     )
     return move.to(evolve(move.state, missions=missions))
 
 
-def _later(clock: Clock) -> Clock:
+def _later(state: Server, clock: Clock) -> Clock:
     """The clock of a server that looks now and then; whole seconds are looked at so anyway."""
     in_a_pass = clock.whole or clock.kind in (DROP, DOOM)
-    return clock if clock.hi is None or in_a_pass else evolve(clock, hi=clock.hi + LOOK)
+    return clock if clock.hi is None or in_a_pass else evolve(clock, hi=state.next_pass(clock.hi))
 
 
 def started(move: Move, index: int, kind: str, since: str) -> Move:
@@ -88,7 +89,7 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     (low, high), tolerance = move.at, move.state.tolerance
     clocks = [one for one in mission.clocks if (one.kind, one.since) != (kind, since)]
     if counts(move.state, kind, since, whole=False):
-        hi = None if kind == SILENT else time + high + slack(move.state)
+        hi = None if kind == SILENT else by(move.state, time + high)
         clocks.append(Clock(kind, since, max(low, time + low - tolerance), hi))
     seconds = time // MICROSECONDS + 1
     if kind != SILENT and seconds < DAY and counts(move.state, kind, since, whole=True):
@@ -418,6 +419,9 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
 
 def _noticed(move: Move, index: int) -> Moves:
     """A scheduling pass notices that the connection of a mission has dropped (AI-15.when p)."""
+    for one in move.state.gone:
+        if one.serves and one.name == move.state.missions[index].robot:
+            move = forgotten(move, one)
     for letter, way in ways(move, AI_15, "c", "b"):
         here = stopped(way, index, (DROP, "drop"))
         yield ends(here, index, "lose") if letter == "c" else _again(here, index)
@@ -452,10 +456,48 @@ def untimed(move: Move, slot: int) -> Move:
 # Connections that go.
 
 
-def closed(move: Move, link: Link) -> Moves:
-    """A connection is gone."""
-    links = tuple(one for one in move.state.links if one.slot != link.slot)
-    yield from lost(move.to(evolve(move.state, links=links)), link)
+def closed(move: Move, link: Link, *, seen: bool = False) -> Moves:
+    """A connection is gone; `seen`: what is sent on it all the same may be seen."""
+    state = move.state
+    # A connection that took over from this one unnoticed took over from the one before, if that is still there.
+    links = tuple(
+        one if one.over != link.slot else evolve(one, over=link.over, fresh=one.fresh if link.over is not None else 0)
+        for one in state.links
+        if one.slot != link.slot
+    )
+    gone = state.gone
+    if link.serves and "b" in state.letters(AI_39) and "s" in state.letters(AI_39_ORDER):
+        until = state.next_pass(move.at[1]) + state.tolerance
+        slot = link.slot if seen else min((0, *(one.slot for one in gone))) - 1
+        gone = (*gone, Link(slot, link.name, serves=True, fresh=until))
+    yield from lost(move.to(evolve(state, links=links, gone=gone)), link)
+
+
+def in_vain(move: Move, gone: Link) -> Moves:
+    """AI-39.order s: a pass sends on a connection that has dropped, and then notices that."""
+    choices = _choices(move, gone) if move.state.letters(AI_39) == "b" else ()
+    for index, chosen in choices:
+        here, _ = (None, None) if index is None else split(forgotten(chosen, gone), AI_39_ORDER, "s")
+        if index is None or here is None:
+            continue
+        for after in sends(here, gone, index):
+            unheard = evolve(after, sent=move.sent)
+            if after.state.missions[index].status is not Status.STARTED:
+                yield unheard
+                continue
+            if gone.slot >= 0:
+                unheard = after
+            for letter, way in ways(unheard.mission(index, link=None), AI_15, "c", "a", "b"):
+                if letter == "c":
+                    yield ends(way, index, "lose")
+                else:
+                    yield way if letter == "a" else _again(way, index)
+
+
+def forgotten(move: Move, gone: Link) -> Move:
+    """A pass has noticed that a connection dropped."""
+    rest = (evolve(one, serves=False) if one.slot == gone.slot else one for one in move.state.gone)
+    return move.to(evolve(move.state, gone=tuple(one for one in rest if one.serves or one.slot >= 0)))
 
 
 def lost(move: Move, link: Link) -> Moves:
@@ -492,7 +534,7 @@ def _to_be_noticed(move: Move, index: int, kind: str) -> Move:
     clocks = move.state.missions[index].clocks
     if any(one.kind == kind for one in clocks):
         return move
-    return _ticking(move, index, (*clocks, Clock(kind, kind, low, high + LOOK + move.state.tolerance)))
+    return _ticking(move, index, (*clocks, Clock(kind, kind, low, move.state.next_pass(high) + move.state.tolerance)))
 
 
 def _was_on(mission: Mission, link: Link) -> bool:

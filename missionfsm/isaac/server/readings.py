@@ -312,6 +312,16 @@ AI_39 = Ambiguity(
     default="a",
 )
 
+AI_39_ORDER = Ambiguity(
+    "AI-39.order",
+    "A scheduling pass takes up names and drops, and sends: in which order?",
+    {
+        "n": "first it takes up names and drops",
+        "s": "first it sends: to a name that it takes up then in the next pass, on a connection that dropped in vain",
+    },
+    default="n",
+)
+
 AMBIGUITIES = (
     AI_02,
     AI_03,
@@ -352,6 +362,7 @@ AMBIGUITIES = (
     AI_37,
     AI_38,
     AI_39,
+    AI_39_ORDER,
 )
 
 WAIVED: Mapping[str, str] = {

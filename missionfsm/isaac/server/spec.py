@@ -28,6 +28,7 @@ from missionfsm.isaac.server.readings import (
     AI_22_STARTED,
     AI_25_HEADER,
     AI_28_CONFIG,
+    AI_39,
     AMBIGUITIES,
 )
 from missionfsm.isaac.server.rules import OPERATIONS, RULES
@@ -35,6 +36,7 @@ from missionfsm.isaac.server.state import (
     ENDED,
     FAILURES,
     LIFECYCLE,
+    LOOK,
     RUN,
     START,
     SYSTEM,
@@ -70,16 +72,16 @@ def _step(
     after = move.state
     if after is before and not move.sent:
         return Step(before, rules=move.rules, assumes=assumes)
-    missions, positions = 2 * len(before.missions), {one.slot: at for at, one in enumerate(before.links)}
+    missions, positions = 2 * len(before.missions), {one.slot: at for at, one in enumerate(before.ends)}
     names = [*range(missions), *(one for one in new if one >= 0)]
     fresh = [one for one in new if one < 0]
-    names += [missions + positions[one.slot] if one.slot in positions else fresh[0] for one in after.links]
-    kept = {one.slot for one in after.links}
+    names += [missions + positions[one.slot] if one.slot in positions else fresh[0] for one in after.ends]
+    kept = {one.slot for one in after.ends}
     return Step(
         after,
         names=tuple(names),
         emits=emissions(move),
-        closes=tuple(topic(one.slot) for one in before.links if one.slot not in kept),
+        closes=tuple(topic(one.slot) for one in before.ends if one.slot not in kept),
         rules=tuple(dict.fromkeys(move.rules)),
         assumes=(*assumes, *assumed(before, after)),
     )
@@ -118,7 +120,7 @@ def _submitted(
             found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=told))
             continue
         for move in _taken(quiet, request, tuple(sorted({one for one in upstream if one is not None}))):
-            handle = 2 * len(server.missions) + len(server.links)
+            handle = 2 * len(server.missions) + len(server.ends)
             step = _step(server, move, new=(handle, handle + 1), assumes=decision.assumes)
             found.append(evolve(step, answer=Answer(OK), refs=(handle,), kinds=("mission", "uuid")))
     return tuple(found)
@@ -183,7 +185,7 @@ def _connect(server: Server, _: Connects, __: tuple[int | None, ...]) -> tuple[S
 
 def _link_at(server: Server, ref: int | None) -> int | None:
     position = -1 if ref is None else ref - 2 * len(server.missions)
-    return position if position >= 0 else None
+    return position if 0 <= position < len(server.links) else None
 
 
 @functools.lru_cache(maxsize=20_000)
@@ -207,7 +209,7 @@ def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple
     if position is None:
         return ()
     quiet = calmed(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
-    return tuple(_step(server, move) for move in merged(drops(Move(quiet), quiet.links[position])))
+    return tuple(_step(server, move) for move in merged(drops(Move(quiet), quiet.links[position], seen=True)))
 
 
 @functools.lru_cache(maxsize=20_000)
@@ -436,6 +438,11 @@ _DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 
+def _begins(server: Server) -> Server:
+    """A server that has just begun: when in its first period the passes begin is not said."""
+    return evolve(server, slow=LOOK) if "b" in server.letters(AI_39) else server
+
+
 def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int = UNCONSTRAINED) -> Spec:
     """The mission server with the rules of these operations, and with these readings decided from the start."""
     left = tuple(
@@ -446,7 +453,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
     return Spec(
         system=SYSTEM,
         title="a mission server",
-        initial=lambda world: Server(world.name_channel, left=left, tolerance=world.tolerance),
+        initial=lambda world: _begins(Server(world.name_channel, left=left, tolerance=world.tolerance)),
         operations=operations,
         outcomes=functools.partial(_outcomes, operations),
         drives={
@@ -468,7 +475,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         unopened=(rules.UNNAMED.id,),
         unowed=_unowed,
         sequence=lambda _: (),
-        names=lambda server: 2 * len(server.missions) + len(server.links),
+        names=lambda server: 2 * len(server.missions) + len(server.ends),
         request_operation=lambda request: str(request.operation),
         ambiguities=AMBIGUITIES,
         describe=describe,

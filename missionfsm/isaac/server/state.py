@@ -167,6 +167,7 @@ class Link:
         early: statuses that came before the name and are kept (AI-18.early b).
         over: the slot of the connection that it took over from, as long as no pass need have noticed that (AI-39 b).
         fresh: microseconds until a pass must have noticed it.
+        held: microseconds for which the pass that takes up its name may have sent before it did (AI-39.order s).
         look: how many microseconds ago a scheduling pass may have come that sent or cancelled something here and of
             which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
     """
@@ -177,6 +178,7 @@ class Link:
     early: tuple[Report, ...] = ()
     over: int | None = None
     fresh: int = 0
+    held: int = 0
     look: int | None = None
 
 
@@ -198,6 +200,9 @@ class Server:
     Attributes:
         left: for the questions that mattered: the letters that are left, by id.
         tolerance: by how much times may be off in either direction, in microseconds.
+        slow: microseconds until the first scheduling pass is no more than one period away (AI-39 b).
+        gone: connections that dropped, of which no pass need have noticed it (AI-39.order s): what a pass sends on one
+            may be seen. Slots below 0 are of those that the server ended itself.
     """
 
     name_channel: str = "name"
@@ -205,6 +210,8 @@ class Server:
     links: tuple[Link, ...] = ()
     left: Left = ()
     tolerance: int = 0
+    slow: int = 0
+    gone: tuple[Link, ...] = ()
 
     def letters(self, question: Ambiguity) -> str:
         """The readings of a question that are left."""
@@ -213,9 +220,18 @@ class Server:
                 return letters
         return "".join(question.readings)
 
+    @property
+    def ends(self) -> tuple[Link, ...]:
+        """The connections on which something may be seen: those that are open, and those that dropped just now."""
+        return (*self.links, *(one for one in self.gone if one.slot >= 0)) if self.gone else self.links
+
     def link(self, slot: int) -> Link | None:
         """The connection in a slot."""
         return next((one for one in self.links if one.slot == slot), None)
+
+    def next_pass(self, since: int) -> int:
+        """Until when a scheduling pass has come after a moment, both in microseconds, where times are exact."""
+        return max(since, self.slow) + LOOK
 
     def serving(self, robot: str | None) -> Link | None:
         """The connection that the missions of a robot go to."""
@@ -251,7 +267,15 @@ class Move:
         server = self.state
         missions = list(server.missions)
         missions[index] = evolve(missions[index], **changes)
-        after = Server(server.name_channel, tuple(missions), server.links, server.left, server.tolerance)
+        after = Server(
+            server.name_channel,
+            tuple(missions),
+            server.links,
+            server.left,
+            server.tolerance,
+            server.slow,
+            server.gone,
+        )
         return Move(after, self.sent, self.rules, self.at)
 
     def link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
@@ -270,8 +294,9 @@ def topic(slot: int) -> tuple[str, int]:
 
 
 def emissions(move: Move) -> tuple[Emission, ...]:
-    """What a move owes to the connections; each gets its lines in order."""
+    """What a move owes to the connections; each gets its lines in order. What is sent in vain may be seen."""
+    gone = {one.slot for one in move.state.gone}
     return tuple(
-        Emission(topic(slot), view, (2 * index + 1,), certain=True)
+        Emission(topic(slot), view, (2 * index + 1,), certain=True, optional=slot in gone)
         for slot, index, view in sorted(move.sent, key=lambda one: one[0])
     )

@@ -16,10 +16,10 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.deciding import merged
+from missionfsm.isaac.server.deciding import merged, split, ways
 from missionfsm.isaac.server.independence import Part, parts
-from missionfsm.isaac.server.lifecycle import lapses, possible, sends, strikes, untimed, urgent
-from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39
+from missionfsm.isaac.server.lifecycle import forgotten, in_vain, lapses, possible, sends, strikes, untimed, urgent
+from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
 from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Move, Server
 from missionfsm.kernel.values import value
 
@@ -46,7 +46,7 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
     """Everything that may have become of a server when so many microseconds have passed."""
     begins = [Move(state)]
     for part in parts(state):
-        begins = [after for move in begins for after in _followed(move, part)]
+        begins = [other for move in begins for after in _followed(move, part) for other in _in_order(after, part)]
     moves = _all_until(begins, state, time, due=False)
     if any(_falls_on(move.state, time) for move in moves):  # it has happened rather than not
         moves = _all_until(begins, state, time, due=True) + moves
@@ -55,6 +55,12 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
         after = _shifted(move, time)
         found.setdefault((after.state, after.sent), after)
     return tuple(found.values())
+
+
+def _in_order(move: Move, part: Part) -> list[Move]:
+    """AI-39.order is decided where a pass is about to send to a name that none need have taken up."""
+    held = any(link.held and link.slot in part.slots and _waits_for_pass(move.state, link) for link in move.state.links)
+    return [way for _, way in ways(move, AI_39_ORDER, "n", "s")] if held else [move]
 
 
 def _all_until(begins: list[Move], state: Server, time: int, *, due: bool) -> list[Move]:
@@ -108,7 +114,7 @@ def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
         seen.add(here)
         strike, comes = _latest(here, part)
         if comes > time and (strike > time or (strike == time and not due)):
-            since = {slot: first for slot, first, _ in here.looks}
+            since = {slot: first for slot, first, _ in here.looks if first <= time}
             after = here.move
             for slot in part.slots:
                 link = after.state.link(slot)
@@ -127,7 +133,8 @@ def _here(move: Move, low: int, part: Part, looks: tuple[tuple[int, int, int], .
         link = move.state.link(slot)
         if link is not None and _waits_for_pass(move.state, link):
             first, last = known.get(slot, move.at)
-            found.append((slot, first if link.look is None else min(first, -link.look), last))
+            since = first if link.look is None else min(first, -link.look)
+            found.append((slot, max(since, _held(move.state, link)), last))
     return _Here(move, low, tuple(found))
 
 
@@ -144,16 +151,44 @@ def _waits_quietly(state: Server, link: Link) -> bool:
     return link.serves and bool(no_time or lapses(state, link))
 
 
-def _pass(state: Server) -> int:
-    """How long a scheduling pass is in coming at the latest, in microseconds."""
-    return state.tolerance + LOOK
+def _held(state: Server, link: Link) -> int:
+    """Before when no pass sends on a connection since none has taken up its name (AI-39.order s), in microseconds."""
+    return link.held - state.tolerance if link.held and state.letters(AI_39_ORDER) == "s" else -EVER
+
+
+def _pass(state: Server, slot: int, last: int) -> int:
+    """Until when a scheduling pass has come for a connection that waits for one since a moment, in microseconds."""
+    link = state.link(slot)
+    if link is not None and link.held:
+        last = max(last, state.slow + LOOK if state.slow else link.held)
+    return state.next_pass(last) + state.tolerance
+
+
+def _in_vain(state: Server, part: Part) -> list[Link]:
+    """The connections that dropped on which the pass that notices it may send before."""
+    gone = [one for one in state.gone if one.serves and one.slot in part.slots]
+    return [one for one in gone if state.letters(AI_39) == "b" and possible(state, one)]
+
+
+def _overlooked(state: Server, part: Part) -> list[tuple[Link, Link]]:
+    """The connections that were taken over, with those that did, of which the pass that notices it sends before."""
+    if state.letters(AI_39) != "b" or "s" not in state.letters(AI_39_ORDER):
+        return []
+    pairs = [
+        (evolve(older, serves=True), link)
+        for link in state.links
+        if link.slot in part.slots and link.over is not None and (older := state.link(link.over)) is not None
+    ]
+    return [(older, link) for older, link in pairs if possible(state, older)]
 
 
 def _latest(here: _Here, part: Part) -> tuple[float, float]:
     """Until when a clock has to have struck in a part, and a pass to have come, at the latest."""
     state = here.move.state
     due = (clock.hi for index in part.missions for clock in state.missions[index].ticking if clock.hi is not None)
-    looks = (last + _pass(state) for _, _, last in here.looks)
+    looks = [_pass(state, slot, last) for slot, _, last in here.looks]
+    looks += [gone.fresh for gone in _in_vain(state, part)]
+    looks += [link.fresh for _, link in _overlooked(state, part)]
     return min(due, default=math.inf), min(looks, default=math.inf)
 
 
@@ -164,12 +199,42 @@ def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
             if clock.lo <= until:
                 yield from _strike(here, part, index, clock, until)
     for slot, first, last in here.looks:
-        when = (max(here.low, first), min(last + _pass(here.move.state), until))
+        when = (max(here.low, first), min(_pass(here.move.state, slot, last), until))
         if when[0] > when[1]:
             continue
         rest = tuple(one for one in here.looks if one[0] != slot)
         for after in _looked(evolve(here.move, at=when), slot, part):
             yield _here(after, when[0], part, rest)
+    state = here.move.state
+    for gone in _in_vain(state, part):
+        when = (here.low, max(here.low, min(gone.fresh, until)))
+        for sent in in_vain(evolve(here.move, at=when), gone):
+            yield from (_here(after, when[0], part, here.looks) for after in _followed(sent, part))
+        if gone.fresh <= until:
+            yield _here(forgotten(here.move, gone), here.low, part, here.looks)
+    for older, link in _overlooked(state, part):
+        when = (here.low, max(here.low, min(link.fresh, until)))
+        for after in _sent_before(evolve(here.move, at=when), older, link):
+            yield _here(after, when[0], part, here.looks)
+        if link.fresh <= until:
+            yield _here(_taken_up(here.move, link), here.low, part, here.looks)
+
+
+def _sent_before(move: Move, older: Link, link: Link) -> Iterator[Move]:
+    """A pass sends on a connection, and then takes up that another has taken over (AI-39.order s)."""
+    for index, chosen in possible(move.state, older):
+        here, _ = split(move.to(chosen.state), AI_39_ORDER, "s")
+        if here is not None:
+            for after in sends(here, older, index):
+                yield _taken_up(after, link)
+
+
+def _taken_up(move: Move, link: Link) -> Move:
+    """A pass has noticed that a connection took over from another."""
+    after = move.link(link.slot, over=None, fresh=0)
+    if link.over is not None and move.state.letters(AI_16_UNDER_WAY) == "m":
+        return untimed(after, link.over)
+    return after
 
 
 def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
@@ -220,16 +285,26 @@ def _shifted(move: Move, time: int) -> Move:
             after = after.link(link.slot, look=time - link.look)
         if link.fresh:
             after = _noticed(after, link, time)
+        if link.held:
+            after = after.link(link.slot, held=max(0, link.held - time))
+    state = after.state
+    if state.slow or state.gone:
+        gone = tuple(_gone(one, time) for one in state.gone if one.fresh > time or (one.fresh and one.slot >= 0))
+        after = after.to(evolve(state, slow=max(0, state.slow - time), gone=gone))
     return after
+
+
+def _gone(link: Link, time: int) -> Link:
+    """A connection that dropped, so much later; it is forgotten only later still: what was sent on it may be seen."""
+    left = max(0, link.fresh - time)
+    return evolve(link, fresh=left, serves=link.serves and left > 0)
 
 
 def _noticed(move: Move, link: Link, time: int) -> Move:
     """A connection that took over from another, so much later: a pass has noticed it after a while."""
-    fresh = max(0, link.fresh - time)
-    after = move.link(link.slot, fresh=fresh, over=link.over if fresh else None)
-    if not fresh and link.over is not None and move.state.letters(AI_16_UNDER_WAY) == "m":
-        return untimed(after, link.over)
-    return after
+    if link.fresh <= time:
+        return _taken_up(move, link)
+    return move.link(link.slot, fresh=link.fresh - time)
 
 
 def unseen(state: Server, part: Part) -> Iterator[Move]:
@@ -244,6 +319,11 @@ def unseen(state: Server, part: Part) -> Iterator[Move]:
         if link is not None and link.look is not None:
             for one in _looked(Move(state, at=(-link.look, 0)), slot, part):
                 yield _looking(one, part)
+    for gone in _in_vain(state, part):
+        for one in in_vain(Move(state, at=(-LOOK, 0)), gone):
+            yield from (_looking(after, part) for after in _followed(one, part))
+    for older, link in _overlooked(state, part):
+        yield from (_looking(after, part) for after in _sent_before(Move(state, at=(-LOOK, 0)), older, link))
 
 
 def _looking(move: Move, part: Part) -> Move:

@@ -229,7 +229,7 @@ def test_both_profiles_take_their_letters_from_the_same_list() -> None:
         "AI-25.header": "n" if AS_SHIPPED.header_uuid_as_numbers else "s",
         "AI-39": "b" if AS_SHIPPED.scheduling_period else "a",
     }
-    names = {"AI-02": "c"}  # of statuses, the same under both profiles
+    names = {"AI-02": "c", "AI-28.config": "b", "AI-31": "b"}  # the same under both profiles
     assert {one: {**letters, **names}[one] for one in SHIPPED_SERVER} == {**letters, **names}
     assert [one for one, letter in {**letters, **names}.items() if letter not in SHIPPED_SERVER[one]] == []
 

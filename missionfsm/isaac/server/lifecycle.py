@@ -534,6 +534,8 @@ def _to_be_noticed(move: Move, index: int, kind: str) -> Move:
     clocks = move.state.missions[index].clocks
     if any(one.kind == kind for one in clocks):
         return move
+    if not move.state.tolerance:
+        low += 1  # no pass comes while no time passes
     return _ticking(move, index, (*clocks, Clock(kind, kind, low, move.state.next_pass(high) + move.state.tolerance)))
 
 

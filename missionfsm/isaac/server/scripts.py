@@ -322,6 +322,13 @@ _SCRIPTS = (
     _Script().submit(A).robot(0, A).robot(1, B).submit(B, 0).wait().report(0, 0, "success"),
     # Timeouts of 0.
     _Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
+    _Script().submit(A, start_timeout=0).robot(0, A).wait(3),
+    # A timeout of more than a day.
+    _Script().submit(A, timeout=90_000).robot(0, A).report(0, 0, "running").wait(90_100),
+    # Of two connections the one that connected first says the name last.
+    _Script().connect().connect().name(1, A).wait().name(0, A).wait().submit(A).wait(),
+    # What goes on on a connection that was taken over runs out of time, or not.
+    _Script().submit(A, timeout=4).robot(0, A).report(0, 0, "running").robot(1, A).wait(8),
     # One upstream fails while the other runs.
     _Script()
     .submit(A)

@@ -29,6 +29,8 @@ SHIPPED_SERVER: Mapping[str, str] = {
     "AI-24": "a",
     "AI-24.whole": "w",
     "AI-25.header": "n",
+    "AI-28.config": "b",
+    "AI-31": "b",
     "AI-39": "b",
 }
 """The mission server (2020.2): names, drops, time-outs and cancellations are noticed in a pass once a second."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import deque
 from collections.abc import Mapping
 from random import Random
@@ -23,6 +24,7 @@ class Habits:
         ends: streams that end cleanly, each time one could show a message.
         moves: steps in which the robot does something by itself.
         slow: how long messages and answers stay on their way; 0: they come at once.
+        behind: how many messages of an open stream may be on their way at once.
     """
 
     clients: int = 3
@@ -31,6 +33,7 @@ class Habits:
     ends: float = 0.02
     moves: float = 0.15
     slow: float = 0.5
+    behind: int = sys.maxsize
 
 
 @define
@@ -108,6 +111,9 @@ class Traffic:
     def _show(self, after: Any) -> None:
         for one in after:
             self._waiting[one.params["stream"]].append(one.params["message"])
+        for stream in sorted(self._open):
+            while stream in self._open and len(self._waiting[stream]) > self.habits.behind:
+                self.deliver(stream)
 
     def deliver(self, stream: int) -> None:
         """A stream shows its next message, or ends."""

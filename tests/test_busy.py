@@ -6,6 +6,7 @@ from pathlib import Path
 
 import orjson
 import pytest
+from attrs import evolve
 from busy import Habits, busy
 from traffic import readings_at_random
 
@@ -39,3 +40,19 @@ def test_a_busy_log_that_is_cut_anywhere_is_no_violation(tmp_path: Path, seed: i
         if verdict.violation is not None:
             wrong[cut] = str(verdict)
     assert wrong == {}
+
+
+LAGGING = Habits(lost=0, late=0, ends=0)
+"""Where nothing is lost, but streams never catch up with the robot."""
+
+CLOSE = evolve(LAGGING, behind=8)
+
+
+@pytest.mark.parametrize(("habits", "clients"), [(CLOSE, 3), (CLOSE, 6), (LAGGING, 3)])
+def test_a_busy_log_is_decided(tmp_path: Path, habits: Habits, clients: int) -> None:
+    """Three hundred lines of clients that overlap are decided, also where streams never catch up with the robot."""
+    path = tmp_path / "log"
+    lines = busy(clients, 300, evolve(habits, clients=clients))
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.conforms, str(verdict)

@@ -18,6 +18,7 @@ from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
+from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 
@@ -34,8 +35,9 @@ Symbol = tuple[Any, ...]
 Message = tuple[Hashable, Names]
 """What a message shows: its content, and the names in it."""
 
-Narrowed = tuple[Channel, Assumption | None]
-"""A channel without what is known never to be shown, and what that assumes."""
+Narrowed = tuple[Channel, Assumption | None, bool]
+"""A channel without what is known never to be shown, what that assumes, and whether it is done: whatever becomes of
+the state now, the channel does not show it."""
 
 
 class Lookahead:
@@ -105,6 +107,9 @@ class Lookahead:
             ((at, called[call][0] if call in called else -1, call, message) for (at, *_), (message, *_), call in first),
             key=operator.itemgetter(0),
         )
+        # Behind the answers that open streams which show something, and what settles.
+        opened_by = [self._answered[call] for _, _, call, _ in self._openings]
+        self._shown_from = max((-1, *opened_by, *self._settled, *self._beyond)) + 1
         # Calls that will succeed: when each was sent, and what it was.
         self._successes = [
             (at, call, request, args)
@@ -141,7 +146,7 @@ class Lookahead:
         narrow: list[Channel] = []
         assumed = explanation.assumed
         for channel in channels:
-            found: Narrowed | None = (channel, None)
+            found: Narrowed | None = (channel, None, False)
             if channel.name > GONE:
                 found = self._narrowed(explanation, channel)
             if found is None:
@@ -154,6 +159,22 @@ class Lookahead:
         if all(map(operator.is_, narrow, channels)):
             return explanation
         return explanation.but(channels=tuple(narrow), assumed=assumed)
+
+    def state(self, explanation: Explanation) -> State:
+        """The state, or the one that stands for all those that nobody can tell from it any more.
+
+        Where no message shows the state from now on, what has ended only counts.
+        """
+        forgets = self.spec.abstraction.forget_ended
+        if not forgets or not self._last or self.at < self._shown_from or self.spec.anywhere or self.spec.others:
+            return explanation.state
+        if all(self._is_over(explanation, channel) for channel in explanation.channels if channel.name > GONE):
+            return forgets(explanation.state)
+        return explanation.state
+
+    def _is_over(self, explanation: Explanation, channel: Channel) -> bool:
+        found = self._narrowed(explanation, channel)
+        return found is not None and found[2]
 
     def _leads_to_openings(self, explanation: Explanation) -> bool:
         """Whether the state may come to be shown as streams begin that nobody has opened yet."""
@@ -194,19 +215,24 @@ class Lookahead:
         quiet, quieter = bisect.bisect_left(self._settled, self.at), bisect.bisect_left(self._settled, end)
         if first >= last and quiet >= quieter:
             # What is owed to a stream that ends is never shown, and nobody minds.
-            silent = channel.owed and (end < cut or (self._last and cut == self._horizon))
-            return (Channel(channel.name, channel.topic, channel.last), None) if silent else (channel, None)
-        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet, end)
+            over = end < cut or (self._last and cut == self._horizon)
+            silent = Channel(channel.name, channel.topic, channel.last) if over and channel.owed else channel
+            return silent, None, over
+        delivery = self.spec.delivery(channel.topic)
+        allowed = tuple(one and bool(meet(explanation.assumed, (one,))) for one in (delivery.skips, delivery.repeats))
+        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet, end, allowed)
         if key not in self._passed:
             if quiet < quieter:
                 last = bisect.bisect_left(positions, self._settled[quiet], first)
             due = messages[first:last]
             rests = quiet < quieter and len(due) <= NEXT
             before = messages[first - 1] if first else self._latest.get(channel.name)
-            self._passed[key] = self._leading(explanation, channel, due[:NEXT], before, rests=rests)
+            over = end < cut or (self._last and cut == self._horizon)
+            over = over and len(due) <= NEXT and quiet == quieter
+            self._passed[key] = self._leading(explanation, channel, due[:NEXT], before, rests=rests, over=over)
         return self._passed[key]
 
-    def _leading(
+    def _leading(  # noqa: PLR0913 - what is known of a channel
         self,
         explanation: Explanation,
         channel: Channel,
@@ -214,44 +240,74 @@ class Lookahead:
         before: Message | None,
         *,
         rests: bool,
+        over: bool,
     ) -> Narrowed | None:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
 
         Args:
             before: what the channel has shown last, if it is known.
             rests: whether everything settles after the messages.
+            over: whether nothing else is shown after the messages.
         """
         delivery = self.spec.delivery(channel.topic)
         owed, last = channel.owed, channel.last
-        again = delivery.repeats is not None or delivery.echoes is not None
+        repeats = bool(delivery.repeats and meet(explanation.assumed, (delivery.repeats,)))
+        again = repeats or delivery.echoes is not None
+        skips = bool(delivery.skips and meet(explanation.assumed, (delivery.skips,)))
+        passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
         places = {0}
         for position, message in enumerate(messages):
             shown = [self._may_show(one, message) for one in owed]
-            following = {
-                index if owed[index].stays else index + 1 for index in range(min(places), len(owed)) if shown[index]
-            }
+            following: set[int] = set()
+            for place in places:
+                for index in range(place, len(owed)):
+                    if shown[index]:
+                        following.add(index if owed[index].stays else index + 1)
+                    if not passable[index]:
+                        break
             if again and (any(shown) or (last is not None and self._may_show(last, message))):
                 following |= places
             if not following:
-                if not self._foresees(explanation, message):
+                # What is owed before it has to go unsaid then, and the message to show what is to come.
+                if not all(passable[max(places) :]) or not self._foresees(explanation, message):
                     return None
-                return (channel, None) if position or not owed else self._passed_over(channel)
+                return (channel, None, False) if position or not owed else self._passed_over(channel)
             places, before = following, message
-        left = [one for one in owed[max(places) :] if not one.passing]
+        shown_by = max(places)
+        if over and shown_by and not owed[shown_by - 1].stays and not self._may_go_unsaid(channel, shown_by - 1):
+            # The last message shows this one, or one before it. One that comes later would be shown only where this one
+            # is skipped, and whoever may skip it may skip those that are dropped as well.
+            return Channel(channel.name, channel.topic, last, owed[:shown_by]), None, True
+        left = [one for one in owed[shown_by:] if not one.passing]
         if not rests or before is None or not left or self._may_show(left[-1], before):
-            return channel, None
-        return (channel, None) if self._foresees(explanation, before) else None
+            return channel, None, False
+        return (channel, None, False) if self._foresees(explanation, before) else None
+
+    def _may_go_unsaid(self, channel: Channel, index: int) -> bool:
+        """Whether a channel may pass over a message that it owes, though it has to show all that can be told."""
+        one = channel.owed[index]
+        if one.passing or not one.names:
+            return True  # without names, it may look like what was shown before it
+        if self.spec.delivery(channel.topic).again:
+            return False
+        return any(
+            other.view == one.view
+            and len(other.names) == len(one.names)
+            and all(map(_may_be_one, other.names, one.names))
+            for other in (channel.last, *channel.owed[:index])
+            if other is not None
+        )
 
     def _passed_over(self, channel: Channel) -> Narrowed | None:
         """The channel once everything that it owes is passed over."""
         passed = Channel(channel.name, channel.topic, channel.last)
         if all(one.passing for one in channel.owed):
-            return passed, None
+            return passed, None, False
         last = channel.last
         if last and any(one.view == last.view or last.looks is not None for one in channel.owed if not one.passing):
-            return channel, None  # what looks like what was shown last is not due
+            return channel, None, False  # what looks like what was shown last is not due
         skips = self.spec.delivery(channel.topic).skips
-        return (passed, skips) if skips else None
+        return (passed, skips, False) if skips else None
 
     def _foresees(self, explanation: Explanation, message: Message) -> bool:
         """Whether the state may come to be shown so."""
@@ -278,6 +334,11 @@ class Lookahead:
                 for match in matches
             )
         return found
+
+
+def _may_be_one(name: int, other: int) -> bool:
+    """Whether two names may be found to be the same."""
+    return name == other or name < GONE or other < GONE
 
 
 _NO_MESSAGES: tuple[list[int], list[Message]] = ([], [])

@@ -399,6 +399,8 @@ class Successors:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
         self.spend(weight(explanation))
         key = point(explanation)
+        if self.ahead:
+            key = (self.ahead.state(explanation), *key[1:])
         others = seen.setdefault(key, [])
         for assumed, left in others:
             if explanation.assumed | assumed == assumed and within(explanation.lost, left):

@@ -15,8 +15,11 @@ from missionfsm.oracle.lookahead import Symbol
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
 
-BUDGET = 100_000
-"""How many explanations a window may cost before it is given up."""
+BUDGET, EACH = 100_000, 200
+"""How many explanations a window may cost before it is given up, and how many more for each of its events."""
+
+FIRST, MORE = 5_000, 50
+"""The same where further events may come that tell more: it is tried again with them."""
 
 
 class Window:
@@ -70,7 +73,9 @@ class Window:
         if lost:
             start = tuple(self._given_up(one, lost) for one in start)
             symbols = [(*one[:3], True, one[4]) if one[0] is Called and one[4] in lost else one for one in symbols]
-        search = Search(self._belief.automaton.oracle, start, symbols, self._latest, BUDGET)
+        least, each = (FIRST, MORE) if lost is None else (BUDGET, EACH)
+        budget = least + each * len(symbols)
+        search = Search(self._belief.automaton.oracle, start, symbols, self._latest, budget)
         search.whole = lost is not None
         return search
 

@@ -114,6 +114,26 @@ def test_what_cannot_succeed_any_more_is_not_foreseen() -> None:
     assert succeeds(robot, (0, 1, 2), cleared, (), (0,))
 
 
+def goes_on(robot: Robot) -> list[Any]:
+    """What can be done in a state, step by step: what it is, what is answered, and what the state after it counts."""
+    forgets = SPEC.abstraction.forget_ended
+    assert forgets is not None
+    return [
+        (one.what, one.step.answer, one.step.refs, one.step.names, one.step.assumes, forgets(one.step.after))
+        for one in steps(SPEC, robot, LABELS)
+    ]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_has_ended_only_counts(seed: int) -> None:
+    """Whatever the missions were that have ended, all calls and events go on in the same ways."""
+    random = Random(seed)
+    forgets = SPEC.abstraction.forget_ended
+    assert forgets is not None
+    for (robot, _), _ in lives(random, 25):
+        assert goes_on(robot) == goes_on(forgets(robot))
+
+
 ORDERS = {
     "another comes before one that has started": (("B", "A"), False),
     "one that waits has vanished though nothing failed": (("A", "C"), False),
@@ -178,7 +198,9 @@ def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.Monkey
 
     def blind(*name: Any, **how: Any) -> Any:
         found = as_it_is(*name, **how)
-        return evolve(found, spec=evolve(found.spec, foresees=None, succeeds=None, decided=None))
+        remembering = evolve(found.spec.abstraction, forget_ended=None)
+        blinded = evolve(found.spec, foresees=None, succeeds=None, decided=None, abstraction=remembering)
+        return evolve(found, spec=blinded)
 
     monkeypatch.setattr(recorded, "judged_system", blind)
     for lines, verdict in zip((right, wrong), led, strict=True):

@@ -8,6 +8,7 @@ from attrs import frozen
 
 from missionfsm.kernel.history import Event
 from missionfsm.oracle.belief import Belief
+from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.window import Window
 
 FIRST = 64
@@ -72,8 +73,16 @@ class Held:
             whole: whether no further events come.
 
         Raises:
-            ExhaustedError: it costs too much.
+            ExhaustedError: it costs too much, and no further events come that tell more.
         """
+        try:
+            return self._explain(whole=whole)
+        except ExhaustedError:
+            if whole:
+                raise
+            return True, False
+
+    def _explain(self, *, whole: bool) -> tuple[bool, bool]:
         window = self._window
         lost = window.unanswered if whole else None
         search = window.search(lost)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
+import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
@@ -138,6 +140,8 @@ def _judged(
         if path != STDIN:
             source.close()
     found = judges.verdicts()
+    if judges.nodes > KEPT_NODES:
+        _automaton.cache_clear()
     # What was not kept while it was read is read again.
     by_params = judges.addresses.by_call
     return [
@@ -158,6 +162,25 @@ def _refuse_without_effect(path: str, asked: Asked) -> None:
         if value:
             message = f"{called(path)}: {option} has no effect on bare messages, which are judged one by one"
             raise UnreadableError(message)
+
+
+KEPT_NODES = 5_000
+"""How many nodes an automaton may have that is kept for the files after this one."""
+
+
+@functools.lru_cache(maxsize=2)
+def _automaton(seen: tuple[str, bool, bool, bool], how: tuple[tuple[str, ...], int, int, bool], _: int) -> Automaton:
+    """The automaton of logs of a kind: what one file of a folder has shown need not be found out for the next.
+
+    Args:
+        seen: of which system, and how it is seen, as for `judged_system`.
+        how: what an automaton is made with besides.
+        _: the thread; no two walk the same at a time.
+    """
+    name, strict, anywhere, others = seen
+    drives, decided, patience, eager = how
+    spec = judged_system(name, strict=strict, anywhere=anywhere, others=others).spec
+    return Automaton(spec, drives, decided, patience, eager=eager)
 
 
 class _Judges:
@@ -187,7 +210,11 @@ class _Judges:
         self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
         patience = PATIENCE if self._waits else SECOND_PATIENCE
-        self._automaton = Automaton(self._system.spec, self._head.drives, decided, patience, eager=asked.eager)
+        self._automaton = _automaton(
+            (first.system, first.strict, first.anywhere, first.others),
+            (self._head.drives, decided, patience, asked.eager),
+            threading.get_ident(),
+        )
         self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
@@ -212,6 +239,11 @@ class _Judges:
             waits=self._waits,
             settled_after=self._settled_after,
         )
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes the automaton has that they walked."""
+        return self._automaton.size[0]
 
     def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
         """Take all lines into account. Raises UnreadableError for one that is not of the format."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import frozen
 
+from missionfsm.adapters.historyfile import STDIN
+from missionfsm.adapters.outputs import STDOUT
 from missionfsm.cli.common import (
     DONE,
     FAILED,
@@ -37,10 +41,20 @@ from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.text import printable
 from missionfsm.tools.check.verdict import Verdict
 
+if TYPE_CHECKING:
+    from missionfsm.app.many import Judged
+
+Reached = tuple[str, str | None, Verdict]
+"""A file, a robot if it names one, and the verdict."""
+
+MANY = 20
+"""Files, or robots of one, of which each verdict is told unless it is asked otherwise; more are summed up."""
+
 
 def check(  # noqa: PLR0913 - options of the command
     files: Annotated[
-        list[str], typer.Argument(metavar="FILE…", help="Recorded histories, or folders of them; - is stdin.")
+        list[str],
+        typer.Argument(metavar="FILE…", help="Recorded histories, folders of them or patterns ('*.gz'); - is stdin."),
     ],
     reading: Readings = None,
     profile: ProfileName = None,
@@ -60,7 +74,12 @@ def check(  # noqa: PLR0913 - options of the command
         typer.Option(metavar="SECONDS", min=0, callback=finite, help="What is due so long (of `at`) is late."),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option(min=1, max=1024, help="Files judged at a time; by default as many as are worth it.")
+        int | None,
+        typer.Option(min=1, max=1024, help="Processes that judge files, or robots of a large one; as many as pay off."),
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(metavar="SCHEDULER", help="Judge on the workers of this scheduler of Dask; local starts some."),
     ] = None,
     summary: Annotated[
         bool | None,
@@ -68,13 +87,17 @@ def check(  # noqa: PLR0913 - options of the command
     ] = None,
     expect_violations: KnownFile = None,
     json: JsonFile = None,
+    parquet: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write a row for each file and robot as Parquet; - is stdout."),
+    ] = None,
     html: HtmlFile = None,
     junit: JunitFile = None,
     github: Github = None,
     verbose: Verbose = False,
 ) -> None:
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
-    from missionfsm.app.many import histories, judge_files  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.many import histories  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.summary import Told  # noqa: PLC0415
     from missionfsm.tools.check.baseline import Baseline, excused  # noqa: PLC0415
 
@@ -88,31 +111,37 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Baseline(known_violations(expect_violations))
+    reports = _Reports(json, html, junit, parquet, github)
     with one_line_errors():
         found = histories(files)
-    refuse_outputs({"--json": json, "--html": html, "--junit": junit}, (*found, expect_violations))
+        reports.refuse_impossible((*found, expect_violations))
     many = found != files
-    told = Told(json) if (many if summary is None else summary) else None
-    reached: list[tuple[str, str | None, Verdict]] = []
+    sums_up = (many or len(found) > MANY) if summary is None else summary
+    told = Told(None if STDOUT not in (json, parquet) else STDOUT)
+    reached: list[Reached] = []
+    seconds: list[float] = []
     troubles = Troubles()
 
     def tell(line: str) -> None:
         with troubles.kept():
             say_shown(line, json=json)
 
-    with Bar("files", len(found)) as bar:
-        live = tell if told is None else None
-        for one in judge_files(found, readings, jobs=jobs, progress=bar.one_more, tell=live, **how):
+    with one_line_errors(), Bar("files", len(found)) as bar:
+        live = None if sums_up else tell
+        for one in _judged(found, readings, jobs=jobs, dask=dask, progress=bar.more, tell=live, **how):
             with troubles.kept():
-                for line in () if told else one.said:
+                for line in () if sums_up else one.said:
                     say_shown(line, json=json)
+                if summary is None and len(one.verdicts) > MANY:  # too many to be read one by one
+                    sums_up = True
                 for robot, judged in one.verdicts:
                     reached.append((readable(one.path), robot, excused(judged, known)))
-                    if told is None:
+                    seconds.append(one.seconds)
+                    if not sums_up:
                         say_verdict(_headed(*reached[-1], verbose=verbose), json=json)
                 if one.trouble:  # one that cannot be read keeps none of the others from being judged
                     raise UnreadableError(one.trouble)
-    if told is not None:
+    if sums_up:
         with troubles.kept():
             told.say(reached)
     stale = () if troubles else known.stale  # they may be met in what cannot be read
@@ -120,17 +149,86 @@ def check(  # noqa: PLR0913 - options of the command
         for rule in stale:
             say_shown(f"a violation of {rule} was expected and was not met: take it off the list", json=json)
     if reached:
+        reports.write(reached, seconds, stale, troubles, many=many)
+    troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
+
+
+def _judged(
+    files: list[str],
+    readings: dict[str, str],
+    *,
+    jobs: int | None,
+    dask: str | None,
+    tell: Callable[[str], None] | None,
+    **how: Any,  # noqa: ANN401 - see `missionfsm.app.asked.Asked`
+) -> Iterator[Judged]:
+    """What there is to say of each file, judged where it is wanted; bad usage where it cannot be judged there."""
+    if dask is None:
+        from missionfsm.app.many import judge_files  # noqa: PLC0415 - commands load what they need
+
+        return judge_files(files, readings, jobs=jobs, tell=tell, **how)
+    from missionfsm import fleet  # noqa: PLC0415 - commands load what they need
+
+    if STDIN in files:
+        message = "--dask: stdin can be read in this process alone"
+        raise UnreadableError(message)
+    if jobs is not None and dask != fleet.LOCAL:
+        message = f"--jobs: how many workers there are is up to the scheduler at {dask}"
+        raise UnreadableError(message)
+    return fleet.judge(files, readings, scheduler=dask, workers=jobs, **how)
+
+
+@frozen
+class _Reports:
+    """What is written beside what is told: the files that options name, and annotations for GitHub."""
+
+    json: str | None
+    html: str | None
+    junit: str | None
+    parquet: str | None
+    github: bool | None
+
+    def refuse_impossible(self, inputs: Iterable[str | None]) -> None:
+        """Bad input, before anything is judged, where one of them cannot be written. Raises UnreadableError too."""
+        outputs = {"--json": self.json, "--html": self.html, "--junit": self.junit, "--parquet": self.parquet}
+        refuse_outputs(outputs, inputs)
+        if self.parquet is not None:
+            from missionfsm.adapters.parquet import refuse_without_parquet  # noqa: PLC0415 - loaded where it is needed
+
+            refuse_without_parquet()
+
+    def write(
+        self, reached: list[Reached], seconds: list[float], stale: tuple[str, ...], troubles: Troubles, *, many: bool
+    ) -> None:
+        """Write all that are wanted; what goes wrong with one is kept, and the others are written.
+
+        Args:
+            seconds: how long the file of each verdict took.
+            stale: rules whose violation was expected and was not met.
+            many: whether several verdicts were asked for, however many there are.
+        """
         more = {"stale": list(stale)} if stale else {}
         verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
         with troubles.kept():
-            write_json(json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
+            write_json(self.json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
         with troubles.kept():
-            annotate(github, [(path, robot or "", verdict) for path, robot, verdict in reached], json)
+            self._write_parquet(reached, seconds)
         with troubles.kept():
-            write_report(html, *reached)
+            annotate(self.github, [(path, robot or "", verdict) for path, robot, verdict in reached], self.json)
         with troubles.kept():
-            write_junit(junit, [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached])
-    troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
+            write_report(self.html, *reached)
+        with troubles.kept():
+            named = [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached]
+            write_junit(self.junit, named)
+
+    def _write_parquet(self, reached: list[Reached], seconds: list[float]) -> None:
+        if self.parquet is None:
+            return
+        from missionfsm.adapters.parquet import write_parquet  # noqa: PLC0415 - loaded where it is needed
+        from missionfsm.tools.check.rows import COLUMNS, rows  # noqa: PLC0415 - as above
+
+        table = rows((*one, took) for one, took in zip(reached, seconds, strict=True))
+        write_parquet(self.parquet, table, COLUMNS)
 
 
 def _headed(path: str, robot: str | None, verdict: Verdict, *, verbose: bool) -> str:

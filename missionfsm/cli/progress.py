@@ -44,8 +44,12 @@ class Bar:
 
     def one_more(self, _: object = None) -> None:
         """One more is done."""
+        self.more(1)
+
+    def more(self, share: float) -> None:
+        """One more is done, or so much of one."""
         if self._bar is not None:
-            self._bar.advance(self._task)
+            self._bar.advance(self._task, share)
 
     def conversation(self, run: Run) -> None:
         """A run has had one more conversation; now and then its coverage is told with it."""

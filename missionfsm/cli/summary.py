@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import shutil
-import sys
 import time
 from collections.abc import Iterable, Sequence
 
@@ -18,10 +16,10 @@ from missionfsm.kernel.text import shown
 from missionfsm.tools.check.summary import Found, summed_up
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
-MAX_ROWS = 8
-"""Rules and readings that are listed, each."""
-PIPE_COLUMNS = 120
-"""How wide a table is where nobody says how wide it may be."""
+MAX_ROWS = {"broken": 5, "flagged": 3, "inconclusive": 2}
+"""How many are listed of each; with their titles, and a line that says how many more, all are 20 lines."""
+WIDEST = 10_000
+"""Columns that a line may have: a terminal folds it, and whoever reads a pipe finds each in one line."""
 
 
 class Told:
@@ -47,7 +45,11 @@ class Told:
             f"{len(judged):,} judged: {counted}; {flagged:,} flagged",
             f"{found.events:,} events in {seconds:.1f} s",
         ]
-        for title, rows in (("broken", found.broken), ("flagged", found.flagged)):
+        for title, rows in (
+            ("broken", found.broken),
+            ("flagged", found.flagged),
+            ("inconclusive", found.undecided),
+        ):
             if rows:
                 lines += ["", *_table(title, rows)]
         say_shown("\n".join(lines), json=self._json)
@@ -65,17 +67,18 @@ def _folder(paths: Sequence[str]) -> str:
 
 
 def _table(title: str, rows: Sequence[Found]) -> list[str]:
+    """What was found, a line each, however wide a line is."""
     table = Table(box=None, pad_edge=False)
     table.add_column(title, no_wrap=True)
     table.add_column("times", justify="right")
-    table.add_column("first", overflow="fold")
-    for one in rows[:MAX_ROWS]:
+    table.add_column("first", no_wrap=True)
+    most = MAX_ROWS[title]
+    for one in rows[:most]:
         table.add_row(*(Text(shown(cell)) for cell in (one.what, f"{one.times:,}", one.first)))
-    columns = shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else PIPE_COLUMNS
-    console = Console(file=io.StringIO(), width=columns, color_system=None)
+    console = Console(file=io.StringIO(), width=WIDEST, color_system=None)
     console.print(table)
     drawn = [line.rstrip() for line in console.file.getvalue().splitlines()]  # type: ignore[attr-defined]
-    return drawn if len(rows) <= MAX_ROWS else [*drawn, f"and {len(rows) - MAX_ROWS:,} more"]
+    return drawn if len(rows) <= most else [*drawn, f"and {len(rows) - most:,} more"]
 
 
 __all__ = ["Told"]

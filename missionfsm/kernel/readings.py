@@ -198,6 +198,7 @@ def alike(ambiguities: tuple[Ambiguity, ...]) -> tuple[tuple[Ambiguity, Ambiguit
     )
 
 
+@functools.lru_cache(maxsize=1_000)  # robots of one make, by the thousand, read everything alike
 def clashes(ambiguities: tuple[Ambiguity, ...], assumed: int) -> tuple[tuple[Ambiguity, Ambiguity], ...]:
     """The pairs of alike ambiguities that an execution with these assumptions reads differently."""
     return tuple(

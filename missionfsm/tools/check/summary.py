@@ -34,12 +34,14 @@ class Summary:
         events: how many events were judged altogether.
         broken, flagged: rules that are broken, and readings that are followed though they are flagged; those that
             most verdicts name come first.
+        undecided: why verdicts are inconclusive, in the same order.
     """
 
     outcomes: dict[Outcome, int]
     events: int
     broken: tuple[Found, ...]
     flagged: tuple[Found, ...]
+    undecided: tuple[Found, ...]
 
 
 def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
@@ -47,6 +49,7 @@ def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
     outcomes: Counter[Outcome] = Counter()
     broken: Counter[str] = Counter()
     flagged: Counter[str] = Counter()
+    undecided: Counter[str] = Counter()
     first: dict[str, str] = {}
     events = 0
     for path, robot, verdict in verdicts:
@@ -58,10 +61,13 @@ def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
             for rule in dict.fromkeys(rule.id for rule in verdict.violation.rules):
                 broken[rule] += 1
                 first.setdefault(rule, at)
+        if verdict.outcome is Outcome.INCONCLUSIVE:
+            undecided[verdict.because] += 1
+            first.setdefault(verdict.because, where)
         for reading in dict.fromkeys(map(_reading, verdict.flagged)):
             flagged[reading] += 1
             first.setdefault(reading, where)
-    return Summary(dict(outcomes), events, _found(broken, first), _found(flagged, first))
+    return Summary(dict(outcomes), events, _found(broken, first), _found(flagged, first), _found(undecided, first))
 
 
 def _reading(line: str) -> str:

@@ -9,6 +9,7 @@ import pytest
 from attrs import evolve
 from broken import BUSY, MISSION, answering
 
+from missionfsm.app.lamp import SYSTEM as LAMP
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject
 from missionfsm.systems import names, system
@@ -176,3 +177,19 @@ def test_what_only_comes_later_does_not_come_and_go(seed: int) -> None:
     bare = next(one for one in mutants(robot) if one.kind == "sends half a line")
     verdict = conform(robot, Late(bare.subject(robot), seed), plan=Plan(1, 1, 1), seed=1)
     assert (verdict.outcome, verdict.notes) == (Outcome.VIOLATES, ())
+
+
+def test_a_run_may_be_stopped_at_any_time() -> None:
+    """Wherever a run is broken off, also where a conversation drawn alike went on, it ends in a verdict."""
+    for steps in range(5, 600, 5):
+        asked = itertools.count()
+        verdict = conform(
+            LAMP,
+            ReferenceSubject(LAMP),
+            seed=1,
+            examples=200,
+            tours=0,
+            enough=lambda: next(asked) > steps,  # noqa: B023
+        )
+        assert verdict.outcome is not Outcome.VIOLATES
+        assert "it was stopped after" in verdict.notes[-1]

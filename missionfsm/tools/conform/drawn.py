@@ -13,6 +13,7 @@ from typing import Any
 from hypothesis import HealthCheck, Phase, Verbosity, settings
 from hypothesis import seed as with_seed
 from hypothesis import strategies as st
+from hypothesis.errors import Flaky
 from hypothesis.reporting import with_reporter
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
@@ -29,15 +30,11 @@ NAMES = 1 << 16
 """From how many numbers a name is drawn, however many names were given."""
 
 
-class _Found(BaseException):
-    """Something that cannot be explained: the search is over."""
+class _Over(BaseException):
+    """The search is over: something cannot be explained, or no more is to be done."""
 
 
-class _Enough(BaseException):
-    """No more is to be done: the search is over."""
-
-
-class _Broke(BaseException):
+class _Broke(_Over):
     """The adapter failed: the run is over."""
 
     def __init__(self, error: SubjectError) -> None:
@@ -62,10 +59,15 @@ def draw(run: Run, examples: int, steps: int, seed: int) -> None:
     if run.enough():
         return
     try:
-        with with_reporter(lambda _: None), contextlib.suppress(_Found, _Enough):
+        with with_reporter(lambda _: None):
             run_state_machine_as_test(machine, settings=options)
-    except _Broke as broke:
-        raise broke.error from None
+    except (_Over, Flaky) as ended:
+        # A conversation that is broken off where another that was drawn alike went on is flaky to Hypothesis.
+        over = ended if isinstance(ended, _Over) else ended.__context__
+        if isinstance(over, _Broke):
+            raise over.error from None
+        if not isinstance(over, _Over):
+            raise
 
 
 def _machine(run: Run) -> type[RuleBasedStateMachine]:
@@ -78,7 +80,7 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
         def start(self, world: int, watched: bool) -> None:  # noqa: FBT001 - drawn
             with _stopping():
                 if run.enough():
-                    raise _Enough
+                    raise _Over
                 run.start(run.guide.worlds[world])
             self.world = world
             streams = run.system.codec.streams
@@ -90,9 +92,9 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
         ) -> None:
             with _stopping():
                 if run.enough():
-                    raise _Enough
+                    raise _Over
                 if not run.act(method, params, name, picks):
-                    raise _Found
+                    raise _Over
 
         @rule()
         def settle(self) -> None:
@@ -114,7 +116,7 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
             if hasattr(self, "world") and (run.over or run.conversation.right) and not run.enough():
                 self.act(SETTLE)
                 if not run.gather():
-                    raise _Found
+                    raise _Over
 
     for method in run.system.codec.methods:
         setattr(Machine, f"call_{method}", _call_rule(run, method))

@@ -9,8 +9,8 @@ the order in which the explanations mention them, so that the same situation wit
 from __future__ import annotations
 
 import copy
-from collections import defaultdict
-from collections.abc import Hashable, Iterable
+from collections import defaultdict, deque
+from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
 
 from attrs import define, field
@@ -41,6 +41,9 @@ _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
 MAX_REMEMBERED = 100_000
 """How many names that are gone are remembered, so that one that comes again is noticed."""
+
+MAX_WALKED = 32
+"""How many events are remembered, so that a violation can name the rules of what has happened."""
 
 NODES = 50_000
 """How many nodes an automaton keeps before it starts over."""
@@ -167,6 +170,11 @@ class Automaton:
         """The number of a set of rules in a `Tally`."""
         return self._rules.setdefault(rules, len(self._rules))
 
+    @property
+    def numbers(self) -> tuple[tuple[str, ...], ...]:
+        """The sets of rules by their numbers in a `Tally`."""
+        return tuple(self._rules)
+
     def touched(self, before: Iterable[Explanation], after: Iterable[Explanation]) -> int:
         """The bits of the ambiguities on which it depends what explains an event."""
         return self._touched({one.assumed for one in before}, {one.assumed for one in after})
@@ -182,7 +190,7 @@ class Automaton:
 
     def exercised(self, tally: Tally | None = None) -> dict[str, int]:
         """How often each rule was exercised, by a tally of beliefs that walked here; by the automaton's own if none."""
-        sets, times = tuple(self._rules), dict[str, int]()
+        sets, times = self.numbers, dict[str, int]()
         for number, walked in (self.tally if tally is None else tally).items():
             for rule in sets[number]:
                 times[rule] = times.get(rule, 0) + walked
@@ -220,6 +228,7 @@ class Belief:
         "_renumbered",
         "_retired",
         "_tally",
+        "_walked",
         "automaton",
         "broken",
         "node",
@@ -244,6 +253,7 @@ class Belief:
         self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
         self._renumbered: set[tuple[Name, Hashable]] = set()
+        self._walked: deque[tuple[tuple[Any, ...], Node]] = deque(maxlen=MAX_WALKED)
 
     @property
     def spec(self) -> Spec:
@@ -269,6 +279,7 @@ class Belief:
         if not edge.node.explanations:
             self.broken = True
             return False
+        self._walked.append((symbol, self.node))
         self.node = edge.node
         self.touched |= edge.touched
         if edge.keep is not None:
@@ -483,6 +494,19 @@ class Belief:
     def last_mark(self, channel: Name, track: Hashable) -> int | None:
         """The number that a channel showed last on a track, or None."""
         return self._marks.get(channel, _NO_MARKS).get(track)
+
+    @property
+    def walked(self) -> Iterator[tuple[tuple[Any, ...], Node]]:
+        """The last events with numbers for names, each with the node before it, the latest first."""
+        yield from reversed(self._walked)
+
+    @property
+    def exercised_last(self) -> Iterator[tuple[tuple[Any, ...], tuple[str, ...]]]:
+        """The same events, each with ids of the rules that it exercised."""
+        sets = self.automaton.numbers
+        for symbol, node in reversed(self._walked):
+            edge = node.next.get(symbol)
+            yield symbol, () if edge is None else sets[edge.exercises]
 
     @property
     def readings(self) -> dict[str, tuple[str, ...]]:

@@ -110,7 +110,7 @@ DOCUMENTED: list[tuple[Callable[[], Any], type[ApiError], str, str]] = [
         lambda: Robot().create_mission_batch([]),
         InvalidArgument,
         "CreateMissionBatch/INVALID_ARGUMENT/the-request-is-empty",
-        "Mission › CreateMission › Errors",
+        "Mission › CreateMissionBatch › Errors",
     ),
     (
         lambda: Robot("carti").create_mission_workflow(workflows.birthday("table-1")),
@@ -134,7 +134,7 @@ DOCUMENTED: list[tuple[Callable[[], Any], type[ApiError], str, str]] = [
         lambda: Robot().append_mission_batch([TABLE]),
         FailedPrecondition,
         "AppendMissionBatch/FAILED_PRECONDITION/the-mission-queue-is-empty",
-        "Mission › AppendMission › Errors",
+        "Mission › AppendMissionBatch › Errors",
     ),
     (
         lambda: busy()[0].charge_robot(),  # noqa: PLW0108 - the robot is made when it is asked
@@ -182,7 +182,7 @@ DOCUMENTED: list[tuple[Callable[[], Any], type[ApiError], str, str]] = [
         lambda: busy()[0].update_mission("mission-1", "COMMAND_DANCE"),
         InvalidArgument,
         "UpdateMission/INVALID_ARGUMENT/the-request-is-malformed",
-        "Mission › CreateMission › Errors",
+        "Mission › UpdateMission › Errors",
     ),
     (
         lambda: busy()[0].update_mission("mission-1", Command.COMMAND_UNKNOWN),
@@ -210,6 +210,25 @@ def test_a_refusal_is_the_documented_error(act: Callable[[], Any], kind: type[Ap
     assert refusal.number == STATUS_NUMBERS[refusal.code]
     assert refusal.message == SYSTEM.spec.rule(f"bear.mission/{rule}").says
     assert str(refusal) == f"{refusal.operation}: {refusal.code}: {refusal.message} [{place}]"
+
+
+@pytest.mark.parametrize(
+    ("method", "place"),
+    [
+        ("CreateMission", "CreateMission › Errors"),
+        ("CreateMissionBatch", "CreateMissionBatch › Errors"),
+        ("AppendMission", "AppendMission › Errors"),
+        ("UpdateMission", "UpdateMission › Errors"),
+        ("ClearMissionStatus", "ClearMissionStatus › Errors"),
+        ("SkipGoal", "SkipGoal › Request"),
+        ("ChargeRobot", "ChargeRobot › Request"),
+    ],
+)
+def test_what_cannot_be_decoded_is_cited_from_the_table_of_its_call(method: str, place: str) -> None:
+    """Calls whose table has no such row are cited from what the page says of their request: it has no fields."""
+    with pytest.raises(InvalidArgument) as caught:
+        Robot().call(method, [1])
+    assert caught.value.citation == f"Mission › {place}"
 
 
 def test_every_status_has_an_error_that_can_be_copied() -> None:

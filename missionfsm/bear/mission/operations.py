@@ -188,6 +188,23 @@ _SNAPSHOT = promise(
 _EITHER = (INTERNAL, DEADLINE_EXCEEDED)
 
 
+INVALID_UNLISTED = ("ChargeRobot", "SkipGoal")
+"""Calls without fields whose tables have no row for INVALID_ARGUMENT: that a request is not of the documented form,
+their section about the request says."""
+
+
+def _at_home(name: str, one: Rule) -> Rule:
+    """A refusal that several calls share, cited from the table of this one.
+
+    Whether a robot is able to start is a question of one table alone; where it refuses other calls as well, that table
+    is what it is cited from.
+    """
+    if one.cite.headings[1:] != ("Errors",) or one.kind == ABILITY:
+        return one
+    unlisted = one.code == INVALID_ARGUMENT and name in INVALID_UNLISTED
+    return evolve(one, cite=evolve(one.cite, headings=(name, "Request" if unlisted else "Errors")))
+
+
 def _operation(
     name: str,
     refusals: tuple[Rule, ...],
@@ -195,8 +212,9 @@ def _operation(
     failures: tuple[str, ...] = _EITHER,
     streaming: bool = False,
 ) -> Operation:
+    own = tuple(_at_home(name, one) for one in refusals)
     return Operation.of(
-        name, SYSTEM, MISSION[name], refusals=refusals, promises=promises, failures=failures, streaming=streaming
+        name, SYSTEM, MISSION[name], refusals=own, promises=promises, failures=failures, streaming=streaming
     )
 
 

@@ -229,9 +229,9 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     due: tuple[Due, ...] = ()
     if here.running:
         due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True),)
-        because += (rules.PREEMPTS,)
+        because = (rules.PREEMPTS, *because)
     elif here.used:
-        because += (rules.LISTENS,)
+        because = (rules.LISTENS, *because)
     yield from _concluded(here, after, new, due, because)
 
 

@@ -23,10 +23,12 @@ def matches(view: Report | Introduction, content: LineContent | Malformed) -> tu
     if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
     if content.unsigned:
-        return Mismatch(rules.TYPES.id, "header.proto is the unsigned type id; it is sent as its signed value")
+        return Mismatch(
+            rules.TYPES.id, "header.proto is the unsigned type id; it is sent as its signed value", near=True
+        )
     wrong = [path for path in content.bare if path != "header.uuid"]
     if wrong:
-        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number")
+        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)
     assumes = (AI_25_HEADER["n" if content.bare else "s"],) if content.stamped else ()
     if content.borrowed:
         assumes = (*assumes, AI_27_UUID["b"])
@@ -39,6 +41,8 @@ def matches(view: Report | Introduction, content: LineContent | Malformed) -> tu
 def _introduces(
     view: Introduction, content: LineContent, assumes: tuple[Assumption, ...], told: tuple[str, ...]
 ) -> tuple[Match, ...] | Mismatch:
+    if content.kind == "status" and content.what in RULES:
+        return Mismatch(RULES[content.what].id, f"no {content.what.upper()} is due, only the robot's name is")
     if content.kind != "text":
         return Mismatch(rules.NAMED.id, f"the robot's name is due, not a {content.kind} message")
     if content.channel != view.channel:
@@ -74,7 +78,7 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
 
 
 _NAMES = Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,), again=True)
-_STATUSES = Delivery(unowed=(rules.RUNNING.id,), unending=(rules.ENVELOPE.id,), again=True)
+_STATUSES = Delivery(unowed=(rules.RUNNING.id,), named=(rules.ABOUT.id,), unending=(rules.ENVELOPE.id,), again=True)
 
 
 def delivery(topic: Hashable) -> Delivery:

@@ -368,7 +368,7 @@ def _matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...]
         return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
     wrong = [path for path in content.bare if path != "header.uuid"]
     if wrong:
-        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number")
+        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)
     if content.channel != view.channel:
         says = f"the mission came on channel {content.channel!r}, not {view.channel!r}"
         return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)

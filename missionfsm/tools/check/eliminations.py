@@ -6,42 +6,80 @@ in the same conversation can have ruled nothing out; only nodes that are new to 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from attrs import frozen
 
 from missionfsm.kernel.history import Event, Returned
-from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.readings import Ambiguity, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.belief import NODES, Belief, Node
+from missionfsm.oracle.explanation import Explanation, InFlight
 from missionfsm.oracle.parted import Parted
 from missionfsm.tools.check.phrases import described, event_words
+
+MAX_LOOKED_AT = 50
+"""In how many explanations it is looked up what an answer could have been."""
 
 
 @frozen(eq=False)
 class Elimination:
     """The event that ruled a reading out, and the request that it answers where it is an answer.
 
-    `at` is how many events that ruled something out came before it in its conversation.
+    `at` is how many events that ruled something out came before it in its conversation, `before` where that stood.
     """
 
     spec: Spec
     event: Event
     request: Any
     at: int = 0
+    before: Node | None = None
 
     def __str__(self) -> str:
         words = event_words(self.spec, self.event)
-        return words if self.request is None else f"{described(self.spec, self.request)} was {words}"
+        if self.request is None:
+            return words
+        where = f" in {self.situation}" if self.situation else ""
+        return f"{described(self.spec, self.request)} was {words}{where}"
+
+    @property
+    def situation(self) -> str:
+        """The state in which the call was made, in words; empty where several are possible, or it is no answer."""
+        states = {here.state for here, _ in self._made()}
+        return described(self.spec, states.pop()) if len(states) == 1 else ""
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """Ids of the rules that the event speaks for: those by which such an answer is given."""
+        """Ids of the rules that the event speaks against, by which it would have been another, and of those it is for.
+
+        They are known of answers.
+        """
         if self.request is None or not isinstance(self.event, Returned):
             return ()
-        operation = self.spec.operations[self.spec.request_operation(self.request)]
-        return tuple(rule.id for rule in operation.refusals if rule.code == self.event.answer.code)
+        code = self.event.answer.code
+        against, given = dict[str, None](), dict[str, None]()
+        for answer, rules in self._possible():
+            (given if answer == code else against).update(dict.fromkeys(rules))
+        if not against and not given:
+            operation = self.spec.operations[self.spec.request_operation(self.request)]
+            return tuple(rule.id for rule in operation.refusals if rule.code == code)
+        return (*against, *(rule for rule in given if rule not in against))
+
+    def _made(self) -> Iterator[tuple[Explanation, InFlight]]:
+        """The call that is answered, in each explanation of what was before."""
+        for here in self.before.explanations[:MAX_LOOKED_AT] if self.before and self.request is not None else ():
+            yield from ((here, call) for call in here.calls if call.request == self.request)
+
+    def _possible(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """The answers that the call could have had, each with its rules."""
+        for here, call in self._made():
+            ready = (*call.ready, call.done) if call.done else call.ready
+            yield from ((one.answer.code, one.rules) for one in ready)
+            if call.done is None:
+                for step in self.spec.outcomes(here.state, call.request, tuple(map(here.ref, call.args))):
+                    if step.answer is not None and meet(here.assumed, step.assumes):
+                        yield step.answer.code, step.rules
 
 
 class Eliminations:
@@ -58,11 +96,12 @@ class Eliminations:
         self._belief = belief
         self._left = _left(belief.node)
 
-    def notice(self, event: Event, asked: Any) -> None:  # noqa: ANN401 - a request of any system
+    def notice(self, event: Event, asked: Any, before: Node | None = None) -> None:  # noqa: ANN401 - of any system
         """An event has led to a node that was not seen before: note what it rules out, if anything.
 
         Args:
             asked: the request that is answered, if the event is an answer.
+            before: the node that it has led from.
         """
         node = self._belief.node
         if len(self.seen) >= NODES:
@@ -75,7 +114,7 @@ class Eliminations:
         self._left &= left
         spec = self._belief.spec
         request = asked if isinstance(event, Returned) else None
-        ruling = Elimination(spec, event, request, len(self.found))
+        ruling = Elimination(spec, event, request, len(self.found), before)
         for ambiguity in spec.ambiguities:
             for letter in ambiguity.possible(gone & ambiguity.group):
                 self.found[ambiguity.id, letter] = ruling

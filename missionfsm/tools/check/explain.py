@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 
 from missionfsm.kernel.codec import Malformed
@@ -11,8 +12,9 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
-from missionfsm.oracle.explanation import Channel
-from missionfsm.tools.check.nearest import CODE, Candidate, Circumstances, Nearest
+from missionfsm.oracle.explanation import Channel, Explanation, Owed
+from missionfsm.tools.check import causes
+from missionfsm.tools.check.nearest import CODE, LEFT_OUT, SHAPE, UNOWED, Candidate, Circumstances, Nearest, Problem
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 
@@ -82,13 +84,34 @@ def _against_answer(nearest: Nearest, event: Returned) -> Found:
     candidates = list(nearest.answers(event))
     lightest = _lightest(candidates)
     if not lightest or lightest[0].weight < CODE:
-        rules = [rule for one in lightest for problem in one.problems for rule in problem.rules or one.rules]
+        rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
+        if any(problem.weight >= SHAPE for one in lightest for problem in one.problems) and not _malformed(event):
+            rules = _alternately(rules, _before(nearest))
+        due = (rule for one in candidates if one.allowed and one.weight >= CODE for rule in one.rules)
+        rules = _alternately(rules, list(dict.fromkeys(due)))
         notes = [problem.says for one in lightest[:1] for problem in one.problems]
         if len(set(event.names)) < len(event.names):
             notes.append("each thing has a name of its own, and one is given twice")
         return candidates, rules or [rule for one in lightest for rule in one.rules], notes
-    rules, notes = _wrong_code(nearest, event, _lightest([one for one in candidates if one.allowed] or candidates))
+    allowed = [one for one in candidates if one.allowed] or candidates
+    rules, notes = _wrong_code(nearest, event, sorted(allowed, key=lambda one: one.weight))
     return candidates, rules, notes
+
+
+def _malformed(event: Returned) -> bool:
+    return isinstance(event.answer.shape, Malformed)
+
+
+def _alternately(*lists: Sequence[str]) -> list[str]:
+    """The first of each list, then the second of each, and so on: what is nearest in each comes first."""
+    return list(dict.fromkeys(one for row in itertools.zip_longest(*lists) for one in row if one is not None))
+
+
+def _accused(problem: Problem, candidate: Candidate) -> list[str]:
+    """The rules of an answer that contradicts one before: those of this one, and of that one, since either is wrong."""
+    if not problem.since:
+        return [*(problem.rules or candidate.rules)]
+    return _alternately([*candidate.rules, *problem.rules], problem.since)
 
 
 def _wrong_code(nearest: Nearest, event: Returned, allowed: list[Candidate]) -> tuple[list[str], list[str]]:
@@ -106,9 +129,12 @@ def _wrong_code(nearest: Nearest, event: Returned, allowed: list[Candidate]) -> 
     reasons.sort(key=lambda rule: rule.under is not None)
     conditions = "; ".join(dict.fromkeys(rule.says for rule in reasons[:ACCUSED]))
     note = f"{code} needs a reason, and none holds: {conditions}"
-    # What has to be refused is refused wrongly; what has to be done is refused without a reason.
+    # What has to be refused is refused wrongly; what may be done is refused without a reason.
     refused = [rule for one in allowed if not one.what.startswith(OK) for rule in one.rules]
-    return refused or [rule.id for rule in reasons], [note]
+    own = [rule.id for rule in reasons]
+    must = not any(one.what.startswith(OK) for one in allowed)
+    done = [rule for one in allowed if one.what.startswith(OK) for rule in one.rules]
+    return _alternately(*((refused, own) if must else (own, refused, done))), [note]
 
 
 def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
@@ -157,7 +183,11 @@ def _against_message(nearest: Nearest, event: Received) -> Found:
     if not candidates:
         return (), spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _lightest(candidates)
-    rules = [rule for one in lightest for problem in one.problems for rule in problem.rules]
+    rules = list(dict.fromkeys(rule for one in lightest for problem in one.problems for rule in problem.rules))
+    in_form = not any(SHAPE <= problem.weight < UNOWED for problem in lightest[0].problems)
+    if in_form and any(problem.weight >= LEFT_OUT for problem in lightest[0].problems):
+        # What is shown of something that has happened may be wrong in how it is shown, or in what has happened.
+        rules = _alternately(rules, _before(nearest, lightest[0]))
     notes = [problem.says for one in lightest for problem in one.problems]
     due = [one for one in candidates if not one.passing] or candidates
     notes += _strangers(nearest, event)
@@ -181,24 +211,43 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
     return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
 
 
+def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
+    """The rules of what has made a message due, then of what has happened last."""
+    owing: tuple[str, ...] = ()
+    if candidate is not None and candidate.owed is not None:
+        channel, owed = candidate.owed
+        owing = causes.owing(nearest.belief, owed.view, channel.topic)
+    unseen = reversed(candidate.unseen) if candidate else ()
+    return list(dict.fromkeys((*unseen, *owing, *causes.exercised(nearest.belief))))
+
+
+def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
+    """What has still to be shown: of each channel what it owes last."""
+    owed = ((channel, [one for one in channel.owed if not one.passing]) for channel in here.channels)
+    return [(channel, due[-1]) for channel, due in owed if due]
+
+
 def _still_due(nearest: Nearest) -> Found:
+    """Things have settled, and something that is due has not come: in the explanations in which least is due."""
+    ways = [(one, _due(one.explanation)) for one in nearest.ways()]
+    ways = [(one, due) for one, due in ways if due]
+    ways = [way for way in ways if nearest.at_rest(way[0].explanation)] or ways
+    least = min((len(due) for _, due in ways), default=0)
     found: list[Candidate] = []
     rules: list[str] = []
     notes: list[str] = []
-    for here in nearest.reachable():
-        for channel in here.channels:
-            due = [owed for owed in channel.owed if not owed.passing]
-            if due:
-                where = _called(nearest, channel)
-                wanted = described(nearest.spec, due[-1].view)
-                delivery = nearest.spec.delivery(channel.topic)
-                found.append(Candidate(f"{where} shows {wanted}", (), (), ()))
-                rules += delivery.unowed if channel.last or not delivery.first else delivery.first
-                last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
-                notes.append(f"{where} did not show {wanted}{last}")
-        if len(found) > MAX_ALTERNATIVES:
-            break
-    return found, rules, notes[:2]
+    for sighting, due in ways:
+        for channel, owed in due if len(due) == least else ():
+            where = _called(nearest, channel)
+            wanted = described(nearest.spec, owed.view)
+            delivery = nearest.spec.delivery(channel.topic)
+            shows = f"{where} shows {wanted}"
+            found.append(Candidate(shows, (), (), (), unseen=sighting.rules, owed=(channel, owed)))
+            rules += delivery.unowed if channel.last or not delivery.first else delivery.first
+            last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
+            notes.append(f"{where} did not show {wanted}{last}")
+    before = _before(nearest, found[0] if found else None)
+    return found, _alternately(list(dict.fromkeys(rules)), before), notes[:2]
 
 
 def _called(nearest: Nearest, channel: Channel) -> str:

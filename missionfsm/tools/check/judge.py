@@ -146,6 +146,7 @@ class Judge:
         belief = self.belief
         for position, event in enumerate(events):
             self.events += 1
+            before = belief.node
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
@@ -161,7 +162,7 @@ class Judge:
                 self._asked = self.transcript.answered
                 return False
             if belief.node not in self._seen:
-                self.rulings.notice(event, self.transcript.answered)
+                self.rulings.notice(event, self.transcript.answered, before)
             kind = type(event)
             if kind is Returned or kind is Settled or kind is Called:
                 self._count(event, self.transcript.answered, open_calls=len(self.transcript.pending) > 0)

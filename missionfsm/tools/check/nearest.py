@@ -22,15 +22,19 @@ from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
-from missionfsm.oracle.successors import ExhaustedError
+from missionfsm.oracle.successors import ExhaustedError, Successor
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 MOST_LOOKED_AT = 200
 """How many explanations are looked at, the nearest first."""
 
-READING, NAME, UNDRIVEN, SHAPE, UNOWED, VALUE, CODE = 2, 4, 6, 10, 30, 40, 60
-"""How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least."""
+READING, LEFT_OUT, NAME, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4, 6, 10, 30, 40, 50, 60
+"""How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least.
+
+LEFT_OUT is a message that comes before one that is due earlier, UNOWED one after all that were owed, UNBEGUN one before
+any is.
+"""
 
 PASSING = 1
 """How much more it takes to be meant by a message that need not come."""
@@ -73,11 +77,13 @@ class Problem:
         says: what it is, in words.
         rules: ids of the rules that are broken by it, the nearest first.
         weight: how much it takes to forgive it.
+        since: ids of the rules that an event before speaks about, which this one contradicts.
     """
 
     says: str
     rules: tuple[str, ...]
     weight: int
+    since: tuple[str, ...] = ()
 
 
 @frozen
@@ -90,6 +96,9 @@ class Candidate:
         assumes: the readings under which it would have been.
         problems: what it would have to be forgiven.
         allowed: whether it could have come.
+        passing: whether it is a message that need not come.
+        unseen: ids of the rules of what has happened unseen before it would have come.
+        owed: the channel and what it owes, where it is a message that is due.
     """
 
     what: str
@@ -98,6 +107,8 @@ class Candidate:
     problems: tuple[Problem, ...]
     allowed: bool = True
     passing: bool = False
+    unseen: tuple[str, ...] = ()
+    owed: tuple[Channel, Owed] | None = None
 
     @property
     def weight(self) -> int:
@@ -140,12 +151,19 @@ class Nearest:
 
     def reachable(self, besides: int | None = None) -> Iterator[Explanation]:
         """What the explanations can silently become, the nearest first."""
+        return (sighting.explanation for sighting in self.ways(besides))
+
+    def ways(self, besides: int | None = None) -> Iterator[Successor]:
+        """The same with the rules of what has silently happened on the way."""
         found = self.moves.closure(self.belief.node.explanations, besides)
         try:
-            for sighting in itertools.islice(found, MOST_LOOKED_AT):
-                yield sighting.explanation
+            yield from itertools.islice(found, MOST_LOOKED_AT)
         except ExhaustedError:
             return
+
+    def at_rest(self, here: Explanation) -> bool:
+        """Whether nothing that is urgent has still to happen."""
+        return not any(meet(here.assumed, step.assumes) for step in self.moves.urgent(here.state))
 
     # Answers.
 
@@ -215,12 +233,17 @@ class Nearest:
         """Every message that could have come, and what would have to be so for this one to be one of them."""
         (_, content, given, relations, number), _ = self.belief.symbol(event)
         message = _Message(event, content, given, number)
-        for here in self.reachable():
+        for sighting in self.ways():
+            here = sighting.explanation
             before = tuple(self._sequence(here, relations))
-            for channel in here.channels:
-                if channel.name == number or channel.name < GONE:
-                    yield from self._shown(here, channel, message, before)
-            yield from self._undriven(here, message)
+            found = (
+                one
+                for channel in here.channels
+                if channel.name == number or (channel.name < GONE and self._is_new(here, number))
+                for one in self._shown(here, channel, message, before)
+            )
+            for one in itertools.chain(found, self._undriven(here, message)):
+                yield evolve(one, unseen=sighting.rules)
 
     def _sequence(self, here: Explanation, relations: Iterable[str]) -> Iterator[Problem]:
         """The readings that the numbers of a message need; where they are wrong, nothing else matters."""
@@ -237,11 +260,17 @@ class Nearest:
         for position, owed in enumerate(channel.owed):
             needs = (owed.only, *skipped) if owed.only else skipped
             problems = [*before, *self._readings(here, needs)]
-            if delivery.skips is None and not all(one.passing for one in channel.owed[:position]):
-                problems.append(Problem("what is owed before it was left out", delivery.unowed, UNOWED))
+            before_it = () if delivery.skips else [one for one in channel.owed[:position] if not one.passing]
+            if before_it:
+                says = f"{described(self.spec, before_it[0].view)} has to come before it"
+                other = self.moves.matches(before_it[0], message.content)
+                own = (other.rule,) if isinstance(other, Mismatch) else ()
+                problems.append(Problem(says, (*own, *delivery.unowed), LEFT_OUT))
             problems += self._matched(here, channel, owed, message)
             words = described(self.spec, owed.view)
-            yield Candidate(words, (), (), tuple(problems), not self._clash(here, needs), owed.passing)
+            possible = not before_it and not self._clash(here, needs)
+            due = (channel, before_it[0] if before_it else owed)
+            yield Candidate(words, (), (), tuple(problems), possible, owed.passing, owed=due)
             if not owed.passing and delivery.skips:
                 skipped = (delivery.skips,)
         if not channel.owed:
@@ -254,7 +283,7 @@ class Nearest:
             refs = tuple(map(here.ref, message.given))
             own = self.spec.unowed(here.state, channel.topic, message.content, refs)
         if channel.last is None:
-            yield Problem("nothing is owed to it yet", own or delivery.unowed, UNOWED)
+            yield Problem("nothing is owed to it yet", own or delivery.unowed, UNBEGUN)
             return
         wrong = self._matched(here, channel, channel.last, message)
         if wrong:
@@ -274,7 +303,8 @@ class Nearest:
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
             least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
-            return [Problem(ways.says, (ways.rule,), least + further)]
+            unowed = self.spec.delivery(channel.topic).unowed if least == VALUE else ()
+            return [Problem(ways.says, (ways.rule, *unowed), least + further)]
         found: list[list[Problem]] = []
         for way in ways:
             own = (channel.name, *(owed.names[ref] for ref, _ in way.names))
@@ -299,7 +329,7 @@ class Nearest:
                     continue
                 if not self._matched(after, channel, channel.owed[-1], message):
                     unowed = self.spec.delivery(channel.topic).unowed
-                    yield Candidate("", (), (), (Problem(says, (*rules, *unowed), UNDRIVEN),), allowed=False)
+                    yield Candidate("", (), (), (Problem(says, rules or unowed, UNDRIVEN),), allowed=False)
 
     def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...]]]:
         """Steps that were not taken, with what they are and the rules that are broken if they were."""
@@ -328,7 +358,8 @@ class Nearest:
             events = dict.fromkeys(str(ruling) for ruling in rulings if ruling is not None)
             since = f", since {'; '.join(events)}" if events else ""
             followed = f"{one.of.id}={'|'.join(left)} is followed{since}"
-            yield Problem(f"it needs {one}, but {followed}", rules_about(self.spec, one), READING)
+            since_then = tuple(dict.fromkeys(rule for ruling in rulings if ruling is not None for rule in ruling.rules))
+            yield Problem(f"it needs {one}, but {followed}", rules_about(self.spec, one), READING, since_then)
 
     def _names(
         self, here: Explanation, own: Names, seen: Names, called: tuple[Name, ...], *, unordered: bool = False

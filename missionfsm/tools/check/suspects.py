@@ -44,8 +44,10 @@ def suspects(
     """
     first, lines = head(history[0]), history[1:]
     found = []
+    methods = system.codec.methods
+    answered = {line["call"] for line in lines if line.get("method") in methods}
     for at, line in enumerate(lines[:-1]):
-        if "return" not in line:
+        if line.get("return") not in answered:
             continue
         judge = Judge(system, first, readings=readings, lost=frozenset({line["return"]}))
         if all(judge.feed(one) for one in (*lines[:at], *lines[at + 1 :])):

@@ -5,15 +5,19 @@ Choices of readings are the default one and those that differ from it in a singl
 
 from __future__ import annotations
 
+import csv
 import functools
 import os
 import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Hashable, Iterator
+from pathlib import Path
 from typing import Any
 
+import orjson
 import pytest
+from accused import accusations
 from attrs import evolve, frozen
 
 from missionfsm import systems
@@ -24,6 +28,9 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Emission, Mismatch, Step
 from missionfsm.kernel.system import System
+from missionfsm.oracle.transcript import head
+from missionfsm.tools.check.explain import ACCUSED
+from missionfsm.tools.check.judge import check
 from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
 
 BOUNDS = Bounds(2, goals=2, batch=2)
@@ -316,6 +323,55 @@ def test_what_is_shown_is_recognised(lab: Lab) -> None:
             assert agreeing, (name, lab.spec.describe(emission.view))
             assert any(all(names[own] == known[at] for own, at in match.names) for match in agreeing)
     assert seen
+
+
+# A violation says what is broken.
+
+SAMPLED = {"bear.mission": 150, "bear.status": 150, "isaac.server": 16, "isaac.robot": 4}
+"""Of how many mutants of a system one is looked at where not all are."""
+PARTS = 8
+
+
+@pytest.mark.parametrize("name", systems.names())
+def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
+    """Of a sample of mutants: each violation names one to three rules, the one that was broken among them."""
+    found = list(accusations(systems.system(name), every=SAMPLED[name], first=2))
+    assert [str(one) for one in found if not 1 <= len(one.violation.rules) <= ACCUSED] == []
+    assert [str(one) for one in found if not one.is_right(systems.system(name))] == []
+    assert found
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("name", systems.names())
+def test_every_violation_names_the_rule_that_is_broken(name: str, part: int) -> None:
+    """The same of every mutant of every system."""
+    found = list(accusations(systems.system(name), every=PARTS, first=part, conversations=16))
+    assert [str(one) for one in found if not 1 <= len(one.violation.rules) <= ACCUSED] == []
+    assert [str(one) for one in found if not one.is_right(systems.system(name))] == []
+
+
+CASES = next((one / "shared" / "cases" for one in Path(__file__).parents if (one / "shared" / "cases").is_dir()), None)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(CASES is None, reason="no folder shared/cases lies beside the project")
+def test_every_case_that_violates_names_a_rule() -> None:
+    """Whatever small histories lie beside the project: one that is judged wrong is said to break one to three rules."""
+    assert CASES is not None
+    with (CASES / "cases.tsv").open(encoding="utf-8", newline="") as table:
+        rows = [row for row in csv.DictReader(table, delimiter="\t", quoting=csv.QUOTE_NONE) if row["exit"] == "1"]
+    plain = [CASES / row["file"] for row in rows if not row["options"] and row["file"].endswith(".jsonl")]
+    named = {}
+    for path in plain:
+        first, *lines = map(orjson.loads, path.read_bytes().splitlines())
+        if "system" not in first:
+            continue  # bare messages
+        verdict = check(systems.system(first["system"]), head(first), lines)
+        if verdict.violation is not None:
+            named[path.name] = len(verdict.violation.rules)
+    assert {name: rules for name, rules in named.items() if not 1 <= rules <= ACCUSED} == {}
+    assert named
 
 
 # Pure.

@@ -60,6 +60,7 @@ class Delivery:
         named: ids of the rules that are broken by a message that names other things than it is about.
         first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
         unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
+        malformed: ids of the rules that are broken by a message that cannot be read.
         again: whether a message has to come although the one before it says the same (a line that is sent each time).
     """
 
@@ -71,6 +72,7 @@ class Delivery:
     named: tuple[str, ...] = ()
     first: tuple[str, ...] = ()
     unending: tuple[str, ...] = ()
+    malformed: tuple[str, ...] = ()
     again: bool = False
 
 

@@ -54,6 +54,7 @@ from missionfsm.bear.mission.stream import (
     TOPIC,
     TYPE,
     TYPE_CHANGED,
+    WELL_FORMED,
     lasting,
     listing,
     matches,
@@ -265,6 +266,7 @@ def _delivery(_: object) -> Delivery:
         unowed=(OWED.id,),
         named=(ALL_LISTED.id,),
         first=first,
+        malformed=(WELL_FORMED.id,),
     )
 
 

@@ -36,7 +36,17 @@ from missionfsm.bear.status.state import (
     World,
     initial,
 )
-from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, Topic, answers, concerns, matches
+from missionfsm.bear.status.stream import (
+    RULES,
+    SELECTED,
+    SEQUENCE,
+    UPDATES,
+    WELL_FORMED,
+    Topic,
+    answers,
+    concerns,
+    matches,
+)
 from missionfsm.bear.status.values import faults
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Event, Received
@@ -74,6 +84,7 @@ def _delivery(topic: Topic) -> Delivery:
         ends=ends,
         unowed=(UPDATES.id,),
         first=tuple(rule.id for rule in OPERATIONS[topic.endpoint.value].promises),
+        malformed=(WELL_FORMED.id,),
     )
 
 

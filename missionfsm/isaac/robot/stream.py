@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
+from attrs import evolve
+
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
@@ -77,8 +79,9 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
     return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
-_NAMES = Delivery(unowed=(rules.NAMED.id,), unending=(rules.ENVELOPE.id,), again=True)
-_STATUSES = Delivery(unowed=(rules.RUNNING.id,), named=(rules.ABOUT.id,), unending=(rules.ENVELOPE.id,), again=True)
+_ANY = Delivery(unending=(rules.ENVELOPE.id,), malformed=(rules.ENVELOPE.id,), again=True)
+_NAMES = evolve(_ANY, unowed=(rules.NAMED.id,))
+_STATUSES = evolve(_ANY, unowed=(rules.RUNNING.id,), named=(rules.ABOUT.id,))
 
 
 def delivery(topic: Hashable) -> Delivery:

@@ -434,7 +434,7 @@ def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | Non
     return (rules.UNNAMED.id,) if queued and not own else ()
 
 
-_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), again=True)
+_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), malformed=(rules.ENVELOPE.id,), again=True)
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 

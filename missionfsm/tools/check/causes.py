@@ -9,7 +9,7 @@ from collections.abc import Hashable, Iterator
 from typing import Any
 
 from missionfsm.kernel.history import Called, Driven, Received, Settled
-from missionfsm.kernel.spec import Step
+from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation
 

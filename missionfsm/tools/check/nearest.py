@@ -282,6 +282,9 @@ class Nearest:
         if self.spec.unowed is not None:
             refs = tuple(map(here.ref, message.given))
             own = self.spec.unowed(here.state, channel.topic, message.content, refs)
+        if isinstance(message.content, Malformed):
+            yield Problem(message.content.says, delivery.malformed or delivery.unowed, SHAPE)
+            return
         if channel.last is None:
             yield Problem("nothing is owed to it yet", own or delivery.unowed, UNBEGUN)
             return

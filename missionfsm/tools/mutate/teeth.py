@@ -72,9 +72,9 @@ class Mutant:
         """The rule and how it is broken."""
         return f"{self.rule} {self.kind}"
 
-    def subject(self, system: System, seconds: Callable[[int], float] = float) -> ReferenceSubject:
+    def subject(self, system: System, seconds: Callable[[int], float] = float) -> BrokenSubject:
         """The implementation, to be asked; `seconds` are its timestamps, see `ReferenceSubject`."""
-        return _Broken(evolve(system, spec=self.spec), self.choice, self.twist, self.bend, seconds)
+        return BrokenSubject(evolve(system, spec=self.spec), self.choice, self.twist, self.bend, seconds)
 
 
 @frozen
@@ -181,13 +181,20 @@ def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:
     return MutationReport(system.name, ordered, parts[0].untested)
 
 
-class _Broken(ReferenceSubject):
-    """The reference with a rule broken: what it cannot answer any more, it answers with nothing."""
+class BrokenSubject(ReferenceSubject):
+    """The reference with a rule broken: what it cannot answer any more, it answers with nothing.
+
+    Attributes:
+        speechless: whether there was anything that it could not answer.
+    """
+
+    speechless = False
 
     def _call(self, method: str, params: JSON) -> Exchange:
         try:
             return super()._call(method, params)
         except (LookupError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
+            self.speechless = True
             return Exchange({})
 
 

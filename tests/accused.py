@@ -1,0 +1,78 @@
+"""What a violation accuses an implementation of that breaks one rule, and whether that is the rule."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from attrs import frozen
+from combinations import Bench
+
+from missionfsm.kernel.subject import GibberishError
+from missionfsm.kernel.system import System
+from missionfsm.tools.check.suspects import with_suspects
+from missionfsm.tools.check.verdict import Violation
+from missionfsm.tools.conform.handshake import handshake, offered
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import tour
+from missionfsm.tools.mutate.teeth import Mutant, mutants
+
+EXCUSED = {
+    "isaac.robot/line/a-type-id-is-signed sends the type id of a mission": "a line is read as what its type id says, "
+    "so that it is a mission without a configuration",
+    "isaac.robot/codelet/a-mission-can-follow-another is not run": "that a mission was not run shows when its end is "
+    "not reported, long after it came",
+    "isaac.robot/codelet/a-new-mission-preempts is not run": "as before: what is missing is the RUNNING of some tick",
+}
+"""Mutants whose rule cannot be told from what is seen, each with the reason."""
+
+
+@frozen
+class Accusation:
+    """What is said of a mutant: the rules that a violation names, and whether the mutant had no answer at all."""
+
+    mutant: Mutant
+    violation: Violation
+    speechless: bool
+
+    def is_right(self, system: System) -> bool:
+        """Whether the broken rule is named, or one that cannot be told apart from it.
+
+        Of a refusal without a reason nobody can see which of the rows with its code was meant, and of rows that differ
+        in their code alone, by reading, any may have been broken. A mutant that could not answer any more breaks more
+        than its rule.
+        """
+        rules = system.spec.rules_by_id
+        own = rules[self.mutant.rule]
+        place = self.mutant.rule.split("/")[1]
+        beside = [rules[one.id] for one in self.violation.rules if one.id.split("/")[1] == place]
+        return (
+            own.id in [one.id for one in self.violation.rules]
+            or (self.mutant.kind == "holds always" and any(one.code == own.code for one in beside))
+            or any(one.name == own.name for one in beside)
+            or self.speechless
+            or self.mutant.name in EXCUSED
+        )
+
+    def __str__(self) -> str:
+        named = ", ".join(one.id.partition("/")[2] for one in self.violation.rules)
+        return f"{self.mutant.name}: {self.violation.observed}: {named}: {self.violation.notes[:1]}"
+
+
+def accusations(system: System, *, every: int, first: int = 0, conversations: int = 8) -> Iterator[Accusation]:
+    """What is said of every so many-th mutant, of those that are found out in a few conversations."""
+    bench = Bench.of(system)
+    for mutant in list(mutants(system))[first::every]:
+        broken = mutant.subject(system)
+        try:
+            info = handshake(system, broken)
+            given = offered(system, info)
+            run = Run.with_guide(given, broken, info, bench.automaton, bench.guide.fresh())
+            right = tour(run, random.Random(mutant.name), conversations, 40, mutant.favour)
+        except GibberishError:
+            continue  # what cannot be read is the adapter's failure, no violation
+        if right or (run.found is not None and run.found.judge.exhausted):
+            continue
+        found = run.found.judge.violation if run.found is not None else run.ledger.inconsistency()
+        assert found is not None, mutant.name
+        yield Accusation(mutant, with_suspects(system, found), broken.speechless)

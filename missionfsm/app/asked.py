@@ -9,6 +9,7 @@ from attrs import evolve, field, frozen
 
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.middle import in_the_middle
+from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.system import System
 from missionfsm.kernel.transport import over_transport
 from missionfsm.systems import system
@@ -64,3 +65,13 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
     if spec.anywhere or spec.others:  # of what is not known, no situation can be told
         found = evolve(found, matrix=None)
     return evolve(found, spec=spec if strict or not found.codec.streams else over_transport(spec))
+
+
+def refuse_json_only(of: System, readings: Mapping[str, str]) -> None:
+    """Refuse readings that nothing over gRPC can follow. Raises ValueError; the text names them."""
+    bits = constrain(of.spec.ambiguities, readings)
+    left = {one: one.possible(bits) for one in of.spec.ambiguities}
+    only = [f"{one.id}={','.join(letters)}" for one, letters in left.items() if one.json_only.issuperset(letters)]
+    if only:
+        message = f"{' and '.join(only)}: only JSON can say it; over gRPC there is one form, and nothing follows it"
+        raise ValueError(message)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
+from missionfsm.app.asked import refuse_json_only
 from missionfsm.app.live import Live
 from missionfsm.bear.mission.codec import EPOCH
 from missionfsm.kernel.alphabet import Bounds
@@ -214,7 +215,7 @@ def serve(  # noqa: PLR0913 - each with a default
         record: takes every line of the history as it happens.
 
     Raises:
-        ValueError: there is no such system, world, reading, fault or break.
+        ValueError: there is no such system, world, reading, fault or break, or the reading is one that only JSON says.
         OSError: it cannot listen there, or a file cannot be read.
         ModuleNotFoundError: the extra is not installed.
     """
@@ -224,6 +225,7 @@ def serve(  # noqa: PLR0913 - each with a default
     wrong = Faults.parse(faults)
     undriven = ("fault",) if wrong.deadline or wrong.unavailable else ()
     served = _served(system)
+    refuse_json_only(served, readings or {})
     subject = _mutant(served, broken, readings) if broken else None
     live = Live(served, world, readings, clock=_seconds, record=record, undriven=undriven, subject=subject)
     security = Security(certificate, key, token)

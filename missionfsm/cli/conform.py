@@ -220,7 +220,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             others=others,
             strict=transport is Transport.STRICT,
         )
-        judged = wire.system(system)
+        judged = wire.system(system, readings)
         refuse_options(
             {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
             "where --grpc says which server is judged",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import enum
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -152,14 +152,17 @@ class Wire:
         """Whether conversations begin with whatever there is."""
         return self.begins is Beginning.ANYWHERE
 
-    def system(self, name: str) -> System:
-        """The system as a server of it is judged; bad input ends the command."""
-        from missionfsm.app.asked import judged_system  # noqa: PLC0415 - commands load what they need
+    def system(self, name: str, readings: Mapping[str, str]) -> System:
+        """The system as a server of it is judged by some readings; bad input ends the command."""
+        from missionfsm.app.asked import judged_system, refuse_json_only  # noqa: PLC0415 - commands load what they need
 
         try:
-            return judged_system(name, strict=self.strict, anywhere=self.anywhere, others=self.others)
+            found = judged_system(name, strict=self.strict, anywhere=self.anywhere, others=self.others)
         except UnreadableError as error:
             stop(f"--begins, --others: {error}", BAD_INPUT)
+        with bad_input():
+            refuse_json_only(found, readings)
+        return found
 
     def subject(self, system: str, timeout: float) -> Subject:
         """The server as a subject; bad input ends the command. Raises SubjectError if nobody answers."""

@@ -76,7 +76,7 @@ def proxy(  # noqa: PLR0913 - options of the command
     from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
     from missionfsm.adapters.grpc.proxy import Proxy, read_line  # noqa: PLC0415
     from missionfsm.adapters.grpc.server import Security  # noqa: PLC0415
-    from missionfsm.app.asked import judged_system  # noqa: PLC0415
+    from missionfsm.app.asked import judged_system, refuse_json_only  # noqa: PLC0415
     from missionfsm.app.recorder import Recorder  # noqa: PLC0415
 
     if system not in SERVICES:
@@ -89,7 +89,8 @@ def proxy(  # noqa: PLR0913 - options of the command
     if others:
         head["others"] = True
     with bad_input():
-        judged_system(system, strict=False, anywhere=begins is Beginning.ANYWHERE, others=others)
+        seen_as = judged_system(system, strict=False, anywhere=begins is Beginning.ANYWHERE, others=others)
+        refuse_json_only(seen_as, choice(reading))
         recorder = Recorder(
             head, file=record or "", read=read_line, readings=choice(reading), html=html or "", tell=complain
         )

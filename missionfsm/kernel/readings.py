@@ -54,6 +54,8 @@ class Ambiguity:
             such parts differently is explained, and the verdict says that it is incoherent.
         rule: the rule that is broken by whoever reads the question now so and now otherwise: its id, or the end of it
             where rules of several operations say the same. Needed where no rule of the system is under a reading of it.
+        json_only: letters that are about the JSON of a message. Binary protobuf has one form for what they say in
+            another, so that nothing that speaks it follows them.
     """
 
     id: str
@@ -63,6 +65,7 @@ class Ambiguity:
     flagged: frozenset[str] = frozenset()
     alike: str | None = None
     rule: str = ""
+    json_only: frozenset[str] = frozenset()
     _bit: Mapping[str, int] = field(init=False, repr=False)
     _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
     _named: dict[str | tuple[str, ...], Assumption] = field(init=False, repr=False, factory=dict)
@@ -70,8 +73,8 @@ class Ambiguity:
     """The bits of all its readings."""
 
     def __attrs_post_init__(self) -> None:
-        if self.default not in self.readings or not self.flagged <= self.readings.keys():
-            msg = f"{self.id}: the default and the flagged letters must be readings, {', '.join(self.readings)}"
+        if not {self.default} | self.flagged | self.json_only <= self.readings.keys():
+            msg = f"{self.id}: every letter of it must be one of its readings, {', '.join(self.readings)}"
             raise ValueError(msg)
         object.__setattr__(self, "_bit", {letter: 1 << next(_bits) for letter in self.readings})
         object.__setattr__(self, "group", functools.reduce(int.__or__, self._bit.values()))

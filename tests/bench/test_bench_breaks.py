@@ -22,7 +22,7 @@ from missionfsm.tools.mutate.teeth import mutants
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grpc"))
 from brokenserver import Searcher
-from onwire import accepted, alternatives, proxied
+from onwire import accepted, alternatives, proxied, recorded, unsaid
 
 EVERY = int(os.environ.get("EVERY", "1"))
 
@@ -39,6 +39,18 @@ def test_breaks_that_binary_carries_are_found_over_grpc(name: str) -> None:
             found += [mutant.name] if searcher.over_grpc(mutant) else []
     print(f"\n{name}: of {len(every)} breaks {len(carried)} show in binary requests, {len(found)} found over gRPC")
     assert found == carried
+
+
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
+def test_only_readings_that_only_json_says_have_no_binary_form(name: str) -> None:
+    """A conversation is had again under every reading: what cannot be encoded is said under those that say so, only."""
+    of = system(name)
+    every = [(one, letter) for one in of.spec.ambiguities for letter in one.readings if letter != one.default]
+    asked = recorded(of)
+    for one, letter in every[::EVERY]:
+        assert bool(unsaid(of, {one.id: letter}, asked)) <= (letter in one.json_only), f"{one.id}={letter}"
+    marked = [(one, letter) for one, letter in every if letter in one.json_only]
+    assert all(unsaid(of, {one.id: letter}, asked) for one, letter in marked)
 
 
 @pytest.mark.parametrize("judged", [accepted, proxied], ids=["alone", "proxied"])

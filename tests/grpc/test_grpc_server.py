@@ -5,11 +5,13 @@ from __future__ import annotations
 import concurrent.futures
 import queue
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import grpc
 import pytest
+from commandline import CommandLine
 from google.protobuf import descriptor_pool, message_factory
 from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
 
@@ -18,6 +20,8 @@ from missionfsm.adapters.grpc.client import GrpcSubject, Target
 from missionfsm.adapters.grpc.control import Control
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
 from missionfsm.adapters.grpc.faults import Dice, Faults
+from missionfsm.adapters.grpc.server import Server
+from missionfsm.app.live import Live
 from missionfsm.app.serve import Cue, Served, read_script, serve
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.transcript import head
@@ -368,9 +372,37 @@ def until(last: int, messages: queue.Queue[JSON]) -> Iterator[JSON]:
             return
 
 
-def test_a_reading_that_is_about_json_ends_a_stream_in_words() -> None:
-    """What binary protobuf has no form for ends a stream with INTERNAL, and the details say why."""
-    with serve("bear.mission", world={"family": "servi"}, readings={"AM-50.shape": "b"}) as robot:
+JSON_ONLY = tuple(
+    (name, f"{one.id}={letter}")
+    for name in ("bear.mission", "bear.status")
+    for one in system(name).spec.ambiguities
+    for letter in sorted(one.json_only)
+)
+
+
+def test_which_readings_only_json_says() -> None:
+    """Three of all are about JSON; tests/bench/test_bench_breaks.py looks for more among what the others say."""
+    assert [reading for _, reading in JSON_ONLY] == [
+        "AM-50.shape=b",
+        "AS-22.GetRobotStatus=b",
+        "AS-22.SubscribeRobotStatus=b",
+    ]
+
+
+@pytest.mark.parametrize(("name", "reading"), JSON_ONLY)
+def test_a_reading_that_only_json_says_is_refused_over_grpc(name: str, reading: str, command_line: CommandLine) -> None:
+    """No robot is served, judged or watched by it: one line says why."""
+    nobody = "localhost:1"
+    for command in (("serve", "0"), ("conform", nobody), ("proxy", nobody, "--listen", "0")):
+        ended = command_line(command[0], name, "--grpc", *command[1:], "--reading", reading)
+        says = f"missionfsm: {reading}: only JSON can say it; over gRPC there is one form, and nothing follows it\n"
+        assert (ended.status, ended.out, ended.err) == (2, "", says)
+
+
+def test_what_binary_has_no_form_for_ends_a_stream_in_words() -> None:
+    """An implementation that says it all the same ends the stream with INTERNAL, and the details say why."""
+    live = Live(system("bear.mission"), {"family": "servi"}, {"AM-50.shape": "b"}, clock=time.time)
+    with Server(live) as robot:
         client = Client(robot.target)
         call, messages = client.subscribe()
         assert messages.get(timeout=WAIT) is not None

@@ -120,11 +120,11 @@ def test_a_wish_that_does_not_exist_is_refused(wish: dict[str, str], message: st
         choose(ALL, wish)
 
 
-@pytest.mark.parametrize("extra", [{"default": "z"}, {"default": "a", "flagged": frozenset("z")}])
-def test_the_default_and_the_flagged_are_readings(extra: dict[str, object]) -> None:
-    """An ambiguity whose default or flagged letter is none of its readings cannot be made."""
-    with pytest.raises(ValueError, match="R-5: the default and the flagged letters must be readings, a, b"):
-        Ambiguity("R-5", "?", {"a": "yes", "b": "no"}, **extra)  # type: ignore[arg-type]
+@pytest.mark.parametrize("extra", [{"default": "z"}, {"flagged": frozenset("z")}, {"json_only": frozenset("z")}])
+def test_every_letter_is_a_reading(extra: dict[str, object]) -> None:
+    """An ambiguity whose default, or a letter of which something is said, is none of its readings cannot be made."""
+    with pytest.raises(ValueError, match="R-5: every letter of it must be one of its readings, a, b"):
+        Ambiguity("R-5", "?", {"a": "yes", "b": "no"}, **{"default": "a", **extra})  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -543,8 +543,9 @@ AM_49 = Ambiguity(
 AM_50_SHAPE = Ambiguity(
     "AM-50.shape",
     "Is the feedback of a Servi or Carti mission a message or a bare enum?",
-    {"a": "a message with a status", "b": "a bare enum"},
+    {"a": "a message with a status", "b": "a bare enum, which only JSON can say"},
     default="a",
+    json_only=frozenset("b"),
 )
 AM_50_MEMBER = Ambiguity(
     "AM-50.member",

@@ -39,13 +39,25 @@ class Question:
 
 
 def _asked(  # noqa: PLR0913 - an ambiguity's own fields
-    calls: tuple[str, ...], name: str, question: str, readings: Mapping[str, str], default: str, flagged: str = ""
+    calls: tuple[str, ...],
+    name: str,
+    question: str,
+    readings: Mapping[str, str],
+    default: str,
+    flagged: str = "",
+    json_only: str = "",
 ) -> Question:
     """A question with a part for each of some calls."""
     return Question(
         {
             call: Ambiguity(
-                f"{name}.{call}", f"{call}: {question}", readings, default, flagged=frozenset(flagged), alike=name
+                f"{name}.{call}",
+                f"{call}: {question}",
+                readings,
+                default,
+                flagged=frozenset(flagged),
+                alike=name,
+                json_only=frozenset(json_only),
             )
             for call in calls
         }
@@ -369,8 +381,9 @@ AS_22 = _asked(
     STATES,
     "AS-22",
     "how do the goals of the mission in a robot's state look?",
-    {"a": "as on the Mission page", "b": "each inside an object with the one field `goal`"},
+    {"a": "as on the Mission page", "b": "each inside an object with the one field `goal`, which only JSON can say"},
     "a",
+    json_only="b",
 )
 AS_25 = _asked(
     SUBSCRIPTIONS,

@@ -9,6 +9,7 @@ the order in which the explanations mention them, so that the same situation wit
 from __future__ import annotations
 
 import copy
+import sys
 from collections import defaultdict, deque
 from collections.abc import Hashable, Iterable, Iterator
 from typing import Any
@@ -39,6 +40,9 @@ Tally = defaultdict[int, int]
 """How often which set of rules was exercised; an automaton numbers the sets."""
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
+NOBODY = -sys.maxsize
+"""The number of a channel of which an end was seen: nothing has it, so nothing explains that it ends again."""
+
 MAX_REMEMBERED = 100_000
 """How many names that are gone are remembered, so that one that comes again is noticed."""
 
@@ -219,6 +223,7 @@ class Belief:
     """
 
     __slots__ = (
+        "_ended",
         "_given_up",
         "_lasting",
         "_latest",
@@ -249,6 +254,7 @@ class Belief:
         self._numbers: dict[Name, int] = {}
         self._retired: dict[Name, None] = dict.fromkeys(past or ())
         self._given_up: dict[Name, None] = {}
+        self._ended: dict[Name, None] = {}
         self._lasting: dict[Name, tuple[tuple[str, Hashable], ...]] = {}
         self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
@@ -284,7 +290,7 @@ class Belief:
         self.touched |= edge.touched
         if edge.keep is not None:
             self._rename(edge, edge.keep, new)
-        if kind is Received or kind is Driven or kind is Cancelled:
+        if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
             self._note(event)
         return True
 
@@ -305,6 +311,10 @@ class Belief:
             self._unmark(event.channel)
             if len(self._given_up) > MAX_REMEMBERED:
                 del self._given_up[next(iter(self._given_up))]
+        elif type(event) is Ended and self.automaton.spec.closing is not None:
+            self._ended[event.channel] = None
+            if len(self._ended) > MAX_REMEMBERED:
+                del self._ended[next(iter(self._ended))]
 
     # A window of events that are searched together.
 
@@ -314,6 +324,7 @@ class Belief:
         other.node = Node(self.node.explanations, self.node.width)
         other._names, other._numbers = self._names.copy(), self._numbers.copy()  # noqa: SLF001 - of the same class
         other._retired, other._given_up = self._retired.copy(), self._given_up.copy()  # noqa: SLF001
+        other._ended = self._ended.copy()  # noqa: SLF001
         other._marks = {channel: tracks.copy() for channel, tracks in self._marks.items()}  # noqa: SLF001
         other._lasting = self._lasting.copy()  # noqa: SLF001
         other._latest = self._latest.copy()  # noqa: SLF001
@@ -352,7 +363,7 @@ class Belief:
         for rules in exercised:
             self._tally[self.automaton.numbered(rules)] += 1
         self._names, self._numbers = lookout._names, lookout._numbers
-        self._retired, self._given_up = lookout._retired, lookout._given_up
+        self._retired, self._given_up, self._ended = lookout._retired, lookout._given_up, lookout._ended
         self._latest, self._lasting = lookout._latest, lookout._lasting
         self._marks, self._renumbered = lookout._marks, lookout._renumbered
         self.node = edge.node
@@ -388,6 +399,8 @@ class Belief:
         if type(event) is Driven:
             return (Driven, event.event, self._number(event.names, new)), new
         if type(event) is Ended:
+            if event.channel in self._ended:
+                return (Ended, event.code, NOBODY), new
             (channel,) = self._number((event.channel,), new)
             return (Ended, event.code, channel), new
         if type(event) is Cancelled:

@@ -335,3 +335,23 @@ def test_a_connection_that_the_server_ends() -> None:
     assert served.violation is not None
     assert [one.id for one in served.violation.rules] == ["isaac.server/connection/what-means-nothing-has-no-effect"]
     assert not History().drive("connect", connection=1).closes(2).judged().conforms
+
+
+def test_a_connection_ends_once() -> None:
+    """What has ended does not end again, whether others have ended in between or not."""
+    rubbish = History().robot(1).robot(2, "s").drive("line", connection=1, line="rubbish").closes(1).settles
+    assert rubbish.judged().conforms
+    again = rubbish.closes(1).judged()
+    assert again.violation is not None
+    assert [one.id for one in again.violation.rules] == ["isaac.server/dispatch/only-its-robot-gets-a-mission"]
+    both = History().robot(1).robot(2, "s").drive("line", connection=1, line="rubbish").closes(1)
+    both = both.drive("line", connection=2, line="rubbish").closes(2).settles
+    assert (both.judged().conforms, both.closes(1).judged().conforms) == (True, False)
+
+
+def test_a_status_that_is_taken_for_another_mission() -> None:
+    """AI-10 d: a server that does not look at which mission a status names departs from the text."""
+    begun = History().submit(1, start_timeout=2).submit(2).robot(1).sends(1, 1).waits(3).sends(1, 2).settles
+    late = begun.reports(1, 1, "failure").settles.shows("FAILED_TIMEDOUT", "FAILED").judged()
+    assert late.conforms
+    assert [line for line in late.flagged if line.startswith("AI-10=d")] != []

@@ -118,6 +118,8 @@ AI_10 = Ambiguity(
         "d": "by its channel alone: it is about the robot's current one there",
     },
     default="a",
+    flagged=_flags("d"),
+    rule="a-final-status-ends-the-mission",
 )
 AI_11 = Ambiguity(
     "AI-11",

@@ -90,6 +90,7 @@ class Drive:
         ends: what arrived while it was being done, arrived before it (it ends a channel).
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
         waits: whether one that was driven before still waits in a state; the tester drives none while one does.
+        later: for a drive that only lets time pass: its words before what comes next ("2 s later"); None for others.
     """
 
     name: str
@@ -100,6 +101,7 @@ class Drive:
     ends: bool = False
     impossible: tuple[str, ...] = ()
     waits: Callable[[State], bool] = lambda _: False
+    later: Callable[[Incident], str] | None = None
 
 
 @frozen

@@ -12,6 +12,7 @@ from server_history import SERVER, History
 from missionfsm.adapters.isaac.subjects import ServerSubject
 from missionfsm.isaac.runtime.profile import DOCUMENTED
 from missionfsm.systems import names, system
+from missionfsm.tools.check.narrate import story
 from missionfsm.tools.conform.conform import Plan, conform
 
 
@@ -133,17 +134,31 @@ def test_the_known_fault_is_named_with_the_upstream_rule() -> None:
         assert "isaac.server/dependencies/a-failed-upstream-cancels" in [one.id for one in verdict.violation.rules]
 
 
-@pytest.mark.parametrize(
-    ("late", "lines"), [({}, 6), ({"ai_03_when": "q", "scheduling_period": 1.0}, 8)], ids=["at once", "in a pass"]
-)
-def test_the_known_fault_is_found_in_a_short_story(late: dict[str, Any], lines: int) -> None:
+@pytest.mark.parametrize("late", [{}, {"ai_03_when": "q", "scheduling_period": 1.0}], ids=["at once", "in a pass"])
+def test_the_known_fault_is_found_in_a_short_story(late: dict[str, Any]) -> None:
     """The tester finds it under documented and names the upstream's rule, whenever the cancellation comes."""
     faulty = ServerSubject(attrs.evolve(DOCUMENTED, started_upstream_fails=True, **late))
     readings = SERVER.profiles["documented"]
     verdict = conform(SERVER, faulty, plan=Plan(0, 0, 40, 20), seed=1, advice=False, readings=readings)
     assert verdict.violation is not None
     assert [one.id for one in verdict.violation.rules] == ["isaac.server/dependencies/a-failed-upstream-cancels"]
-    assert len(verdict.story.splitlines()) == lines
+    assert len(verdict.story.splitlines()) == 6
+
+
+def test_time_that_passes_stands_before_what_comes_next() -> None:
+    """A story has no line of its own for it, but where time passes twice, or all has settled then, or nothing comes."""
+    begun = History().submit(1).robot(1).waits(0.5).waits(1).sends(1, 1).waits(2).settles.shows("STARTED").waits(3)
+    assert story(SERVER, ({"missionfsm": 1, "system": "isaac.server", "world": {}}, *begun.lines)).splitlines() == [
+        "  1. submit(robot r, channel mission) → OK mission 1",
+        "  2. a robot connects",
+        "  3. a robot says its name, 'r'",
+        "  4. 0.5 s pass",
+        "  5. 1 s later, connection 1 showed a mission on mission with {}",
+        "  6. 2 s pass",
+        "  7. (settled)",
+        "  8. statuses() → OK ('started',) mission 1",
+        "  9. 3 s pass",
+    ]
 
 
 def test_profiles_of_systems() -> None:

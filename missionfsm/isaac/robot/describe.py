@@ -59,3 +59,8 @@ def _arrives(event: Arrives) -> str:
         return f"{_CONFIGURED[event.mission]} arrives on {event.channel}"
     where = f" on {event.channel}" if event.channel else ""
     return f"a message that is no mission arrives{where}" if event.channel else "a line arrives that is no message"
+
+
+def later(event: Passes) -> str:
+    """Time that passes, in words that stand before what comes next."""
+    return f"{event.time / MICROSECONDS:g} s later"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from missionfsm.isaac.robot import rules
-from missionfsm.isaac.robot.describe import describe
+from missionfsm.isaac.robot.describe import describe, later
 from missionfsm.isaac.robot.effects import arrives, begins, connection, passes, stops, ticks
 from missionfsm.isaac.robot.inputs import Stops
 from missionfsm.isaac.robot.readings import AMBIGUITIES
@@ -37,7 +37,7 @@ SPEC = Spec(
             Drive("line", arrives, impossible=(rules.LINKED.id,)),
             Drive("behaviorSucceeded", stops, (Stops("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
             Drive("behaviorFailed", stops, (Stops("behaviorFailed"),), impossible=(rules.STARTS.id,)),
-            Drive("advance", passes),
+            Drive("advance", passes, later=later),
             Drive("disconnect", connection, ends=True, impossible=(rules.LINKED.id,)),
             Drive("connect", connection, impossible=(rules.LINKED.id,)),
         )

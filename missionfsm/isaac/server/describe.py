@@ -60,3 +60,8 @@ def _heard(heard: Incoming) -> str:
         return f"a robot reports {heard.what.upper()} {about} on {heard.channel}"
     kinds = {"noise": "a message for nobody", "bad": "a line that is no message", "foreign": "a message with buffers"}
     return f"a robot sends {kinds[heard.kind]}"
+
+
+def later(event: Passes) -> str:
+    """Time that passes, in words that stand before what comes next."""
+    return f"{event.time / MICROSECONDS:g} s later"

@@ -15,7 +15,7 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
 from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
-from missionfsm.isaac.server.describe import describe
+from missionfsm.isaac.server.describe import describe, later
 from missionfsm.isaac.server.independence import Part, concerned, parts
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
@@ -462,7 +462,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
                 Drive("connect", _connect),
                 Drive("line", _line, impossible=(rules.NAMED.id,)),
                 Drive("disconnect", _disconnect, ends=True, impossible=(rules.DROPPED.id,)),
-                Drive("advance", _advance),
+                Drive("advance", _advance, later=later),
             )
         },
         urgent=_urgent,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
@@ -19,7 +18,7 @@ WORLD = 240
 
 
 def story(system: System, history: tuple[JSON, ...]) -> str:
-    """A history in numbered lines; calls and their answers share one where nothing came between.
+    """A history in numbered lines; calls and their answers share one, and so do time that passes and what comes next.
 
     A world that is not the usual one stands before them.
     """
@@ -49,26 +48,47 @@ def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:
 
 
 def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
-    waiting: str | None = None
-    waits_for: Any = None
+    """The lines of a story; time that passes stands before what comes next, unless that is that all has settled."""
+    passing: Driven | None = None
+    for words, event in _lines(system, history):
+        later = _later(system, passing) if passing is not None else ""
+        if passing is not None and (isinstance(event, Settled) or _later(system, event)):
+            yield event_words(system.spec, passing)
+            later = ""
+        passing = event if isinstance(event, Driven) and _later(system, event) else None
+        if passing is None:
+            yield f"{later}, {words}" if later else words
+    if passing is not None:
+        yield event_words(system.spec, passing)
+
+
+def _later(system: System, event: Event) -> str:
+    """Time that passes, in words that stand before what comes next; empty for all other events."""
+    later = system.spec.drives[event.event.name].later if isinstance(event, Driven) else None  # type: ignore[attr-defined]
+    return later(event.event) if later is not None and isinstance(event, Driven) else ""
+
+
+def _lines(system: System, history: tuple[JSON, ...]) -> Iterator[tuple[str, Event]]:
+    """A line for each event but those answers that come at once: they share the line of their call."""
+    asked: Called | None = None
     spec = system.spec
+
+    def call(asked: Called) -> str:
+        about = f" of {', '.join(map(name_words, asked.names))}" if asked.names else ""
+        return event_words(spec, asked) + about
+
     for event in _events(system, history[1:]):
-        if isinstance(event, Returned) and event.call == waits_for and waiting is not None:
-            yield f"{waiting} → {answer_words(event.answer, tuple(map(name_words, event.names)))}"
-            waiting = waits_for = None
+        if asked is not None and isinstance(event, Returned) and event.call == asked.call:
+            yield f"{call(asked)} → {answer_words(event.answer, tuple(map(name_words, event.names)))}", event
+            asked = None
             continue
-        if waiting is not None:
-            yield waiting
-            waiting = waits_for = None
-        if isinstance(event, Called):
-            about = f" of {', '.join(map(name_words, event.names))}" if event.names else ""
-            waiting, waits_for = event_words(spec, event) + about, event.call
-        elif isinstance(event, Settled):
-            yield "(settled)"
-        else:
-            yield event_words(spec, event)
-    if waiting is not None:
-        yield waiting
+        if asked is not None:
+            yield call(asked), asked
+        asked = event if isinstance(event, Called) else None
+        if asked is None:
+            yield "(settled)" if isinstance(event, Settled) else event_words(spec, event), event
+    if asked is not None:
+        yield call(asked), asked
 
 
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:

@@ -48,8 +48,10 @@ def explore(  # noqa: PLR0913 - options of the command
         if html is not None or forget_ended:
             stop("--hazards: it goes with no --html and no --forget-ended", BAD_INPUT)
         told(retries(explored, bounds, readings), json).end(DONE)
+    if forget_ended and html is not None:
+        stop("--forget-ended: it has no effect on the page of --html, which shows every state", BAD_INPUT)
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     troubles = told(found, json)
     with troubles.kept():
-        write_explorer(html, explored, bounds, assumed)
+        write_explorer(html, explored, found, assumed)
     troubles.end(DONE if found.holds else FAILED)

@@ -12,9 +12,9 @@ from missionfsm.cli.printing import made
 from missionfsm.systems import system
 
 if TYPE_CHECKING:
-    from missionfsm.kernel.alphabet import Bounds
     from missionfsm.kernel.system import System
     from missionfsm.tools.check.verdict import Verdict
+    from missionfsm.tools.explore.explore import Exploration
     from missionfsm.tools.mutate.teeth import MutationReport
 
 
@@ -52,9 +52,9 @@ def write_teeth(path: str | None, judged: System, found: MutationReport) -> None
         _write(path, lambda: teeth_page(judged, found, str(made())))
 
 
-def write_explorer(path: str | None, explored: System, bounds: Bounds, assumed: int) -> None:
+def write_explorer(path: str | None, visited: System, explored: Exploration, assumed: int) -> None:
     """Write the page to click through a system with, if it is wanted."""
     if path is not None:
         from missionfsm.pages.explorer import explorer_page  # noqa: PLC0415 - pages load what they need
 
-        _write(path, lambda: explorer_page(explored, bounds, assumed, str(made())))
+        _write(path, lambda: explorer_page(visited, explored, assumed, str(made())))

@@ -9,9 +9,7 @@ import pytest
 from browsing import Opener, missionfsm
 
 from missionfsm import systems
-from missionfsm.kernel.alphabet import Bounds
-from missionfsm.kernel.readings import UNCONSTRAINED
-from missionfsm.pages.graph import Graph
+from missionfsm.pages.graph import MOST_STATES
 
 pytestmark = pytest.mark.slow
 
@@ -228,11 +226,116 @@ def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -
             copied()
 
 
-def test_the_bounds_are_told(explorers: dict[str, Path], open_page: Opener) -> None:
-    """The page says how many states it has and within which bounds."""
-    graph = Graph(systems.system("isaac.robot"), Bounds(1, goals=2, batch=1), UNCONSTRAINED).data()
-    told = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
-    steps = sum(len(moves) // 3 for _, _, moves in graph["states"])
-    assert told.startswith(f"{len(graph['states'])} states and {steps} steps")
-    assert "within the bounds size 1, goals 2, batch 1" in told
-    assert "more than this page holds" not in told
+def test_the_numbers_are_those_of_the_command_line(explorers: dict[str, Path], open_page: Opener) -> None:
+    """The page says what `explore` prints, and within which bounds; where it holds less than that, it says so."""
+    told = missionfsm("explore", "isaac.robot", "--missions", 1, "--batch", 1).out.splitlines()[0]
+    counts = told.partition(": ")[2]
+    assert counts.startswith("20 states in 20 situations")
+    shown = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
+    assert shown.startswith(f"{counts}, within the bounds size 1, goals 2, batch 1. What is tried")
+    held = open_page(explorers["bear.mission"]).page.locator("#bounds").inner_text()
+    assert f"; this page holds the {MOST_STATES} states that are nearest. What is tried" in held
+
+
+def _shapes(page: Any, kind: str) -> list[str]:
+    names: list[str] = page.locator(f"#stage .shape.{kind} b").all_inner_texts()
+    return names
+
+
+def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(
+    explorers: dict[str, Path], open_page: Opener
+) -> None:
+    """Shapes are called what the program calls them; one that is next leads on, one that was before leads back."""
+    page = open_page(explorers["bear.mission"]).page
+    assert (_shapes(page, "past"), _shapes(page, "here")) == ([], ["[]"])
+    assert "one of 2 states" in page.locator("#stage .here").inner_text()
+    _press(page, "CreateMission", "servi delivery to", "OK")
+    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[]"], ["[WAITING]"])
+    page.locator("#stage .next[data-shape='[RUNNING at goal 0]']").click()
+    _comes_to(page, "mission-1 running serving table-1 table-2")
+    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[]", "[WAITING]"], ["[RUNNING at goal 0]"])
+    page.locator("#stage .shape.past").first.click()
+    _comes_to(page)
+    assert _shapes(page, "here") == ["[]"]
+
+
+def test_several_ways_to_a_shape_are_shown_alone(explorers: dict[str, Path], open_page: Opener) -> None:
+    """Where more than one step leads to a shape, only those are left to choose from, until all are wanted again."""
+    page = open_page(explorers["bear.mission"]).page
+    every = page.locator(".answer").count()
+    some = page.locator("#stage .next[data-shape='[WAITING]']")
+    ways = int(some.inner_text().partition("\n")[2].partition(" ways")[0])
+    some.click()
+    assert page.locator(".answer").count() == ways < every
+    page.get_by_role("button", name="Show all").click()
+    assert page.locator(".answer").count() == every
+
+
+def test_readings_are_painted_on_the_map(explorers: dict[str, Path], open_page: Opener) -> None:
+    """What comes about under a reading alone is painted so and names it, and goes when the reading is switched off."""
+    page = open_page(explorers["bear.mission"]).page
+    _walked(page)
+    painted = page.locator("#stage .shape.assumed, #stage .shape.departs")
+    one = painted.filter(has_text="assumes ").first
+    before = painted.count()
+    name, _, letter = one.inner_text().partition("assumes ")[2].partition(",")[0].split()
+    page.locator(f"[data-reading='{name}={letter}']").click()
+    assert painted.count() < before
+
+
+def test_all_shapes_hold_all_states(explorers: dict[str, Path], open_page: Opener) -> None:
+    """The map of all shapes names every one once, and their states are those of the page."""
+    page = open_page(explorers["bear.mission"]).page
+    page.get_by_role("button", name="All shapes").click()
+    names = page.locator("#stage .shape b").all_inner_texts()
+    assert len(names) == len(set(names)) > 20
+    assert page.evaluate("[...held.values()].reduce((sum, one) => sum + one)") == MOST_STATES
+
+
+CROSSINGS = """
+() => {
+  const boxes = [...document.querySelectorAll("#stage .shape")].map((one) => one.getBoundingClientRect());
+  const within = (x, y, box) => x > box.left + 2 && x < box.right - 2 && y > box.top + 2 && y < box.bottom - 2;
+  const crossings = [...document.querySelectorAll("#stage .way")].filter((way) => {
+    const to = way.getScreenCTM(), length = way.getTotalLength();
+    return Array.from({ length: 41 }, (_, i) => way.getPointAtLength((length * i) / 40).matrixTransform(to))
+      .some(({ x, y }) => boxes.some((box) => within(x, y, box)));
+  }).length;
+  const overlaps = boxes.filter((a, i) => boxes.some((b, j) => i < j && a.left < b.right && b.left < a.right
+    && a.top < b.bottom && b.top < a.bottom)).length;
+  return [crossings, overlaps, document.querySelectorAll("#stage .way").length];
+}
+"""
+
+
+@pytest.mark.parametrize("size", ["desktop", "phone"])
+@pytest.mark.parametrize("name", systems.names())
+def test_no_line_of_the_map_crosses_a_shape(
+    name: str, size: str, explorers: dict[str, Path], open_page: Opener
+) -> None:
+    """Wherever one stands no line runs through a shape, no shape covers another, and at most ten ways are next."""
+    page = open_page(explorers[name], size).page
+    for seed in range(1, 6):
+        assert page.evaluate(WANDER, [seed, 2]) == 2
+        crossings, overlaps, lines = page.evaluate(CROSSINGS)
+        assert (crossings, overlaps) == (0, 0)
+        assert 1 <= lines <= 10 + 2
+
+
+def test_the_map_is_moved_and_zoomed(explorers: dict[str, Path], open_page: Opener) -> None:
+    """It follows the mouse, the keys and the buttons, and fits again when that is wanted."""
+    page = open_page(explorers["bear.mission"]).page
+    placed = "[view.x, view.y, view.scale]"
+    first = page.evaluate(placed)
+    box = page.locator("#map").bounding_box()
+    page.mouse.move(box["x"] + 20, box["y"] + box["height"] - 10)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 50, box["y"] + box["height"] - 30)
+    page.mouse.up()
+    assert page.evaluate(placed) == [first[0] + 30, first[1] - 20, first[2]]
+    page.locator("#map").press("ArrowLeft")
+    assert page.evaluate(placed) == [first[0] + 70, first[1] - 20, first[2]]
+    page.get_by_role("button", name="Zoom in").click()
+    assert page.evaluate(placed)[2] == pytest.approx(first[2] * 1.25)
+    page.get_by_role("button", name="Fit").click()
+    assert page.evaluate(placed) == first

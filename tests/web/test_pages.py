@@ -46,8 +46,10 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.pages.explorer import explorer_page
 from missionfsm.systems import names, system
+from missionfsm.tools.explore.explore import explore
 for name in names():
-    page = explorer_page(system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1), UNCONSTRAINED)
+    explored = explore(system(name), Bounds(0 if name == "isaac.server" else 1, goals=1, batch=1))
+    page = explorer_page(system(name), explored, UNCONSTRAINED)
     print(name, hashlib.sha256(page.encode()).hexdigest())
 """
 

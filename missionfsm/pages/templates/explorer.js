@@ -171,6 +171,7 @@ function show() {
   const unfolded = new Set([...at("views").querySelectorAll("details[open]")].map((one) => one.dataset.view));
   at("views").replaceChildren(...views.map(([title, message]) => made("details", { class: "small", "data-view": title, open: unfolded.has(title) || (!listed && views.length === 1) },
     made("summary", {}, `What ${title} shows`), message === null ? made("p", { class: "soft" }, "nothing") : tree(message))));
+  showMap(frame);
   showPath();
   showReadings(frame);
   showDoings(frame);
@@ -229,10 +230,11 @@ function showReadings(frame) {
 }
 const allowed = (frame, effect) => effect.assumes.every(([id, letters]) => [...agrees(left(frame, id), letters)].some((letter) => !off.has(`${id}=${letter}`)));
 function showDoings(frame) {
-  const here = moves(frame.state);
+  const here = moves(frame.state).filter((move) => only === null || (move.to >= 0 && shape(move.to) === only));
   const many = new Set(here.map((move) => move.number)).size > 40;
   const folded = new Map([...at("doings").querySelectorAll("details")].map((one) => [one.dataset.group, one.open]));
-  at("doings").replaceChildren(...graph.groups.flatMap((group) => {
+  const narrowed = only === null ? [] : [made("p", { class: "card only" }, `Only what leads to ${only} `, made("button", { type: "button", onclick: () => { only = null; show(); } }, "Show all"))];
+  at("doings").replaceChildren(...narrowed, ...graph.groups.flatMap((group) => {
     const some = here.filter((move) => move.doing.group === group.name);
     if (!some.length) return [];
     const visible = some.filter((move) => allowed(frame, move.effect));
@@ -282,4 +284,3 @@ at("copy-link").addEventListener("click", (event) => copied(event.target, locati
 at("copy-history").addEventListener("click", (event) => copied(event.target, transcript(trail[gone])));
 at("copy-test").addEventListener("click", (event) => copied(event.target, test(trail[gone])));
 addEventListener("hashchange", restore);
-restore();

@@ -111,6 +111,11 @@ class Exploration:
         """Whether every invariant holds and every possibility is met."""
         return self.counterexample is None and not self.unmet
 
+    @property
+    def counts(self) -> str:
+        """How much there is, in words."""
+        return f"{self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"
+
     def to_json(self) -> JSON:
         """The exploration as the command line writes it."""
         return {
@@ -128,8 +133,7 @@ class Exploration:
         }
 
     def __str__(self) -> str:
-        counts = f"{self.states} states in {self.situations} situations, {self.transitions} steps, depth {self.depth}"
-        lines = [f"{self.system} within {self.bounds}: {counts}"]
+        lines = [f"{self.system} within {self.bounds}: {self.counts}"]
         if self.counterexample:
             lines.append(f"broken invariant: {self.counterexample}")
         else:

@@ -120,6 +120,33 @@ BARE = '{"metadata": {"sequenceNumber": "1"}, "batteryState": {"chargePercent": 
         (("conform", "isaac.server", "--tcp", "h:1", "--distinguish"), "--distinguish: it has no effect over TCP"),
         (("check", "bare", "--others"), "bare: --others has no effect on bare messages"),
         (("check", "bare", "--settled-after", "2"), "bare: --settled-after has no effect on bare messages"),
+        (
+            ("explore", "isaac.robot", "--forget-ended", "--html", "page"),
+            "--forget-ended: it has no effect on the page of --html",
+        ),
+        (("diagram", "bear.mission/mission", "--refusals"), "--refusals: it has no effect on bear.mission/mission"),
+        (
+            ("diagram", "bear.mission/mission", "--reading", "AM-09=b"),
+            "--reading: it has no effect on bear.mission/mission",
+        ),
+        (
+            ("diagram", "isaac.robot/reports", "--format", "table", "--refusals"),
+            "--refusals: it has no effect on table",
+        ),
+        (("serve", "bear.mission", "--grpc", "0", "--seed", "4"), "--seed: it has no effect without --fault or --auto"),
+        (("dispatch", "bare", "--resume", "fail"), "--resume: it has no effect without --journal"),
+        (
+            ("robot", "--name", "r", "--script", "fail", "--behavior", "succeed"),
+            "--behavior: it has no effect with --script",
+        ),
+        (
+            ("robot", "--name", "r", "--script", "fail:1,hang", "--duration", "2"),
+            "--duration: it has no effect where every step of --script has seconds",
+        ),
+        (
+            ("robot", "--name", "r", "--behavior", "hang", "--duration", "2"),
+            "--duration: it has no effect with --behavior hang",
+        ),
     ],
 )
 def test_options_without_effect_are_refused(

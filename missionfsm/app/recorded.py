@@ -296,11 +296,11 @@ class _Judges:
         return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]
 
     def _completed(self, verdict: Verdict) -> Verdict:
-        """A verdict that conforms, with the refusals that could be missed for want of drives."""
+        """A verdict that conforms, with the rules that could be missed for want of drives."""
         if not verdict.conforms:
             return verdict
         missed = missed_without(system(self._head.system), frozenset(verdict.untested.drives))
-        return evolve(verdict, untested=evolve(verdict.untested, refusals=missed))
+        return evolve(verdict, untested=evolve(verdict.untested, refusals=missed.refusals, promises=missed.promises))
 
 
 def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) -> Verdict:

@@ -131,7 +131,7 @@ class _Subscription:
             readings={TR_02.id: ("b",)} if redelivered else {},
             flagged=(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}",) if redelivered else (),
             unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
-            untested=Untested(drives=tuple(spec.drives), all_drives=len(spec.drives)),
+            untested=Untested(drives=tuple(spec.drives), unseen=True, all_drives=len(spec.drives)),
             notes=tuple(notes),
         )
 

@@ -102,6 +102,18 @@ def refuse_options(options: Mapping[str, object], where: str) -> None:
             stop(f"{option}: it has no effect {where}", BAD_INPUT)
 
 
+def refuse_given(context: typer.Context, parameters: Mapping[str, str], where: str) -> None:
+    """Bad input where an option was given on the command line that has no effect there.
+
+    Args:
+        parameters: names of the command's parameters to the options that they are.
+    """
+    for name, option in parameters.items():
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE":
+            stop(f"{option}: it has no effect {where}", BAD_INPUT)
+
+
 class Troubles:
     """What went wrong while the rest was told and written all the same; it is said at the end, a line each."""
 

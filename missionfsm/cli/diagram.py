@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from missionfsm.cli.common import BAD_INPUT, choice, one_line_errors, say, stop, the_system
+from missionfsm.cli.common import BAD_INPUT, choice, one_line_errors, refuse_options, say, stop, the_system
 from missionfsm.kernel.system import System
 
 if TYPE_CHECKING:  # drawing is loaded when something is drawn
@@ -58,6 +58,7 @@ def diagram(  # noqa: PLR0913 - options of the command
         stop("--missions draws a mission file, which needs no SYSTEM and has no readings and no refusals", BAD_INPUT)
     with one_line_errors():
         shown = (_of_file(missions),) if missions else tuple(_chosen(what or (), wanted))
+    _effective(shown, forms, wanted)
     if output:
         whole = not (what or form or reading or versus or refusals or missions)
         _write(Path(output), shown, forms, whole=whole)
@@ -78,6 +79,18 @@ def _chosen(what: Sequence[str], wanted: Wanted) -> Iterator[Picture]:
         stop(str(error), BAD_INPUT)
     chosen = shown if not what else [picture for one in what for picture in _called(one, shown)]
     yield from dict.fromkeys(chosen)
+
+
+def _effective(shown: Sequence[Picture], forms: Sequence[str], wanted: Wanted) -> None:
+    """What is asked for has to show in some picture: calls, refusals and readings are in quotients alone."""
+    from missionfsm.tools.draw.gallery import DRAWN  # noqa: PLC0415 - commands load what they need
+
+    quotients = any(one.subject in {sketch.name for sketch in the_system(one.system).sketches} for one in shown)
+    if shown and not quotients:
+        where = f"on {', '.join(one.id for one in shown)}: a lifecycle and a plan have no calls that could be refused"
+        refuse_options({"--refusals": wanted.refusals, "--reading": wanted.readings}, where)
+    if not DRAWN.intersection(forms):
+        refuse_options({"--refusals": wanted.refusals}, f"on {' and '.join(forms)}: tables always tell what is refused")
 
 
 def _called(name: str, shown: Sequence[Picture]) -> list[Picture]:

@@ -5,12 +5,13 @@ Plain functions for typer; what takes long to import is imported inside them.
 
 import enum
 import signal
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from missionfsm.cli.common import BAD_INPUT, complain, stop
+from missionfsm.cli.common import BAD_INPUT, complain, refuse_given, stop
 from missionfsm.kernel.codec import UnreadableError
 
 
@@ -45,6 +46,7 @@ class LevelName(enum.StrEnum):
 
 
 def dispatch(  # noqa: PLR0913 - the options
+    context: typer.Context,
     file: Annotated[Path, typer.Argument(help="The missions, as a JSON file; - is stdin.")],
     host: Annotated[
         str, typer.Option(help="The address to listen on; :: is every one of this machine, IPv4 and IPv6.")
@@ -92,6 +94,10 @@ def dispatch(  # noqa: PLR0913 - the options
     from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.runtime.profile import PROFILES  # noqa: PLC0415
 
+    if journal is None:
+        refuse_given(context, {"resume": "--resume"}, "without --journal")
+    if log is None and sys.stdout is not None and sys.stdout.isatty():
+        refuse_given(context, {"log_level": "--log-level"}, "on a live table; --log text writes lines")
     readings = PROFILES[profile.value]
     try:
         text = read_whole(str(file))

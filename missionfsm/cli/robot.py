@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from missionfsm.cli.common import complain, one_line_errors, stop
+from missionfsm.cli.common import complain, one_line_errors, refuse_given, stop
 
 if TYPE_CHECKING:
     from ssl import SSLContext
@@ -28,6 +28,7 @@ class Outcome(enum.StrEnum):
 
 
 def robot(  # noqa: PLR0913 - the options
+    context: typer.Context,
     name: Annotated[str, typer.Option(help="The robot's name, as missions call it.")],
     host: Annotated[str, typer.Option(help="Where the mission server is.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="The mission server's port.")] = 9998,
@@ -50,6 +51,12 @@ def robot(  # noqa: PLR0913 - the options
     from missionfsm.app.ending import said  # noqa: PLC0415
     from missionfsm.isaac.runtime.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
 
+    if script is not None:
+        refuse_given(context, {"behavior": "--behavior"}, "with --script, which says how each mission goes")
+        if all(":" in step or step.strip() == Outcome.HANG for step in script.split(",")):
+            refuse_given(context, {"duration": "--duration"}, "where every step of --script has seconds, or hangs")
+    elif behavior is Outcome.HANG:
+        refuse_given(context, {"duration": "--duration"}, "with --behavior hang, which never ends")
     if not name:
         complain("--name: an empty name is no name")
         raise typer.Exit(2)

@@ -16,6 +16,7 @@ from missionfsm.cli.common import (
     BAD_INPUT,
     DONE,
     choice,
+    refuse_given,
     refuse_outputs,
     stop,
     the_system,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
 
 def serve(  # noqa: PLR0913 - options of the command
+    context: typer.Context,
     system: SystemArgument,
     grpc: Annotated[int, typer.Option("--grpc", metavar="PORT", min=0, max=65535, help="The port; 0 is any free one.")],
     host: Annotated[str, typer.Option(help="The address to listen on; 0.0.0.0 is all of them.")] = "127.0.0.1",
@@ -72,6 +74,8 @@ def serve(  # noqa: PLR0913 - options of the command
     from missionfsm.app.serve import Cue, read_script  # noqa: PLC0415
     from missionfsm.app.serve import serve as serving  # noqa: PLC0415
 
+    if not fault and auto is None:
+        refuse_given(context, {"seed": "--seed"}, "without --fault or --auto: nothing else is drawn by lot")
     served = the_system(system)
     both_or_neither(tls_certificate, tls_key)
     refuse_outputs({"--record": record}, (world, script, token))

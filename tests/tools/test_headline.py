@@ -22,16 +22,17 @@ from missionfsm.systems import system
 from missionfsm.tools.check.basis import Untested, readings_line
 from missionfsm.tools.check.github import workflow_commands
 from missionfsm.tools.check.narrate import story
+from missionfsm.tools.check.scope import untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.explore.undriven import missed_without
+from missionfsm.tools.explore.undriven import Missed, missed_without
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 FIRST = '{"missionfsm": 1, "system": "bear.mission"}'
 CREATE: JSON = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 DRIVES = ("goalReached", "missionSucceeded", "missionFailed", "world", "fault")
 OTHERS = tuple(one for one in MISSION.codec.methods if one != "CreateMission")
-MISSED = "so that 10 refusals could not be tested"
+MISSED = "so that 13 rules could not be tested"
 ESCAPES = re.compile(r"\x1b\[[\d;?]*[A-Za-z]")
 
 
@@ -62,16 +63,38 @@ def test_a_log_without_drives_conforms_in_part(tmp_path: Path) -> None:
         f"  drives: 5 of 5 missing ({', '.join(DRIVES)}); what they do may have happened unseen, {MISSED}",
     ]
     assert verdict.to_json()["headline"] == "conforms in part"
-    assert verdict.untested.refusals == missed_without(MISSION, frozenset(DRIVES))
+    missed = missed_without(MISSION, frozenset(DRIVES))
+    assert (verdict.untested.refusals, verdict.untested.promises) == (missed.refusals, missed.promises)
 
 
 def test_what_is_missed_without_drives_is_what_the_robot_may_have_left() -> None:
     """Refusals that rest on a mission under way need the drives that end it, and no others."""
     missed = missed_without(MISSION, frozenset(DRIVES))
-    assert BUSY in missed
-    assert {rule.split("/")[2] for rule in missed} == {"FAILED_PRECONDITION"}
-    assert missed_without(MISSION, frozenset()) == missed_without(MISSION, frozenset({"world", "fault"})) == ()
-    assert set(missed_without(MISSION, frozenset({"goalReached"}))) < set(missed)
+    assert BUSY in missed.refusals
+    assert {rule.split("/")[2] for rule in missed.refusals} == {"FAILED_PRECONDITION"}
+    assert missed_without(MISSION, frozenset()) == missed_without(MISSION, frozenset({"world", "fault"})) == Missed()
+    assert set(missed_without(MISSION, frozenset({"goalReached"})).refusals) < set(missed.refusals)
+
+
+@pytest.mark.parametrize(
+    ("name", "drive", "promises"),
+    [
+        ("bear.mission", "missionFailed", ["lifecycle/fail"]),
+        ("bear.status", "report", ["messages/updates-follow-the-state"]),
+        ("isaac.server", "advance", ["timeout/start-timeout-aborts", "timeout/silence-is-no-loss"]),
+        ("isaac.robot", "behaviorFailed", ["status/one-failure-at-the-end"]),
+    ],
+)
+def test_what_only_a_drive_leads_to_is_missed_without_it(name: str, drive: str, promises: list[str]) -> None:
+    """Of every system the rules are counted that no step rests on but for a drive that is missing."""
+    missed = missed_without(system(name), frozenset({drive}))
+    assert list(missed.promises) == [f"{name}/{one}" for one in promises]
+
+
+def test_what_never_happens_by_itself_has_not_happened_unseen() -> None:
+    """Where a robot has no drive for a connection that drops, nothing is said of what may have come between."""
+    gaps = untested(system("isaac.robot").spec, {}, ("line", "behaviorSucceeded", "behaviorFailed", "advance"), ())
+    assert gaps.drives_line() == "drives: 2 of 6 missing (disconnect, connect)"
 
 
 class Without:
@@ -136,11 +159,19 @@ def test_what_departs_from_the_text_stands_in_the_headline() -> None:
 
 def test_calls_that_never_succeeded_say_how_they_were_answered() -> None:
     """Of what was tried in vain the codes stand there; what a stream showed is taken into account."""
-    gaps = Untested({"A": "never succeeded: NOT_FOUND 2 times"}, {}, ("d",), ("s/A/NOT_FOUND/r",), 2, 2, shown=True)
+    gaps = Untested(
+        {"A": "never succeeded: NOT_FOUND 2 times"},
+        drives=("d",),
+        refusals=("s/A/NOT_FOUND/r",),
+        unseen=True,
+        operations=2,
+        all_drives=2,
+        shown=True,
+    )
     assert (gaps.calls_line(), gaps.drives_line()) == (
         "calls: 1 of 2 succeeded; never succeeded: A (NOT_FOUND 2 times)",
-        "drives: 1 of 2 missing (d); what they do may have happened unseen, so that 1 refusal could be tested only"
-        " where a stream showed that it had not",
+        "drives: 1 of 2 missing (d); what they do may have happened unseen, so that 1 rule could be tested only"
+        " where a stream showed whether it had",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -277,10 +278,10 @@ def test_readings_are_painted_on_the_map(explorers: dict[str, Path], open_page: 
     _walked(page)
     painted = page.locator("#stage .shape.assumed, #stage .shape.departs")
     one = painted.filter(has_text="assumes ").first
-    before = painted.count()
     name, _, letter = one.inner_text().partition("assumes ")[2].partition(",")[0].split()
     page.locator(f"[data-reading='{name}={letter}']").click()
-    assert painted.count() < before
+    under = page.locator("#stage .shape", has_text=re.compile(rf"assumes {re.escape(name)} = {letter}(,|$)"))
+    under.first.wait_for(state="detached")
 
 
 def test_all_shapes_hold_all_states(explorers: dict[str, Path], open_page: Opener) -> None:

@@ -40,7 +40,10 @@ function painted(some) {
   return ["call", "drive", "itself"].find((kind) => some.some((move) => move.doing.kind === kind));
 }
 function assumedBy(some) {
-  const keys = (move) => move.effect.assumes.map(([id, letters]) => `${id} = ${[...letters].join(" or ")}`);
+  const keys = ({ effect }) => [...new Set(effect.assumes.map(([id]) => id))].map((id) => {
+    const letters = effect.assumes.filter(([other]) => other === id).map(([, some]) => some).reduce(agrees);
+    return `${id} = ${[...letters].join(" or ")}`;
+  });
   return keys(some[0]).filter((key) => some.every((move) => keys(move).includes(key)));
 }
 const counted = (words) => `${held.get(words)} state${held.get(words) === 1 ? "" : "s"}`;

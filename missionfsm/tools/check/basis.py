@@ -23,6 +23,8 @@ class Untested:
         drives: names of the drives that nobody commanded.
         refusals: ids of the refusals that could be missed for want of those drives: what they do by themselves may
             have come between, unseen.
+        promises: ids of other rules that nothing but those drives leads to.
+        unseen: whether something that those drives do may also happen by itself.
         operations: how many operations the system has; `all_drives`: how many drives.
         shown: whether a stream showed what the system did meanwhile.
     """
@@ -31,6 +33,8 @@ class Untested:
     rules: Mapping[str, str] = field(factory=dict)
     drives: tuple[str, ...] = ()
     refusals: tuple[str, ...] = ()
+    promises: tuple[str, ...] = ()
+    unseen: bool = False
     operations: int = 0
     all_drives: int = 0
     shown: bool = False
@@ -42,6 +46,7 @@ class Untested:
             "rules": dict(self.rules),
             "drives": list(self.drives),
             "refusals": list(self.refusals),
+            "promises": list(self.promises),
         }
 
     @property
@@ -72,12 +77,15 @@ class Untested:
         if not self.drives:
             return f"all {self.all_drives} commanded"
         missing = _few(self.drives, all_names=all_names)
-        told = f"{len(self.drives)} of {self.all_drives} missing ({missing}); what they do may have happened unseen"
-        if not self.refusals:
+        told = f"{len(self.drives)} of {self.all_drives} missing ({missing})"
+        if self.unseen:
+            told += "; what they do may have happened unseen"
+        rules = len(self.refusals) + len(self.promises)
+        if not rules:
             return told
-        count = "1 refusal" if len(self.refusals) == 1 else f"{len(self.refusals)} refusals"
-        if self.shown:
-            return f"{told}, so that {count} could be tested only where a stream showed that it had not"
+        count = "1 rule" if rules == 1 else f"{rules} rules"
+        if self.shown and self.unseen:
+            return f"{told}, so that {count} could be tested only where a stream showed whether it had"
         return f"{told}, so that {count} could not be tested"
 
 

@@ -160,7 +160,15 @@ def untested(spec: Spec, answers: Answers, drives: Iterable[str], left_out: Iter
         operation = rule_id.split("/")[1]
         rules[rule_id] = f"{operation} {calls[operation]}" if operation in calls else "never came up"
     shown = any(OK in answers.get(name, {}) for name, operation in spec.operations.items() if operation.streaming)
-    return Untested(calls, rules, missing, (), len(spec.operations), len(spec.drives), shown)
+    return Untested(
+        calls,
+        rules,
+        missing,
+        unseen=any(spec.drives[name].by_itself for name in missing),
+        operations=len(spec.operations),
+        all_drives=len(spec.drives),
+        shown=shown,
+    )
 
 
 def _why_not(codes: Mapping[str, int]) -> str:

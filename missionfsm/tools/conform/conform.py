@@ -24,7 +24,7 @@ from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.shortening import shorten, shorten_evidence
 from missionfsm.tools.conform.tour import fill, play, some, tour
-from missionfsm.tools.explore.undriven import missed_without
+from missionfsm.tools.explore.undriven import Missed, missed_without
 
 EXAMPLES, TOURS, STEPS = 100, 60, 40
 """Conversations that are drawn, conversations before those that walk where the run has been least, and the calls and
@@ -249,8 +249,8 @@ def _untested(run: Run, left_out: Iterable[str]) -> Untested:
     calls = {name: absent.get(name, why) for name, why in found.calls.items()}
     # Where a robot is in use, nothing is known of the state from which that would be explored.
     known = not run.system.spec.anywhere
-    refusals = missed_without(run.system, frozenset(found.drives)) if known else found.refusals
-    return evolve(found, calls=calls, refusals=refusals)
+    missed = missed_without(run.system, frozenset(found.drives)) if known else Missed()
+    return evolve(found, calls=calls, refusals=missed.refusals, promises=missed.promises)
 
 
 def _idle(run: Run, exercised: Mapping[str, int]) -> str:

@@ -74,6 +74,8 @@ FORMATS: Mapping[str, Format] = {
     "xstate": Format(".xstate.json", _xstate),
     "table": Format(".md", lambda shown: shown.table),
 }
+DRAWN = frozenset({"dot", SVG, "mermaid", "plantuml"})
+"""The formats that are pictures, which tell refusals only where that is wanted."""
 
 
 @frozen

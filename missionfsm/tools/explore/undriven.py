@@ -1,10 +1,16 @@
-"""Which refusals a tester can miss for want of drives: the robot may by itself have left the state that refuses."""
+"""Which rules a tester can miss for want of drives.
+
+A refusal, as the robot may by itself have left the state that refuses; another rule, as only a drive leads to where it
+matters, or as what the drive would make happen may come about by itself or not.
+"""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
+
+from attrs import frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose, meet
@@ -13,76 +19,100 @@ from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.tools.explore.explore import Labels, bindings
 
-BOUNDS = Bounds(2, goals=2, batch=2)
-SITUATIONS = 12
-"""How many different situations are looked at, the nearest to the start."""
+BOUNDS, NEAR = Bounds(2, goals=2, batch=2), Bounds(1, goals=2, batch=1)
+"""Within what refusals are looked for, and other rules."""
+SITUATIONS, MORE_SITUATIONS = 12, 100
+"""How many different situations are looked at for them, the nearest to the start."""
+NOTHING_NEW = 10
+"""After how many situations in a row that show no other rule no more are looked at."""
 MOST_UNSEEN = 200
 """How many states the system may come to unseen from each of them, at most."""
 
 State = Any
 
 
-def missed_without(system: System, missing: frozenset[str]) -> tuple[str, ...]:
-    """The ids of the refusals that can always be missed where nobody commands some drives.
+@frozen
+class Missed:
+    """Ids of the rules that are not put to the test: of refusals, and of the other rules."""
+
+    refusals: tuple[str, ...] = ()
+    promises: tuple[str, ...] = ()
+
+
+def missed_without(system: System, missing: frozenset[str]) -> Missed:
+    """What can always be missed where nobody commands some drives.
 
     A refusal is put to the test by a call in a state whose every silent continuation refuses it. What a drive does that
-    nobody commands may happen by itself, and so there may be no such state any more. It is looked for in the usual
-    world, for an implementation that reads the document as the reference does by default, within small bounds.
+    nobody commands may happen by itself, and so there may be no such state any more. Another rule is put to the test by
+    a step that rests on it and that a call, a drive that is commanded, or an earlier such step brings about. Both are
+    looked for in the usual world, for an implementation that reads the document as the reference does by default,
+    within small bounds.
 
     Args:
         missing: names of the drives that nobody commands.
     """
-    spec = system.spec
-    if not any(spec.drives[name].by_itself for name in missing if name in spec.drives):
-        return ()
-    return _missed(system, missing)
+    return _missed(system, frozenset(name for name in missing if name in system.spec.drives))
 
 
 @functools.lru_cache(maxsize=16)
-def _missed(system: System, missing: frozenset[str]) -> tuple[str, ...]:
-    look = _Look(system)
-    with_all, without = look.tested(()), look.tested(missing)
-    return tuple(rule.id for rule in system.spec.all_rules if rule.id in with_all and rule.id not in without)
+def _missed(system: System, missing: frozenset[str]) -> Missed:
+    spec = system.spec
+    if not missing:
+        return Missed()
+    refusals = {rule.id for operation in spec.operations.values() for rule in operation.refusals}
+    missed, near = set[str](), _Look(system, NEAR)
+    if any(spec.drives[name].by_itself for name in missing) and refusals:
+        look = _Look(system, BOUNDS)
+        tested = look.tested(())
+        missed = tested - look.tested(missing, tested)
+    promises = near.rested_on(()) - near.rested_on(missing) - refusals
+    return Missed(
+        tuple(rule.id for rule in spec.all_rules if rule.id in missed),
+        tuple(rule.id for rule in spec.all_rules if rule.id in promises),
+    )
 
 
 class _Look:
     """The situations near the start, and how calls are answered there."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, bounds: Bounds) -> None:
         self.spec = system.spec
+        self._bounds = bounds
         self._assumed = choose(self.spec.ambiguities)
-        usual = system.alphabet({}, BOUNDS).worlds[0]
-        alphabet = system.alphabet(usual, BOUNDS)
+        usual = system.alphabet({}, bounds).worlds[0]
+        alphabet = system.alphabet(usual, bounds)
         self._labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
-        self._found = tuple(self._situations(self.spec.initial(system.codec.world(usual))))
+        self._start = self.spec.initial(system.codec.world(usual))
         self._succeeds: dict[Any, bool] = {}
 
     def _possible(self, steps: Iterable[Step]) -> Iterator[Step]:
         return (step for step in steps if meet(self._assumed, step.assumes))
 
-    def _situations(self, start: State) -> Iterator[State]:
-        """One state of each."""
+    def _situations(self, most: int, missing: Collection[str] = ()) -> Iterator[State]:
+        """One state of each, the nearest first, that is reached without some drives."""
         spec, known = self.spec, set[Any]()
-        found, todo = {start}, [start]
+        found, todo = {self._start}, [self._start]
         for here in todo:  # grows while it is walked
             situation = spec.abstraction.situation(here)
             if situation in known:
                 continue
-            if len(known) >= SITUATIONS:
+            if len(known) >= most:
                 return
             known.add(situation)
             yield here
-            for step in self._possible(self._onward(here)):
-                if step.after not in found and spec.size(step.after) <= BOUNDS.size:
+            for step in self._possible(self._onward(here, missing)):
+                if step.after not in found and spec.size(step.after) <= self._bounds.size:
                     found.add(step.after)
                     todo.append(step.after)
 
-    def _onward(self, here: State) -> Iterator[Step]:
+    def _onward(self, here: State, missing: Collection[str]) -> Iterator[Step]:
         spec = self.spec
         for request, free in self._labels.requests:
             for refs in bindings(spec, here, free):
                 yield from spec.outcomes(here, request, refs)
         for event, free in self._labels.events:
+            if event.name in missing:
+                continue
             for refs in bindings(spec, here, free):
                 yield from spec.drives[event.name].steps(here, event, refs)
         yield from spec.urgent(here)
@@ -102,10 +132,12 @@ class _Look:
                     todo.append(step.after)
         return todo
 
-    def tested(self, missing: Collection[str]) -> set[str]:
+    def tested(self, missing: Collection[str], all_there_are: Collection[str] = ()) -> set[str]:
         """The ids of the refusals that a call puts to the test somewhere, whatever happened unseen before it."""
         tested = set[str]()
-        for here in self._found:
+        for here in self._situations(SITUATIONS):
+            if all_there_are and tested.issuperset(all_there_are):
+                break
             became = self._unseen(here, sorted(missing))
             for request, free in self._labels.requests:
                 for refs in bindings(self.spec, here, free):
@@ -115,6 +147,17 @@ class _Look:
                         tested |= rules
         return tested
 
+    def rested_on(self, missing: Collection[str]) -> set[str]:
+        """The ids of the rules that some step rests on which comes about without these drives."""
+        found, idle = set[str](), 0
+        for here in self._situations(MORE_SITUATIONS, missing):
+            rules = {rule for step in self._possible(self._onward(here, missing)) for rule in step.rules}
+            idle = idle + 1 if rules <= found else 0
+            found |= rules
+            if idle == NOTHING_NEW:
+                break
+        return found
+
     def _can_succeed(self, state: State, request: Any, refs: tuple[int | None, ...]) -> bool:  # noqa: ANN401
         key = (state, request, refs)
         if key not in self._succeeds:
@@ -123,4 +166,4 @@ class _Look:
         return self._succeeds[key]
 
 
-__all__ = ["missed_without"]
+__all__ = ["Missed", "missed_without"]

@@ -263,3 +263,26 @@ def test_annotations_are_of_one_line_each() -> None:
         ),
         "::error title=violates%3A robot 1::a\\x1b[31m%0A  nothing was allowed here",
     ]
+
+
+def test_a_request_that_may_be_malformed_is_told_as_it_was_sent(tmp_path: Path) -> None:
+    """Where the verdict says that something is wrong with a request, the request stands there, as JSON."""
+    params = {"mission": {"baseMission": {"navigateMission": {"goal": {"pose": {"xMeters": "NaN"}}}}}}
+    log = tmp_path / "log"
+    log.write_bytes(
+        b"\n".join(
+            [
+                b'{"missionfsm": 1, "system": "bear.mission", "world": {"family": "base"}}',
+                orjson.dumps({"call": 1, "method": "CreateMission", "params": params}),
+                b'{"return": 1, "result": {"missionId": "m"}}\n',
+            ]
+        )
+    )
+    ((_, verdict),) = check_file(str(log))
+    assert verdict.violation is not None
+    assert [line for line in str(verdict).splitlines() if "xMeters" in line] == [
+        '  sent: {"mission": {"baseMission": {"navigateMission": {"goal": {"pose": {"xMeters": "NaN"}}}}}}'
+    ]
+    ((_, other),) = check_file(str(skipped(tmp_path / "skipped")))
+    assert other.violation is not None
+    assert other.violation.sent == ""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import enum
+import json
 from collections.abc import Mapping
 
 from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.rules import INVALID_ARGUMENT
 from missionfsm.kernel.text import printable
 from missionfsm.tools.check.basis import Reached, Untested, readings_line
 
@@ -87,9 +89,18 @@ class Violation:
     sides: tuple[Side, ...] = ()
 
     @property
+    def sent(self) -> str:
+        """The request as it was sent, as JSON, where it is in doubt whether it is one; else empty."""
+        doubtful = any(f"/{INVALID_ARGUMENT}/" in rule.id for rule in self.rules)
+        answered = self.history[-1].get("return") if doubtful and self.history else None
+        calls = (line for line in reversed(self.history) if answered is not None and line.get("call") == answered)
+        call = next(calls, None)
+        return "" if call is None else json.dumps(call.get("params"), ensure_ascii=False)
+
+    @property
     def explanation(self) -> str:
         """The violation in a few lines."""
-        lines = [f"{self.where}{self.observed}"]
+        lines = [f"{self.where}{self.observed}", *([f"  sent: {self.sent}"] if self.sent else [])]
         if self.expected:
             lines.append("  allowed here:")
             lines += [f"    - {one}" for one in self.expected]

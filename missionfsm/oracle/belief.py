@@ -31,7 +31,9 @@ from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.transport import REDELIVERED
+from missionfsm.oracle import memory
 from missionfsm.oracle.explanation import GONE, Explanation, rename
+from missionfsm.oracle.memory import MEMORY
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import BUDGET, Successor, Successors
 from missionfsm.oracle.transition import TransitionFunction
@@ -43,14 +45,8 @@ _LARGER = ("larger",)
 NOBODY = -sys.maxsize
 """The number of a channel of which an end was seen: nothing has it, so nothing explains that it ends again."""
 
-MAX_REMEMBERED = 100_000
-"""How many names that are gone are remembered, so that one that comes again is noticed."""
-
 MAX_WALKED = 32
 """How many events are remembered, so that a violation can name the rules of what has happened."""
-
-NODES = 50_000
-"""How many nodes an automaton keeps before it starts over."""
 
 
 @define(eq=False, slots=True)
@@ -60,6 +56,11 @@ class Node:
     explanations: tuple[Explanation, ...]
     width: int
     next: dict[Any, Edge] = field(factory=dict, repr=False)
+
+    @property
+    def bytes(self) -> int:
+        """What the node takes, without its edges (see `missionfsm.oracle.memory`)."""
+        return memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
 
 
 @define(eq=False, slots=True)
@@ -93,12 +94,13 @@ class Automaton:
         assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
         budget: how many explanations a single event may cost.
         eager: see `missionfsm.oracle.transition.TransitionFunction`.
+        memory: how many bytes it may take, by estimate, together with what walks it.
 
     Attributes:
         tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - all but the first have a default
         self,
         spec: Spec,
         driven: Iterable[str] = (),
@@ -106,13 +108,16 @@ class Automaton:
         budget: int = BUDGET,
         *,
         eager: bool = False,
+        memory: int = MEMORY,
     ) -> None:
         self.spec = spec
         self.assumed = assumed
-        self.moves = Successors(spec, driven, assumed, budget)
+        self.memory = memory
+        self.moves = Successors(spec, driven, assumed, budget, memory=memory)
         self.oracle = TransitionFunction(self.moves, eager=eager)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
+        self.bytes = 0
         self._rules: dict[tuple[str, ...], int] = {}
         self.tally: Tally = defaultdict(int)
 
@@ -126,9 +131,11 @@ class Automaton:
     def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
         node = self._nodes.get(explanations)
         if node is None:
-            if len(self._nodes) >= NODES:
+            node = Node(explanations, width)
+            if self._nodes and self.bytes + node.bytes > self.memory // memory.NODES:
                 self._start_over()
-            node = self._nodes[explanations] = Node(explanations, width)
+            self._nodes[explanations] = node
+            self.bytes += node.bytes
         return node
 
     def _start_over(self) -> None:
@@ -136,7 +143,7 @@ class Automaton:
         for node in self._nodes.values():
             node.next.clear()
         self._nodes.clear()
-        self._edges = 0
+        self._edges = self.bytes = 0
         self.moves.forget()
 
     def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
@@ -145,6 +152,7 @@ class Automaton:
         edge = self.arrive(node, self.oracle.step(node.explanations, kind, *what))
         node.next[symbol] = edge
         self._edges += 1
+        self.bytes += memory.ENTRY
         return edge
 
     def arrive(self, node: Node, sightings: tuple[Successor, ...]) -> Edge:
@@ -309,12 +317,10 @@ class Belief:
         elif type(event) is Cancelled:
             self._given_up[event.channel] = None
             self._unmark(event.channel)
-            if len(self._given_up) > MAX_REMEMBERED:
-                del self._given_up[next(iter(self._given_up))]
+            self._forget_oldest(self._given_up)
         elif type(event) is Ended and self.automaton.spec.closing is not None:
             self._ended[event.channel] = None
-            if len(self._ended) > MAX_REMEMBERED:
-                del self._ended[next(iter(self._ended))]
+            self._forget_oldest(self._ended)
 
     # A window of events that are searched together.
 
@@ -493,8 +499,12 @@ class Belief:
         self._lasting.pop(name, None)
         self._retired[name] = None
         self._unmark(name)
-        if len(self._retired) > MAX_REMEMBERED:
-            del self._retired[next(iter(self._retired))]
+        self._forget_oldest(self._retired)
+
+    def _forget_oldest(self, names: dict[Name, None]) -> None:
+        """Keep no more names that are gone than there is room for."""
+        if len(names) * memory.NAME > self.automaton.memory // memory.NAMES:
+            del names[next(iter(names))]
 
     def name(self, number: int) -> Name | None:
         """The observed name with a number, or None for one that nobody has seen."""

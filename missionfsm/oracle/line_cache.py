@@ -13,7 +13,8 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
-from missionfsm.oracle.transcript import MAX_REMEMBERED, Transcript
+from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS
+from missionfsm.oracle.transcript import Transcript
 
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
 """How nearly all lines begin that call, return or show a message."""
@@ -38,6 +39,7 @@ class Texts:
     """
 
     def __init__(self, transcript: Transcript, write: Callable[[JSON], bytes]) -> None:
+        self._bytes = 0
         self._transcript = transcript
         self._write = write
         self._skim = transcript.codec.skim
@@ -133,7 +135,9 @@ class Texts:
 
     def _remember(self, text: bytes, line: JSON, event: Event, method: str | None) -> None:
         remembered: tuple[dict[Any, Any], ...] = (self._calls, self._answers, self._others, self._contents)
-        if sum(map(len, remembered)) >= MAX_REMEMBERED:
+        self._bytes += ENTRY + TEXT * len(text)
+        if self._bytes > MEMORY // TEXTS:
+            self._bytes = 0
             for known in remembered:
                 known.clear()
         if type(event) is Called:

@@ -21,6 +21,7 @@ from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
+from missionfsm.oracle.memory import MEMORY, STEPS, explanation_bytes
 
 NEXT = 64
 """How many of the messages that a stream shows next are compared with what it owes."""
@@ -77,6 +78,7 @@ class Lookahead:
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
         self._settled: list[int] = []
         self._latest = latest
+        self._bytes = 0
         self._passed: dict[Any, Narrowed | None] = {}
         self._shows: dict[Any, bool] = {}
         self._ended: dict[int, int] = {}
@@ -222,6 +224,7 @@ class Lookahead:
         allowed = tuple(one and bool(meet(explanation.assumed, (one,))) for one in (delivery.skips, delivery.repeats))
         key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet, end, allowed)
         if key not in self._passed:
+            self._make_room(explanation)
             if quiet < quieter:
                 last = bisect.bisect_left(positions, self._settled[quiet], first)
             due = messages[first:last]
@@ -309,6 +312,14 @@ class Lookahead:
         skips = self.spec.delivery(channel.topic).skips
         return (passed, skips, False) if skips else None
 
+    def _make_room(self, explanation: Explanation) -> None:
+        """Count what is going to be remembered of an explanation; forget the rest where that becomes too much."""
+        self._bytes += explanation_bytes(explanation)
+        if self._bytes > MEMORY // STEPS:
+            self._bytes = 0
+            self._passed.clear()
+            self._shows.clear()
+
     def _foresees(self, explanation: Explanation, message: Message) -> bool:
         """Whether the state may come to be shown so."""
         content, names = message
@@ -320,6 +331,7 @@ class Lookahead:
         key = (explanation.state, explanation.names, message)
         found = self._shows.get(key)
         if found is None:
+            self._make_room(explanation)
             found = self._shows[key] = foresees(explanation.state, explanation.names, content, names, self._calls)
         return found
 

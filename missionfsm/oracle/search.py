@@ -16,6 +16,7 @@ from attrs import define, field
 from missionfsm.kernel.history import Called
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.lookahead import Lookahead, Message, Symbol
+from missionfsm.oracle.memory import MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Seen, Successor, Successors
 from missionfsm.oracle.transition import TransitionFunction
@@ -60,6 +61,7 @@ class Search:
         symbols: the events of the window.
         latest: what each channel showed last before the window.
         budget: how many explanations may be looked at.
+        memory: how many bytes those may take, by estimate, that are remembered.
 
     Attributes:
         whole: whether no events come after those of the window.
@@ -70,13 +72,14 @@ class Search:
             is asked for them.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - what it is given
         self,
         oracle: TransitionFunction,
         start: Sequence[Explanation],
         symbols: Sequence[Symbol],
         latest: Mapping[int, Message],
         budget: int,
+        memory: int = MEMORY,
     ) -> None:
         self.oracle = oracle
         self.moves: Successors = oracle.moves
@@ -89,6 +92,8 @@ class Search:
             requests.update(request for request, *_ in one.lost)
         self._operations = frozenset(map(oracle.spec.request_operation, requests))
         self._budget = budget
+        self._memory = memory
+        self._bytes = 0
         self.whole = False
         self.width = WIDTH
         self.layers: list[Layer] = []
@@ -112,6 +117,7 @@ class Search:
             last=last,
         )
         self._horizon = horizon
+        self._bytes = 0
         start = (self._ahead.narrowed(one) for one in self._start)
         self.layers = [Layer(tuple(one for one in start if one))]
         self._tried: list[Seen] = [{} for _ in range(horizon + 1)]
@@ -164,6 +170,7 @@ class Search:
                     narrow = ahead.narrowed(one.explanation)
                     ahead.at = position
                     if narrow and not moves.outdone(tried, narrow):
+                        self._remember(narrow)
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
                         moves.most = min(moves.budget, begun + here.effort)
                     if len(found) >= self.width:
@@ -178,6 +185,13 @@ class Search:
         finally:
             moves.most = moves.budget
         return prune(moves, found)
+
+    def _remember(self, explanation: Explanation) -> None:
+        """Count an explanation that is going to be remembered. Raises ExhaustedError when it is too much."""
+        self._bytes += explanation_bytes(explanation)
+        if self._bytes > self._memory:
+            self.moves.spent = self.moves.budget + 1
+            raise ExhaustedError
 
     def first_unexplained(self) -> int | None:
         """The position of the first event that nothing explains, given those before it; None where all are explained.

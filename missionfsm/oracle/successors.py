@@ -32,6 +32,7 @@ from missionfsm.oracle.explanation import (
     without_lost,
 )
 from missionfsm.oracle.lookahead import Lookahead
+from missionfsm.oracle.memory import EACH_NAME, ENTRY, MEMORY, STEPS
 
 _EQUAL = (Match(),)
 """The one way in which equal answers agree."""
@@ -75,15 +76,24 @@ class Successors:
         driven: the drives that a tester commands; what the others do may happen at any time by itself.
         assumed: what every explanation assumes; steps that contradict it are left out from the start.
         budget: explanations that a single event may cost.
+        memory: of how many bytes it may take its share (see `missionfsm.oracle.memory`).
     """
 
     def __init__(
-        self, spec: Spec, driven: Iterable[str] = (), assumed: int = UNCONSTRAINED, budget: int = BUDGET
+        self,
+        spec: Spec,
+        driven: Iterable[str] = (),
+        assumed: int = UNCONSTRAINED,
+        budget: int = BUDGET,
+        *,
+        memory: int = MEMORY,
     ) -> None:
         self.spec = spec.decided(assumed) if spec.decided and assumed != UNCONSTRAINED else spec
         self.driven = frozenset(driven) - (spec.middle.undriven if spec.middle and spec.anywhere else frozenset())
         self.assumed = assumed
         self.budget = budget
+        self._room = memory // STEPS
+        self.bytes = 0
         self.groups = by_bit(spec.ambiguities)
         self._outcomes: dict[Any, tuple[Step, ...]] = {}
         self._effects: dict[Any, tuple[Step, ...]] = {}
@@ -105,6 +115,7 @@ class Successors:
 
     def forget(self) -> None:
         """Drop what the spec said; it will say the same again."""
+        self.bytes = 0
         for memory in (
             self._outcomes,
             self._effects,
@@ -121,8 +132,17 @@ class Successors:
         key = (state, request, refs)
         found = self._outcomes.get(key)
         if found is None:
-            found = self._outcomes[key] = self._possible(self.spec.outcomes(state, request, refs))
+            found = self._possible(self.spec.outcomes(state, request, refs))
+            self._make_room(state, found)
+            self._outcomes[key] = found
         return found
+
+    def _make_room(self, state: Any, steps: tuple[Step, ...]) -> None:  # noqa: ANN401 - a state of any system
+        """Count what is going to be remembered of a state; forget the rest where that becomes too much."""
+        others = sum([step.after is not state for step in steps])
+        self.bytes += ENTRY + (ENTRY + EACH_NAME * self.spec.names(state)) * others
+        if self.bytes > self._room:
+            self.forget()
 
     def _possible(self, steps: Iterable[Step]) -> tuple[Step, ...]:
         """Those steps that do not contradict what everybody assumes."""
@@ -153,7 +173,9 @@ class Successors:
         """What must happen before things have settled."""
         found = self._urgent.get(state)
         if found is None:
-            found = self._urgent[state] = self._possible(self.spec.urgent(state))
+            found = self._possible(self.spec.urgent(state))
+            self._make_room(state, found)
+            self._urgent[state] = found
         return found
 
     def unseen(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
@@ -165,7 +187,9 @@ class Successors:
                 if drive.name not in self.driven:
                     for event in drive.by_itself:
                         steps += drive.steps(state, event, ())
-            found = self._unseen[state] = self._possible(steps)
+            found = self._possible(steps)
+            self._make_room(state, found)
+            self._unseen[state] = found
         return found
 
     def _silent(self, explanation: Explanation, focus: FocusOf | None) -> Iterator[Step]:
@@ -175,7 +199,9 @@ class Successors:
             key = (state, focus(explanation))
             found = self._focused.get(key)
             if found is None:
-                found = self._focused[key] = self._possible(self.spec.silent_for(*key))
+                found = self._possible(self.spec.silent_for(*key))
+                self._make_room(state, found)
+                self._focused[key] = found
             yield from found
             return
         yield from self.urgent(state)

@@ -6,6 +6,7 @@ which says what is wrong; whatever the implementation got wrong becomes an event
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
@@ -27,6 +28,7 @@ from missionfsm.kernel.history import (
 from missionfsm.kernel.ids import IdSet
 from missionfsm.kernel.rules import OK, STATUS_NUMBERS
 from missionfsm.kernel.text import brief
+from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS
 
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
@@ -46,9 +48,6 @@ _KEYS: Mapping[str, frozenset[str]] = {
     )
 }
 """What each kind of line may have; one that has more means something that would be passed over."""
-MAX_REMEMBERED = 20_000
-"""How many different requests and messages a transcript knows again without reading them anew."""
-
 
 _Reader = Callable[[dict[str, Any]], tuple[Event, ...]]
 
@@ -146,6 +145,7 @@ class Transcript:
         self.answered: Any = None
         self._sent = IdSet()
         self._errors: dict[str, Answer] = {}
+        self._bytes = 0
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
@@ -231,9 +231,7 @@ class Transcript:
         key = (method, self._fingerprint(rest))
         request = self._requests.get(key)
         if request is None:
-            if len(self._requests) >= MAX_REMEMBERED:
-                self._requests.clear()
-                self._interned.clear()
+            self._make_room(key[1])
             request = self.codec.request(method, rest)
             # One object for one request, however it is written: the oracle then knows it by identity.
             request = self._requests[key] = self._interned.setdefault(request, request)
@@ -292,6 +290,14 @@ class Transcript:
             found.append(Received(channel, content, names, marks, again))
         return tuple(found)
 
+    def _make_room(self, key: Hashable) -> None:
+        """Count a request or a message that is going to be known again; forget the others where that is too much."""
+        self._bytes += ENTRY + TEXT * sys.getsizeof(key)
+        if self._bytes > MEMORY // TEXTS:
+            self._bytes = 0
+            for known in (self._requests, self._interned, self._contents):
+                known.clear()
+
     def _comes_again(self, channel: Name, message: JSON, parts: tuple[Part, ...]) -> bool:
         """Whether a message is the last one of its channel about the same, with the same number and all."""
         tracks = tuple(track for _, marks, _ in parts for track, _ in marks)
@@ -301,8 +307,7 @@ class Transcript:
         return again
 
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
-        if len(self._contents) >= MAX_REMEMBERED:
-            self._contents.clear()
+        self._make_room(key)
         content = self._contents[key] = self.codec.content(rest)
         return content
 

@@ -75,7 +75,9 @@ class Window:
             symbols = [(*one[:3], True, one[4]) if one[0] is Called and one[4] in lost else one for one in symbols]
         least, each = (FIRST, MORE) if lost is None else (BUDGET, EACH)
         budget = least + each * len(symbols)
-        search = Search(self._belief.automaton.oracle, start, symbols, self._latest, budget)
+        search = Search(
+            self._belief.automaton.oracle, start, symbols, self._latest, budget, self._belief.automaton.memory
+        )
         search.whole = lost is not None
         return search
 

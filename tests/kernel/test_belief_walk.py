@@ -5,10 +5,10 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
+import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from toys import TICKETS, Event
 
 from missionfsm.bear.mission.events import Happening
@@ -19,7 +19,6 @@ from missionfsm.bear.wire.messages import Command, Goal
 from missionfsm.kernel import history
 from missionfsm.kernel.history import Answer, Called, Driven, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
-from missionfsm.oracle import belief
 from missionfsm.oracle.belief import Automaton, Belief
 from missionfsm.tools.reference.model import Reference, Reply
 
@@ -95,14 +94,29 @@ def test_the_second_walk_adds_nothing() -> None:
     assert (second, warm) == (first, cold)
 
 
-def test_an_automaton_that_starts_over_decides_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_automaton_that_starts_over_decides_the_same() -> None:
     """With room for few nodes the automaton stays as small, judges the same and has counted the same rules."""
-    roomy, tight = Automaton(SYSTEM.spec), Automaton(SYSTEM.spec)
-    expected = walk(roomy, 2)
-    monkeypatch.setattr(belief, "NODES", 50)
-    found = walk(tight, 2)
+    memory = 300_000
+    roomy, tight = Automaton(SYSTEM.spec), Automaton(SYSTEM.spec, memory=memory)
+    expected, found = walk(roomy, 2), walk(tight, 2)
     assert (found, tight.exercised()) == (expected, roomy.exercised())
-    assert max(tight.size) < 150
+    assert tight.bytes + tight.moves.bytes <= memory < roomy.bytes
+
+
+def test_what_is_remembered_takes_about_what_is_counted() -> None:
+    """The bytes that an automaton counts are within a factor of two of those that it takes, also with long lists."""
+    automaton = Automaton(SYSTEM.spec, SYSTEM.spec.drives)
+    here = Belief(automaton, World())
+    tracemalloc.start()
+    for number in range(200):
+        create, name = Called(("call", number), Request("CreateMission", (NAVIGATE,))), f"mission {number}"
+        assert here.observe(create)
+        assert here.observe(Returned(create.call, Answer(OK), (name,)))
+        assert here.observe(Driven(Happening("goalReached")))
+    taken, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    counted = automaton.bytes + automaton.moves.bytes
+    assert taken / 2 < counted < taken * 2
 
 
 def test_the_same_situation_with_other_names_is_the_same_node() -> None:

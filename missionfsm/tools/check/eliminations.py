@@ -14,8 +14,9 @@ from attrs import frozen
 from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.readings import Ambiguity, meet
 from missionfsm.kernel.spec import Spec
-from missionfsm.oracle.belief import NODES, Belief, Node
+from missionfsm.oracle.belief import Belief, Node
 from missionfsm.oracle.explanation import Explanation, InFlight
+from missionfsm.oracle.memory import MEMORY, NODES
 from missionfsm.oracle.parted import Parted
 from missionfsm.tools.check.phrases import described, event_words
 
@@ -94,6 +95,7 @@ class Eliminations:
         self.seen: set[Node] = {belief.node}
         self.found: dict[tuple[str, str], Elimination] = {}
         self._belief = belief
+        self._bytes = belief.node.bytes
         self._left = _left(belief.node)
 
     def notice(self, event: Event, asked: Any, before: Node | None = None) -> None:  # noqa: ANN401 - of any system
@@ -104,8 +106,10 @@ class Eliminations:
             before: the node that it has led from.
         """
         node = self._belief.node
-        if len(self.seen) >= NODES:
+        self._bytes += node.bytes
+        if self._bytes > MEMORY // NODES:
             self.seen.clear()
+            self._bytes = node.bytes
         self.seen.add(node)
         left = _left(node)
         gone = self._left & ~left

@@ -1,0 +1,35 @@
+"""How much memory the oracle takes: one accounting, in bytes, of everything that it remembers to be quick.
+
+What is counted is an estimate, which a test compares with what is measured. Whoever reaches its share forgets what it
+can find out again, or gives up where it cannot.
+"""
+
+from __future__ import annotations
+
+from missionfsm.oracle.explanation import Explanation
+
+MEMORY = 128 * 2**20
+"""How many bytes an automaton and what walks it may take, unless somebody says otherwise."""
+
+NODES, STEPS, NAMES, TEXTS = 2, 4, 8, 8
+"""Which part of it goes to nodes and edges, to steps of the system, to names that are gone, to lines that come again:
+one in so many."""
+
+ENTRY = 400
+"""What anything takes that is remembered."""
+
+EACH_NAME = 24
+"""What it takes more for each name of the state in it."""
+
+NAME = 200
+"""What a name takes that is remembered by itself."""
+
+TEXT = 4
+"""How many bytes one byte of a text takes that is remembered with what it means."""
+
+
+def explanation_bytes(explanation: Explanation) -> int:
+    """What an explanation takes, with its state."""
+    owed = sum([len(channel.owed) for channel in explanation.channels])
+    parts = 1 + owed + len(explanation.calls) + len(explanation.lost)
+    return ENTRY * parts + EACH_NAME * (len(explanation.names) + len(explanation.gone))

@@ -118,13 +118,16 @@ class Live:
         self._note({"return": self._calls, "error": dict(error)})
         return Answered(None, error)
 
-    def subscribe(self, method: str, params: JSON, listener: Listener) -> Answered:
+    def subscribe(self, method: str, params: JSON, listener: Listener, spoilt: Spoilt | None = None) -> Answered:
         """Open a documented stream; the result is its number.
 
         Args:
             listener: is given every message, the first before this returns.
+            spoilt: what the network makes of it, which has no effect.
         """
         with self._lock:
+            if spoilt is not None:
+                return self._unasked(method, params, spoilt.error)
             exchange = self._ask(method, params)
             if exchange.error is None:
                 stream = exchange.result["stream"]

@@ -223,7 +223,7 @@ def serve(  # noqa: PLR0913 - each with a default
     from missionfsm.adapters.grpc.server import Security, Server  # noqa: PLC0415
 
     wrong = Faults.parse(faults)
-    undriven = ("fault",) if wrong.deadline or wrong.unavailable else ()
+    undriven = ("fault",) if wrong.deadline or wrong.unavailable or wrong.internal else ()
     served = _served(system)
     refuse_json_only(served, readings or {})
     subject = _mutant(served, broken, readings) if broken else None

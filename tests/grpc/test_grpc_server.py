@@ -248,6 +248,30 @@ def test_a_wrong_fault_is_refused_in_words(text: str) -> None:
         Faults.parse([text])
 
 
+@pytest.mark.parametrize("code", [grpc.StatusCode.INTERNAL, grpc.StatusCode.UNAVAILABLE])
+def test_calls_and_subscriptions_fail_without_effect(code: grpc.StatusCode) -> None:
+    """With the fault now a call fails and now a subscription, in which nothing happens; the history conforms."""
+    with serve("bear.mission", faults=[f"{code.name.lower()}:0.5"], seed=2) as robot:
+        client = Client(robot.target)
+        listed, codes = 0, set()
+        for _ in range(10):
+            call, messages = client.subscribe()
+            first = messages.get(timeout=WAIT)
+            if first is None:
+                codes.add(("SubscribeMissionStatus", call.code()))
+            else:
+                assert len(first["missionStates"].get("missions", ())) == listed
+            try:
+                client.call("ChargeRobot" if not listed else "AppendMission", {} if not listed else NAVIGATE)
+                listed += 1
+            except grpc.RpcError as error:
+                codes.add(("call", error.code()))
+        assert codes == {("SubscribeMissionStatus", code), ("call", code)}
+        assert listed
+        verdict = missionfsm.check(robot.history())
+    assert verdict.conforms, str(verdict)
+
+
 def test_a_deadline_may_have_taken_effect() -> None:
     """With the fault, some calls answer DEADLINE_EXCEEDED; of those some have created a mission."""
     with serve("bear.mission", faults=["deadline:1"], seed=1) as robot:

@@ -40,8 +40,8 @@ class Robots(Protocol):
     def call(self, method: str, params: JSON, spoilt: Spoilt | None = None) -> Answered:
         """Ask a documented call with one answer."""
 
-    def subscribe(self, method: str, params: JSON, listener: Listener) -> Answered:
-        """Open a documented stream; the result is its number."""
+    def subscribe(self, method: str, params: JSON, listener: Listener, spoilt: Spoilt | None = None) -> Answered:
+        """Open a documented stream, unless the network keeps it from that; the result is its number."""
 
     def cancel(self, stream: int) -> None:
         """Give a stream up."""

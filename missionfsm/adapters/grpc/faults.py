@@ -14,7 +14,8 @@ class Faults:
 
     Attributes:
         deadline: a unary call that would have succeeded answers DEADLINE_EXCEEDED; every second time it took effect.
-        unavailable: a call answers UNAVAILABLE and has no effect.
+        unavailable: a call, or a subscription, answers UNAVAILABLE and has no effect.
+        internal: the same with INTERNAL.
         lost: a message of a stream, but the first, is left out.
         doubled: a message of a stream is sent twice, with the same number and timestamp.
         ends: seconds after which every stream ends cleanly; None: never.
@@ -22,6 +23,7 @@ class Faults:
 
     deadline: float = 0.0
     unavailable: float = 0.0
+    internal: float = 0.0
     lost: float = 0.0
     doubled: float = 0.0
     ends: float | None = None
@@ -48,7 +50,7 @@ class Faults:
         return found
 
 
-_NAMES = ("deadline", "unavailable", "lost", "doubled", "ends")
+_NAMES = ("deadline", "unavailable", "internal", "lost", "doubled", "ends")
 
 
 class Dice:
@@ -59,8 +61,12 @@ class Dice:
         self._random = random.Random(seed)  # noqa: S311 - no secret
 
     def unavailable(self) -> bool:
-        """Whether this call does not reach the robot."""
+        """Whether this call, or this subscription, does not reach the robot."""
         return self._happens(self.faults.unavailable)
+
+    def internal(self) -> bool:
+        """Whether the robot breaks down over this call, or this subscription."""
+        return self._happens(self.faults.internal)
 
     def deadline(self) -> str:
         """What becomes of a call that would succeed: "" for nothing, or ``applied`` or ``lost``."""

@@ -134,15 +134,22 @@ class _Handlers(grpc.GenericRpcHandler):
 
     async def _unary(self, method: Method, request: bytes, context: Context) -> bytes:
         params = await self._read(method, request, context)
-        spoilt = self._spoilt()
+        spoilt = self._kept_from() or self._late()
         answered = self._live.call(method.name, params, spoilt)
         if answered.error is not None:
             await _refuse(context, answered)
         return await _said(context, method, lambda: encode(method.response, answered.result))
 
-    def _spoilt(self) -> Spoilt | None:
+    def _kept_from(self) -> Spoilt | None:
+        """What keeps a call, or a subscription, from having any effect."""
         if self._dice.unavailable():
             return Spoilt({"status": "UNAVAILABLE", "message": "made up: the robot is not reached"}, applied=False)
+        if self._dice.internal():
+            return Spoilt({"status": "INTERNAL", "message": "made up: the robot breaks down"}, applied=False)
+        return None
+
+    def _late(self) -> Spoilt | None:
+        """What keeps a caller from hearing in time what became of a call."""
         deadline = self._dice.deadline()
         if deadline:
             error = {"status": "DEADLINE_EXCEEDED", "message": "made up: no confirmation in time"}
@@ -162,7 +169,7 @@ class _Handlers(grpc.GenericRpcHandler):
         params = await self._read(method, request, context)
         loop = asyncio.get_running_loop()
         outgoing = Outgoing(self._inbox, dict(context.invocation_metadata() or ()))
-        answered = self._live.subscribe(method.name, params, outgoing.come)
+        answered = self._live.subscribe(method.name, params, outgoing.come, self._kept_from())
         if answered.error is not None:
             await _refuse(context, answered)
         self._open.add(outgoing)

@@ -167,8 +167,9 @@ class Wire:
     def subject(self, system: str, timeout: float) -> Subject:
         """The server as a subject; bad input ends the command. Raises SubjectError if nobody answers."""
         needs_grpc()
-        from missionfsm.adapters.grpc.client import GrpcSubject, Target  # noqa: PLC0415 - an extra
+        from missionfsm.adapters.grpc.client import GrpcSubject  # noqa: PLC0415 - an extra
         from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
+        from missionfsm.adapters.grpc.target import Target  # noqa: PLC0415 - an extra
 
         if system not in SERVICES:
             stop(f"--grpc: {' and '.join(SERVICES)} are judged so, not {system}", BAD_INPUT)

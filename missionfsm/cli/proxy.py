@@ -72,10 +72,10 @@ def proxy(  # noqa: PLR0913 - options of the command
     needs_grpc()
     import asyncio  # noqa: PLC0415 - commands load what they need
 
-    from missionfsm.adapters.grpc.client import Target  # noqa: PLC0415
     from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
     from missionfsm.adapters.grpc.proxy import Proxy, read_line  # noqa: PLC0415
     from missionfsm.adapters.grpc.server import Security  # noqa: PLC0415
+    from missionfsm.adapters.grpc.target import Target  # noqa: PLC0415
     from missionfsm.app.asked import judged_system, refuse_json_only  # noqa: PLC0415
     from missionfsm.app.recorder import Recorder  # noqa: PLC0415
 

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 
 from attrs import evolve, field, frozen
 
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.server import Server
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.live import Live
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, GibberishError, Subject

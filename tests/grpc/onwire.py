@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping
 from attrs import evolve, frozen
 from relay import Relay
 
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, encode, methods
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Subject, SubjectError
 from missionfsm.kernel.system import System

@@ -6,10 +6,10 @@ import asyncio
 import threading
 from typing import Any
 
-from missionfsm.adapters.grpc.client import Target
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
 from missionfsm.adapters.grpc.proxy import Proxy, read_line
 from missionfsm.adapters.grpc.server import Security
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.kernel.codec import JSON
 
 WAIT = 10.0

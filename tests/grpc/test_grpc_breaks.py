@@ -9,7 +9,8 @@ from brokenserver import Searcher
 from commandline import CommandLine
 from relay import Relay
 
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.serve import serve
 from missionfsm.systems import system
 from missionfsm.tools.mutate.teeth import Mutant, mutants

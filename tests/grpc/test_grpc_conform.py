@@ -14,8 +14,9 @@ import pytest
 from attrs import evolve
 from commandline import CommandLine
 
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import encode, methods, path
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.serve import serve
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError

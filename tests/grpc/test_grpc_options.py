@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from commandline import CommandLine
 
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.asked import judged_system
 from missionfsm.app.serve import Served, serve
 from missionfsm.cli.overgrpc import read_metadata, read_token

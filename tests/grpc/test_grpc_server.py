@@ -16,11 +16,12 @@ from google.protobuf import descriptor_pool, message_factory
 from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
 
 import missionfsm
-from missionfsm.adapters.grpc.client import GrpcSubject, Target
+from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.control import Control
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
 from missionfsm.adapters.grpc.faults import Dice, Faults
 from missionfsm.adapters.grpc.server import Server
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.live import Live
 from missionfsm.app.serve import Cue, Served, read_script, serve
 from missionfsm.kernel.codec import JSON, UnreadableError

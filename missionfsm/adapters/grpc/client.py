@@ -12,78 +12,23 @@ import threading
 import time
 import uuid
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import Any
 
 import grpc
-from attrs import evolve, field, frozen
+from attrs import evolve
 
 from missionfsm.adapters.grpc import control
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, methods, path, unknown
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.text import brief
 
-KEEPALIVE_TIMEOUT_MS = 10_000
-"""How long a connection may leave a question unanswered whether it is alive."""
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
 MAX_ROUNDS = 100
 """Missions that are cancelled in one reset before it is given up."""
-
-
-@frozen
-class Target:
-    """A gRPC server.
-
-    Attributes:
-        address: ``host:port``.
-        token: sent as ``authorization: Bearer TOKEN``; "" for none.
-        metadata: sent with every call besides.
-        certificate: a file in PEM with the authority that the server's certificate is checked against; "" for no TLS,
-            ``system`` for the authorities of the machine.
-        timeout: seconds that a call may take.
-        settle: seconds of silence after which everything that was caused has been seen; where the control service has
-            ``Settle``, that says so instead.
-        settle_most: seconds after which that is so even without silence.
-        begin: seconds after which a stream that was not refused has begun, where the server does not say so.
-        keepalive: seconds of silence after which a connection is asked whether it is still alive.
-    """
-
-    address: str
-    token: str = field(default="", repr=False)
-    metadata: tuple[tuple[str, str], ...] = ()
-    certificate: str = ""
-    timeout: float = 10.0
-    settle: float = 0.2
-    settle_most: float = 5.0
-    begin: float = 1.0
-    keepalive: float = 20.0
-
-    @property
-    def sent(self) -> tuple[tuple[str, str], ...]:
-        """The metadata of every call."""
-        return (*self.metadata, *((("authorization", f"Bearer {self.token}"),) if self.token else ()))
-
-    def channel(self) -> grpc.Channel:
-        """A connection. Raises OSError for a certificate that cannot be read."""
-        options = (
-            ("grpc.keepalive_time_ms", round(1000 * self.keepalive)),
-            ("grpc.keepalive_timeout_ms", KEEPALIVE_TIMEOUT_MS),
-        )
-        credentials = self.credentials()
-        if credentials is None:
-            return grpc.insecure_channel(self.address, options)
-        return grpc.secure_channel(self.address, credentials, options)
-
-    def credentials(self) -> grpc.ChannelCredentials | None:
-        """What the server's certificate is checked with; None without TLS. Raises OSError, as `channel` does."""
-        if not self.certificate:
-            return None
-        return grpc.ssl_channel_credentials(
-            None if self.certificate == "system" else Path(self.certificate).read_bytes()
-        )
 
 
 class GrpcSubject:

@@ -18,9 +18,9 @@ import grpc
 from attrs import frozen
 from grpc import aio
 
-from missionfsm.adapters.grpc.client import Target
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, methods, path
 from missionfsm.adapters.grpc.server import Security
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import bz2
 import gzip
+import lzma
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,8 @@ import orjson
 import pytest
 import zstandard
 from commandline import CommandLine
+
+from missionfsm.app.recorded import FIRST_LINE
 
 NAVIGATE = {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}
 
@@ -61,6 +65,14 @@ DAMAGED = {
     "zstandard that is damaged": (zstandard.compress(DAY)[:4] + 64 * b"?", ": zstd decompressor error"),
     "NUL bytes at the end": (DAY + 512 * b"\0", ":4: 512 NUL bytes stand here instead of a line: the file was cut off"),
     "NUL bytes in a line": (DAY + b'{"settled"\0', ":4: not JSON"),
+    "bzip2": (bz2.compress(DAY), ": it is compressed (bzip2); what is read here is plain, gzip or Zstandard"),
+    "xz": (lzma.compress(DAY), ": it is compressed (xz); what is read here is plain, gzip or Zstandard"),
+    "ZIP": (b"PK\3\4" + 99 * b"?", ": it is compressed (ZIP); what is read here is plain, gzip or Zstandard"),
+    "Latin-1": (DAY + b'{"name": "K\xfcche"}', ":4: not JSON: byte 0xfc at column 12 is not UTF-8"),
+    "something else": (
+        b'{"level": "info"}',
+        f":1: the first line has to be {FIRST_LINE}, or a message of a subscription",
+    ),
 }
 
 

@@ -98,6 +98,8 @@ def test_patterns_are_taken_where_no_file_has_that_name(command_line: CommandLin
         written(tmp_path / name, FIRST, *RIGHT)
     found = many.histories([f"{tmp_path}/**/*.jsonl", str(tmp_path / "a"), f"{tmp_path}/c[1].jsonl"])
     assert [os.path.relpath(path, tmp_path) for path in found] == ["a/1.jsonl", "a/b/2.jsonl", "c[1].jsonl"]
+    twice = command_line("check", tmp_path / "c[1].jsonl", tmp_path / "c[1].jsonl")
+    assert (twice.status, twice.out.count(": conforms in part: ")) == (0, 1)
     ended = command_line("check", f"{tmp_path}/*.log")
     assert (ended.status, ended.err) == (2, f"missionfsm: {tmp_path}/*.log: no file fits this pattern\n")
 

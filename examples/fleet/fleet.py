@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import gzip
 import json
+import os
 import random
 import subprocess
 import sys
@@ -142,16 +143,22 @@ def write_all(folder, robots, lines):
     return sum(count for count, _ in done), planted
 
 
+def processor_seconds():
+    """Of all processes that this one has started and that have ended, and of those that they have."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
 def judged(folder, way, table):
-    """The seconds that it takes to judge all, and file and line of each violation that is found."""
+    """The seconds that it takes to judge all, those of cores, and file and line of each violation that is found."""
     command = [sys.executable, "-m", "missionfsm", "check", str(folder), *way, "--parquet", str(table)]
-    begun = time.perf_counter()
+    begun, used = time.perf_counter(), processor_seconds()
     ended = subprocess.run(command, check=False, capture_output=True, text=True)  # noqa: S603 - this package's command
-    seconds = time.perf_counter() - begun
+    seconds, used = time.perf_counter() - begun, processor_seconds() - used
     if ended.returncode not in (0, 1):
         sys.exit(ended.stderr)
     found = parquet.read_table(table).to_pylist()
-    return seconds, {one["file"]: one["line"] for one in found if one["verdict"] == "violates"}, ended.stdout
+    return seconds, used, {one["file"]: one["line"] for one in found if one["verdict"] == "violates"}, ended.stdout
 
 
 def main(arguments=None):
@@ -166,15 +173,15 @@ def main(arguments=None):
         begun = time.perf_counter()
         count, planted = write_all(folder, asked.robots, asked.lines)
         print(f"{count:,} lines of {asked.robots:,} robots written in {time.perf_counter() - begun:.0f} s")
-        print(f"\n{'':28}{'seconds':>10}{'lines/s':>12}{'ratio':>8}   faults found")
+        print(f"\n{'':28}{'seconds':>10}{'of cores':>10}{'lines/s':>12}{'ratio':>8}   faults found")
         first = said = None
         for name, way in list(WAYS.items())[: asked.ways]:
-            seconds, found, said = judged(folder, way, Path(place, "table.parquet"))
+            seconds, used, found, said = judged(folder, way, Path(place, "table.parquet"))
             first = first or seconds
             right = sum(0 <= line - planted.get(file, line + 1) <= SOON for file, line in found.items())
             wrong = f", and {len(found) - right} that are none" if len(found) > right else ""
             rate, ratio = count / seconds, first / seconds
-            print(f"{name:28}{seconds:10.1f}{rate:12,.0f}{ratio:8.2f}   {right} of {len(FAULTS)}{wrong}")
+            print(f"{name:28}{seconds:10.1f}{used:10.1f}{rate:12,.0f}{ratio:8.2f}   {right} of {len(FAULTS)}{wrong}")
         print(f"\n{said}", end="")
 
 

@@ -14,6 +14,8 @@ from missionfsm.kernel.codec import UnreadableError
 
 _GZIP, _ZSTD = b"\x1f\x8b", b"\x28\xb5\x2f\xfd"
 _UTF_8, _UTF_16 = b"\xef\xbb\xbf", (b"\xff\xfe", b"\xfe\xff")
+_OTHERS = {b"BZh": "bzip2", b"\xfd7zX": "xz", b"PK\x03\x04": "ZIP", b"\x04\x22\x4d\x18": "LZ4"}
+"""The first bytes of compressed files that nothing here reads, and what they are."""
 _LONGEST_MARK = 4
 """Bytes of the longest of these marks."""
 _FED = 1 << 10
@@ -116,6 +118,10 @@ def decompressed(source: Any, *, stays_open: bool = False) -> IO[bytes]:  # noqa
     if found.ahead.startswith(_UTF_16):
         message = "it is UTF-16; what is read here is UTF-8"
         raise UnreadableError(message)
+    for mark, name in _OTHERS.items():
+        if found.ahead.startswith(mark):
+            message = f"it is compressed ({name}); what is read here is plain, gzip or Zstandard"
+            raise UnreadableError(message)
     found.ahead = found.ahead.removeprefix(_UTF_8)
     return io.BufferedReader(found)
 

@@ -29,12 +29,21 @@ def loads(text: bytes) -> JSON:
         if not text.strip(b"\0"):
             message = f"{len(text):,} NUL bytes stand here instead of a line: the file was cut off while it was written"
             raise UnreadableError(message) from None
-        message = f"not JSON: {error}"
+        message = f"not JSON: {_not_utf_8(text) or error}"
         raise (CutShortError if error.pos == len(error.doc) else UnreadableError)(message) from None
     if len(text) > 2 * DEEPEST and _may_be_too_deep(text) and _is_too_deep(value):
         message = f"nested more than {DEEPEST} deep"
         raise TooDeepError(message)
     return value
+
+
+def _not_utf_8(text: bytes) -> str:
+    """What is wrong with a line that is no text; "" for one that is."""
+    try:
+        text.decode()
+    except UnicodeDecodeError as error:
+        return f"byte 0x{text[error.start]:02x} at column {error.start + 1} is not UTF-8"
+    return ""
 
 
 def _may_be_too_deep(text: bytes) -> bool:

@@ -102,6 +102,8 @@ class _UndecidedError(Exception):
         self.by_params = by_params
 
 
+FIRST_LINE = '{"missionfsm": 1, "system": …, "world": …}'
+"""How a history begins."""
 LOOK = 16
 """How many lines a call may wait for its answer before the file is looked through for such as never get one."""
 
@@ -134,12 +136,15 @@ def _judged(
             except UnplacedError as error:
                 raise wrong_line(path, error.number, error) from None
         with placed(path, number):
+            if isinstance(line, dict) and "missionfsm" not in line:
+                message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
+                raise UnreadableError(message)
             judges = _Judges(line, asked, lost, keep)
         judges.read(path, texts, numbered)
     finally:
         if path != STDIN:
             source.close()
-    found = judges.verdicts()
+    found = judges.verdicts(path)
     if judges.nodes > KEPT_NODES:
         _automaton.cache_clear()
     # What was not kept while it was read is read again.
@@ -284,13 +289,17 @@ class _Judges:
             raise _UndecidedError(by_params=self.addresses.by_call)
         self._waiting[judge] = oldest
 
-    def verdicts(self) -> list[tuple[str | None, Verdict]]:
-        """What each judge says of its robot, in the order of their first lines."""
+    def verdicts(self, path: str) -> list[tuple[str | None, Verdict]]:
+        """What each judge says of its robot, in the order of their first lines.
+
+        Raises UnreadableError where the file says too little for what is asked.
+        """
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
             raise _UndecidedError(by_params=self.addresses.by_call)
         if self._settled_after is not None and not any(judge.quiet and judge.quiet.timed for judge in judges.values()):
-            message = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
+            says = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
+            message = f"{called(path)}: {says}"
             raise UnreadableError(message)
         told = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
         return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]

@@ -115,7 +115,7 @@ def check(  # noqa: PLR0913 - options of the command
     with one_line_errors():
         found = histories(files)
         reports.refuse_impossible((*found, expect_violations))
-    many = found != files
+    many = found != list(dict.fromkeys(files))
     sums_up = (many or len(found) > MANY) if summary is None else summary
     told = Told(None if STDOUT not in (json, parquet) else STDOUT)
     reached: list[Reached] = []
@@ -207,10 +207,8 @@ class _Reports:
             stale: rules whose violation was expected and was not met.
             many: whether several verdicts were asked for, however many there are.
         """
-        more = {"stale": list(stale)} if stale else {}
-        verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
         with troubles.kept():
-            write_json(self.json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
+            self._write_json(reached, stale, many=many)
         with troubles.kept():
             self._write_parquet(reached, seconds)
         with troubles.kept():
@@ -220,6 +218,13 @@ class _Reports:
         with troubles.kept():
             named = [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached]
             write_junit(self.junit, named)
+
+    def _write_json(self, reached: list[Reached], stale: tuple[str, ...], *, many: bool) -> None:
+        if self.json is None:
+            return
+        more = {"stale": list(stale)} if stale else {}
+        verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
+        write_json(self.json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
 
     def _write_parquet(self, reached: list[Reached], seconds: list[float]) -> None:
         if self.parquet is None:

@@ -33,8 +33,10 @@ def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
 
 @pytest.mark.parametrize(
     ("assumed", "missions", "states", "situations", "depth"),
-    [(DEFAULT, 3, 12_720, 83, 12), (UNCONSTRAINED, 2, 13_810, 310, 13)],
-    ids=["default readings", "all readings"],
+    [
+        pytest.param(DEFAULT, 3, 12_720, 83, 12, id="default readings"),
+        pytest.param(UNCONSTRAINED, 2, 13_810, 310, 13, id="all readings", marks=pytest.mark.long),
+    ],
 )
 def test_some_missions_and_two_goals(assumed: int, missions: int, states: int, situations: int, depth: int) -> None:
     """Some missions of two goals make so many states; every invariant holds and every possibility is met."""

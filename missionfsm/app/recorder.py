@@ -300,8 +300,9 @@ class _Page:
         now = time.monotonic()
         if self._path and now - self._written >= PAGE_SECONDS:
             self._written = now
-            says = f"{name}: nothing is wrong so far, {lines:,} lines"
-            page = f"<!doctype html><html><head><title>{says}</title></head><body><p>{says}</p></body></html>"
+            from missionfsm.pages.standing import standing_page  # noqa: PLC0415 - pages are for who wants them
+
+            page = standing_page(name, lines, PAGE_SECONDS)
             self._write(page, over=False)
 
     def told(self, verdict: Verdict, *, over: bool) -> None:

@@ -27,7 +27,7 @@ def explorer_page(system: System, explored: Exploration, assumed: int, made: str
         spec=system.spec,
         bounds=explored.bounds,
         explored=explored,
-        held=len(graph["states"]),
+        held=graph["held"],
         graph={**graph, "test": test, "standIn": STAND_IN},
         made=made,
     )

@@ -80,11 +80,16 @@ class Graph:
         # What subscribers see can be looked up in every state, what is sent on connections is told as it is sent.
         self._sends = not system.codec.streams
         self._looks = dict(self._looking())
+        self._alike: dict[str, set[State]] = {}
 
     def data(self) -> JSON:
-        """All of it."""
+        """All of it.
+
+        States may be told apart that an exploration counts as one, since a history has to know more than what can be
+        done next; `held` and `shapes` count as an exploration does.
+        """
         kinds = {self._start: (TEXT,) * self.spec.names(self._start)}
-        extent = self.spec.extent
+        extent, counted = self.spec.extent, self.spec.abstraction.outline or (lambda state: state)
         numbers, todo, states = {self._start: 0}, [self._start], []
         for here in todo:  # grows while it is walked
             moves: dict[tuple[int, int, int], None] = {}
@@ -100,7 +105,9 @@ class Graph:
                         todo.append(step.after)
                     to = HERE if step.after == here else numbers.get(step.after, BEYOND)
                     moves[self._doings.number(tried.doing), effect, to] = None
-            states.append([self.spec.describe(here), self._shown(here, kinds[here]), [*_flat(moves)]])
+            words = self.spec.describe(here)
+            self._alike.setdefault(words, set()).add(counted(here))
+            states.append([words, self._shown(here, kinds[here]), [*_flat(moves)]])
         return self._told(states)
 
     def _told(self, states: list[JSON]) -> JSON:
@@ -110,7 +117,6 @@ class Graph:
         found = {
             "system": spec.system,
             "bounds": {"missions": bounds.size, **dict(bounds.own)},
-            "whole": len(states) < MOST_STATES,
             "head": {
                 "missionfsm": 1,
                 "system": spec.system,
@@ -147,6 +153,8 @@ class Graph:
                 for one in self._effects.values
             ],
             "views": list(self._looks),
+            "shapes": {words: len(some) for words, some in self._alike.items()},
+            "held": len(set().union(*self._alike.values())),
             "parts": [json.loads(part) for part in self._parts.values],
             "states": states,
         }

@@ -22,6 +22,7 @@ from missionfsm.pages.report import Judged, report
 from missionfsm.pages.teeth import teeth_page
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Experiment, Verdict
+from missionfsm.tools.explore.explore import explore
 from missionfsm.tools.mutate.teeth import MutantResult, MutationReport
 from missionfsm.tools.specpages import clauses
 
@@ -246,3 +247,13 @@ def test_survivors_are_told_apart() -> None:
 def test_prose(text: str, told: str) -> None:
     """What stands between backticks is code, between asterisks emphasis; nothing else is markup."""
     assert prose(text) == told
+
+
+@pytest.mark.parametrize("name", ["isaac.robot", "bear.mission"])
+def test_a_page_counts_as_the_explorer_does(name: str) -> None:
+    """The states that a page holds, and those of its shapes, are as many as an exploration finds."""
+    one = systems.system(name)
+    found = explore(one, Bounds(1, goals=1, batch=1))
+    graph = Graph(one, found.bounds, UNCONSTRAINED).data()
+    assert (graph["held"], sum(graph["shapes"].values())) == (found.states, found.states)
+    assert set(graph["shapes"]) == {words for words, _, _ in graph["states"]}

@@ -1,6 +1,6 @@
 // The map: states that are called the same are one node, a shape. What leads there stands in the node, not on a line.
 const MOST_NEXT = 10, MOST_BEFORE = 2, WIDTH = 232, NEXT_WIDTH = 380, APART = 60, BETWEEN = 9, NARROW = 720, READABLE = 0.75;
-const held = new Map(), depthOf = new Map();
+const depthOf = new Map();
 let all = false, unfolded = false, only = null, drawnFor = null;
 const view = { x: 0, y: 0, scale: 1 };
 const shape = (state) => graph.states[state][0];
@@ -8,7 +8,6 @@ const shape = (state) => graph.states[state][0];
   const depth = [0], todo = [0];
   for (const state of todo) {
     const words = shape(state), flat = graph.states[state][2];
-    held.set(words, (held.get(words) || 0) + 1);
     if (!depthOf.has(words)) depthOf.set(words, depth[state]);
     for (let i = 2; i < flat.length; i += 3) {
       if (flat[i] >= 0 && depth[flat[i]] === undefined) { depth[flat[i]] = depth[state] + 1; todo.push(flat[i]); }
@@ -46,7 +45,7 @@ function assumedBy(some) {
   });
   return keys(some[0]).filter((key) => some.every((move) => keys(move).includes(key)));
 }
-const counted = (words) => `${held.get(words)} state${held.get(words) === 1 ? "" : "s"}`;
+const counted = (words) => `${graph.shapes[words]} state${graph.shapes[words] === 1 ? "" : "s"}`;
 function card(kind, words, lines, onclick, title) {
   const note = lines.filter(Boolean).map((line) => made("small", {}, line));
   return made("button", { type: "button", class: `shape ${kind}`, onclick, disabled: !onclick, title: title || null, "data-shape": words }, made("b", {}, words), ...note);

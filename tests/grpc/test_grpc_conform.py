@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import queue
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -14,6 +14,7 @@ import pytest
 from attrs import evolve
 from commandline import CommandLine
 
+from missionfsm.adapters.grpc import control
 from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import encode, methods, path
 from missionfsm.adapters.grpc.target import Target
@@ -99,7 +100,6 @@ class Lazy:
 
     def __init__(self, *, first: bool) -> None:
         self._first = first
-        self._more: queue.SimpleQueue[JSON] = queue.SimpleQueue()
         self._server = grpc.server(ThreadPoolExecutor(4))
         self._server.add_generic_rpc_handlers((self._handlers(),))
         self.port = self._server.add_insecure_port("127.0.0.1:0")
@@ -136,6 +136,45 @@ def test_a_stream_that_says_late_that_it_has_begun_has_begun(first: bool) -> Non
             assert len(opened.after) == first
     finally:
         lazy.stop()
+
+
+class Hesitant:
+    """A server that counts what it sends, and takes long to refuse a subscription."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds = seconds
+        self._server = grpc.server(ThreadPoolExecutor(2))
+        subscribe = path(methods("bear.mission")["SubscribeMissionStatus"])
+        answers = {"Describe": {"system": "bear.mission", "drives": []}, "Settle": {"streams": {}}}
+        for service, handlers in (
+            (control.SERVICE, {name: self._always(answer) for name, answer in answers.items()}),
+            (subscribe.split("/")[1], {subscribe.split("/")[2]: grpc.unary_stream_rpc_method_handler(self._refuse)}),
+        ):
+            self._server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(service, handlers),))
+        self.port = self._server.add_insecure_port("127.0.0.1:0")
+        self._server.start()
+
+    @staticmethod
+    def _always(answer: JSON) -> Any:
+        return grpc.unary_unary_rpc_method_handler(lambda _request, _context: control.pack(answer))
+
+    def _refuse(self, _: bytes, context: Any) -> Iterator[bytes]:
+        time.sleep(self._seconds)
+        context.abort(grpc.StatusCode.INVALID_ARGUMENT, "no")
+        yield b""
+
+    def stop(self) -> None:
+        self._server.stop(0).wait()
+
+
+def test_a_refusal_that_comes_late_is_waited_for_where_beginnings_are_told() -> None:
+    """A server that counts its messages says when a stream has begun, so that silence alone does not mean that."""
+    hesitant = Hesitant(0.5)
+    try:
+        with subject("bear.mission", f"127.0.0.1:{hesitant.port}") as server:
+            assert server.exchange("SubscribeMissionStatus", {}).error["status"] == "INVALID_ARGUMENT"
+    finally:
+        hesitant.stop()
 
 
 def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -> None:

@@ -180,7 +180,8 @@ class GrpcSubject:
         metadata = (*self.target.sent, *(named if self._control else ()))
         call = self._channel.unary_stream(path(method))(request, metadata=metadata)
         begun = _Begun(call)
-        begun.wait(max(self.target.begin, self.target.settle))
+        counted = self._control and self._counts  # such a server says by initial metadata that a stream has begun
+        begun.wait(self.target.timeout if counted else max(self.target.begin, self.target.settle))
         if begun.refusal is not None:
             return Exchange(error=_error(begun.refusal))
         with self._change:

@@ -25,7 +25,8 @@ class Target:
         settle: seconds of silence after which everything that was caused has been seen; where the control service has
             ``Settle``, that says so instead.
         settle_most: seconds after which that is so even without silence.
-        begin: seconds after which a stream that was not refused has begun, where the server does not say so.
+        begin: seconds after which a stream that was not refused has begun, where the server does not say so; one whose
+            control service has ``Settle`` does.
         keepalive: seconds of silence after which a connection is asked whether it is still alive.
     """
 

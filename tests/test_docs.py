@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -124,6 +125,15 @@ def test_shell_that_is_shown_runs(script: str, tmp_path: Path) -> None:
 def test_python_that_is_shown_runs(script: str) -> None:
     """What a reader copies into Python works."""
     exec(compile(script, "docs", "exec"), {})  # noqa: S102 - the page's own code
+
+
+def test_the_servers_that_share_robots_are_those_of_the_simulation() -> None:
+    """The table of `docs/scale.md` is what `docs/scale.py` computes: every mission ends as under one server."""
+    path = ROOT / "docs" / "scale.py"
+    scale = runpy.run_path(str(path))
+    rows = scale["shared"](scale["Plan"].drawn(scale["ROBOTS"], scale["MISSIONS"]))
+    assert "\n\n" + "\n".join(rows) + "\n\n" in path.with_suffix(".md").read_text()
+    assert [row.split("|")[-2].strip() for row in rows[2:]] == ["yes"] * len(scale["SHARDS"])
 
 
 if __name__ == "__main__":

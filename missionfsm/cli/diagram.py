@@ -181,7 +181,9 @@ def _svg(dot: str) -> str:
     """What Graphviz makes of DOT."""
     import graphviz  # noqa: PLC0415 - only SVG needs it here
 
+    from missionfsm.tools.draw.svg import light_and_dark  # noqa: PLC0415 - as above
+
     try:
-        return str(graphviz.Source(dot).pipe(format="svg", encoding="utf-8"))
+        return light_and_dark(str(graphviz.Source(dot).pipe(format="svg", encoding="utf-8")))
     except graphviz.ExecutableNotFound:
         stop(_WITHOUT_DOT, BAD_INPUT)

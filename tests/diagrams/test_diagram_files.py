@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import collections
 import itertools
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 from missionfsm.tools.draw.diagram import Diagram
 from missionfsm.tools.draw.gallery import FORMATS, SVG, Picture
 from missionfsm.tools.draw.index import index, path
+from missionfsm.tools.draw.svg import DARK, light_and_dark
 
 FOLDER = Path(__file__).parents[2] / "diagrams"
 REDRAW = "run: missionfsm diagram -o diagrams"
@@ -72,3 +74,13 @@ def test_dot_loads_in_graphviz(gallery: dict[str, Picture]) -> None:
         drawn = list(itertools.takewhile(lambda line: line != ["stop"], lines))
         edges = collections.Counter((line[1], line[2]) for line in drawn if line[0] == "edge")
         assert ({line[1] for line in drawn if line[0] == "node"}, edges) == nodes_and_edges(one.diagram), one.id
+
+
+def test_every_svg_turns_dark() -> None:
+    """Every colour of every picture has one for dark pages, and the pictures say so themselves."""
+    for drawn in sorted(FOLDER.glob("*/*.svg")):
+        text = drawn.read_text()
+        head, _, body = text.partition("</style>\n")
+        used = set(re.findall(r'(?:fill|stroke)="([^"]+)"', body)) - {"none", "transparent"}
+        assert used <= set(DARK), drawn
+        assert light_and_dark(f"{head.partition('<style>')[0].rstrip()}\n{body}") == text, drawn

@@ -14,7 +14,9 @@ import grpc
 import pytest
 from relay import METHODS, WAIT, Relay
 
+from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import decode, path
+from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.asked import judged_system
 from missionfsm.app.recorded import check_file
 from missionfsm.app.recorder import Recorder
@@ -95,6 +97,21 @@ def test_a_stream_passes_message_by_message(relay: Relay, robot: Served, lines: 
         "cancel",
     ]
     assert eventually(lambda: any(line.get("method") == "cancel" for line in robot.history()))
+
+
+def test_a_subscription_that_is_refused_never_begins(lines: list[JSON]) -> None:
+    """Neither the client nor the record sees a stream where the robot refuses one."""
+    with serve("bear.status") as robot:
+        relay = Relay(robot.target, lines.append, system="bear.status")
+        direct, proxied = (
+            GrpcSubject("bear.status", Target(target)) for target in (robot.target, f"localhost:{relay.proxy.port}")
+        )
+        for subject in (direct, proxied) * 10:
+            assert subject.exchange("SubscribeBatteryStatus", {}).error["status"] == "INVALID_ARGUMENT"
+        direct.close()
+        proxied.close()
+        relay.close()
+    assert [line["error"]["status"] for line in lines if "return" in line] == ["INVALID_ARGUMENT"] * 10
 
 
 def test_calls_that_nobody_knows_pass_and_leave_no_line(relay: Relay, lines: list[JSON]) -> None:

@@ -25,6 +25,8 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.text import brief
 
+REFUSAL_SECONDS = 0.1
+"""How long a refusal is awaited once empty initial metadata have come."""
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
 MAX_ROUNDS = 100
@@ -372,8 +374,11 @@ class _Begun:
         thread.join(seconds)
 
     def _look(self) -> None:
-        with contextlib.suppress(grpc.RpcError):
-            self._call.initial_metadata()  # which a refusal does not have
+        ended = threading.Event()
+        if self._call.add_callback(ended.set):  # it has not ended yet
+            with contextlib.suppress(grpc.RpcError):
+                if not self._call.initial_metadata():  # a refusal has none, which looks as if they were empty
+                    ended.wait(REFUSAL_SECONDS)
         if self._call.done() and self._call.code() is not grpc.StatusCode.OK:
             self.refusal = self._call
 

@@ -23,6 +23,8 @@ STREAMS = ("History",)
 """``History`` gives the lines of the history since the last reset."""
 SESSION_KEY, STREAM_KEY = "missionfsm-session", "missionfsm-stream"
 """Metadata by which a subscriber names a stream and the session that it belongs to, for ``Settle``."""
+BEGUN_KEY = "missionfsm-begun"
+"""Initial metadata of a stream that has begun: what is refused has none, but to a client empty ones look the same."""
 
 
 def add_to(pool: descriptor_pool.DescriptorPool) -> None:

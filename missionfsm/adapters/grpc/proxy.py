@@ -31,6 +31,9 @@ HOP_BY_HOP = frozenset(("user-agent", "te", "content-type", "grpc-timeout", "grp
 UNLIMITED = (("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1))
 PATIENCE_SECONDS = 0.02
 """How long the end of the requests of an unknown call is awaited, before it is taken for a stream of requests."""
+REFUSAL_SECONDS = 0.1
+"""How long the refusal of a stream is awaited once it seems to begin: grpc gives a refusal, which has no initial
+metadata, empty ones. A stream with a first message, or with initial metadata, is not held up by it."""
 Context = Any
 """grpc.aio.ServicerContext, which has no type parameters that fit."""
 
@@ -151,13 +154,16 @@ class Proxy:
         seen = _Seen(self, self._methods.get(name))
         call = await self._called(name, requests, context, seen)
         try:
-            initial = await call.initial_metadata()
-            await context.send_initial_metadata(_passed(initial))
-            if not call.done():
+            initial = _passed(await call.initial_metadata())
+            first = asyncio.ensure_future(call.read())
+            if initial or not await _fails(first):
+                await context.send_initial_metadata(initial)
                 seen.begun()
-            async for response in call:
+            response = await first
+            while response is not aio.EOF:
                 seen.response(response)
                 yield response
+                response = await call.read()
         except asyncio.CancelledError:
             # The client went away, or its deadline passed, or the robot was: which, its own code says.
             call.cancel()
@@ -197,6 +203,12 @@ class Proxy:
                 request = await anext(requests, None)
 
         return self._channel.stream_stream(name)(all_requests(), **options)
+
+
+async def _fails(first: asyncio.Future[Any]) -> bool:
+    """Whether a stream is refused instead of having a first message."""
+    await asyncio.wait([first], timeout=REFUSAL_SECONDS)
+    return first.done() and not first.cancelled() and first.exception() is not None
 
 
 async def _only(request: bytes) -> AsyncIterator[bytes]:

@@ -173,7 +173,8 @@ class _Handlers(grpc.GenericRpcHandler):
         if answered.error is not None:
             await _refuse(context, answered)
         self._open.add(outgoing)
-        await context.send_initial_metadata(())  # a subscriber is not kept waiting for a first change
+        # A subscriber is not kept waiting for a first change.
+        await context.send_initial_metadata(((control.BEGUN_KEY, "true"),))
         ends = None if self._dice.faults.ends is None else loop.time() + self._dice.faults.ends
         first = True
         try:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
-from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
+
+if TYPE_CHECKING:
+    from missionfsm.adapters.isaac.bridge import RobotBridge, ServerBridge
 
 CONVERSATIONS = 5
 """How many are had in real time where nothing else is asked for."""
@@ -38,7 +40,7 @@ class Bridged:
     """A system as it is tried over a bridge, the bridge, how many conversations are had, and what is said of it."""
 
     system: System
-    subject: Subject
+    subject: RobotBridge | ServerBridge
     conversations: int
     note: str
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import secrets
 import sys
 import time
@@ -84,6 +85,12 @@ class TimeLimit:
         """Whether they have begun and passed."""
         began, seconds = self.began, self.seconds
         return began is not None and seconds is not None and time.monotonic() > began + seconds
+
+    def left(self) -> float:
+        """How many are left; infinite where there is no limit."""
+        if self.seconds is None:
+            return math.inf
+        return self.seconds if self.began is None else max(0.0, self.began + self.seconds - time.monotonic())
 
 
 def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
@@ -245,6 +252,7 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             examples = examples or GRPC_EXAMPLES
         elif bridge:
             child = bridge.subject
+            bridge.subject.left = limit.left
         else:
             child = Child(command or own, timeout, stopped=lambda: interruption.asked or limit.over, trace=traced)
         plan = Plan(steps=steps) if examples is None else Plan.sharing(examples, steps)

@@ -114,6 +114,15 @@ def test_the_robot_that_ships(command_line: CommandLine, port: int) -> None:
     assert f"a tolerance of {TOLERANCE} s" in ended.out
 
 
+def test_a_run_that_is_nearly_over_waits_no_longer() -> None:
+    """Where less time is left than is to pass, that much passes, and is told."""
+    bridge = RobotBridge(0, TOLERANCE, host="127.0.0.1")
+    bridge.left = lambda: 0.05
+    result = bridge.exchange("drive", {"event": "advance", "seconds": 600}).result
+    bridge.close()
+    assert 0 <= result["seconds"] < 600
+
+
 def test_a_robot_that_does_not_come(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where no robot connects, or one program cannot be started, that is no violation."""
     monkeypatch.setattr("missionfsm.adapters.isaac.bridge.PATIENCE", 0.1)

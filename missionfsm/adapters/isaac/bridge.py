@@ -8,13 +8,14 @@ that a bridge does it waits for that long, and what was caused by it has come by
 from __future__ import annotations
 
 import contextlib
+import math
 import select
 import signal
 import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from missionfsm.adapters.processes import end_group, signal_group
@@ -135,7 +136,11 @@ class _Wire:
 
 
 class _Bridge:
-    """What both have in common: time that passes, and lines that arrive meanwhile."""
+    """What both have in common: time that passes, and lines that arrive meanwhile.
+
+    Attributes:
+        left: how many seconds the run has left; no longer is waited where time is to pass.
+    """
 
     name = ""
     drives: tuple[str, ...] = ()
@@ -143,6 +148,7 @@ class _Bridge:
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
         self.wires: dict[int, _Wire] = {}
+        self.left: Callable[[], float] = lambda: math.inf
         self._noted = time.monotonic()
 
     def exchange(self, method: str, params: JSON) -> Exchange:
@@ -166,7 +172,7 @@ class _Bridge:
         return Exchange(result, after=self.while_waiting(self.tolerance), earlier=earlier)
 
     def _advance(self, seconds: float, earlier: tuple[Notification, ...]) -> Exchange:
-        lines = self.collect(seconds)
+        lines = self.collect(min(seconds, self.left()))
         return Exchange({"happened": True, "seconds": self.passed()}, after=lines, earlier=earlier)
 
     def while_waiting(self, seconds: float) -> tuple[Notification, ...]:

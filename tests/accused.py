@@ -14,6 +14,7 @@ from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.tour import tour
 from missionfsm.tools.mutate.teeth import Mutant, mutants
 
@@ -22,9 +23,14 @@ EXCUSED = {
     "so that it is a mission without a configuration",
     "isaac.robot/codelet/a-mission-can-follow-another is not run": "that a mission was not run shows when its end is "
     "not reported, long after it came",
+    "isaac.robot/codelet/an-unusable-configuration-fails-the-mission is not reported": "as before: the next mission is "
+    "run, and what is missing is what has to come before it",
     "isaac.robot/codelet/a-new-mission-preempts is not run": "as before: what is missing is the RUNNING of some tick",
 }
 """Mutants whose rule cannot be told from what is seen, each with the reason."""
+
+SHORTENED = ("isaac.robot",)
+"""Systems whose violations are made short first: where time passes, a long story has much that is not to the point."""
 
 
 @frozen
@@ -73,6 +79,8 @@ def accusations(system: System, *, every: int, first: int = 0, conversations: in
             continue  # what cannot be read is the adapter's failure, no violation
         if right or (run.found is not None and run.found.judge.exhausted):
             continue
+        if system.name in SHORTENED:
+            shorten(run)
         found = run.found.judge.violation if run.found is not None else run.ledger.inconsistency()
         assert found is not None, mutant.name
         yield Accusation(mutant, with_suspects(system, found), broken.speechless)

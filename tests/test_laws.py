@@ -168,6 +168,24 @@ def test_every_call_has_an_outcome_under_every_choice(lab: Lab) -> None:
     assert unanswered == []
 
 
+def test_what_ties_the_calls_of_a_reading_is_written(lab: Lab) -> None:
+    """An ambiguity on which the answers or effects of several calls depend has a text that says why it is not split."""
+    about: dict[Ambiguity, set[str]] = defaultdict(set)
+    for taken in lab.all_taken:
+        if taken.request is not None:
+            calls = taken.step.answer is not None
+            name = lab.spec.request_operation(taken.request) if calls else taken.request.name
+            for one in taken.step.assumes:
+                about[one.of].add(name)
+    for rule in lab.spec.all_rules:
+        if rule.under is not None and rule.code is not None:
+            about[rule.under.of].add(rule.id.split("/")[1])
+    page = (SPECS / f"{lab.system.name.replace('.', '-')}.md").read_text(encoding="utf-8")
+    tied = [text.partition("\n\n")[0] for text in page.split("*Tied:* ")[1:]]
+    several = [one.id for one, names in about.items() if len(names) > 1]
+    assert [one for one in several if not any(one.startswith(text.split()[0]) for text in tied)] == []
+
+
 def test_an_outcome_is_an_answer(lab: Lab) -> None:
     """Every outcome of a call has an answer, and no other step has one."""
     calls = [type(request) for request, _ in lab.everything.requests]
@@ -351,6 +369,7 @@ def test_every_violation_names_the_rule_that_is_broken(name: str, part: int) -> 
     assert [str(one) for one in found if not one.is_right(systems.system(name))] == []
 
 
+SPECS = Path(__file__).parent.parent / "specs"
 CASES = next((one / "shared" / "cases" for one in Path(__file__).parents if (one / "shared" / "cases").is_dir()), None)
 
 

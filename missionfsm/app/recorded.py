@@ -25,6 +25,7 @@ from missionfsm.adapters.historyfile import (
     wrong_line,
 )
 from missionfsm.app.asked import Asked, judged_system
+from missionfsm.app.conversations import joined
 from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.belief import Automaton
@@ -34,6 +35,7 @@ from missionfsm.systems import system
 from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed, held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.contradiction import MAX_KEPT
 from missionfsm.tools.explore.undriven import missed_without
 
 Lost = Mapping[str | None, frozenset[int]]
@@ -118,6 +120,7 @@ def _judged(
         keep: how many lines are kept to be shown; with none the file is one that can be read again.
     """
     source = open_history(path)
+    parts: list[_Judges] = []
     try:
         texts = Lines(source, path)
         numbered = iter(texts)
@@ -139,11 +142,19 @@ def _judged(
             if isinstance(line, dict) and "missionfsm" not in line:
                 message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
                 raise UnreadableError(message)
-            judges = _Judges(line, asked, lost, keep)
-        judges.read(path, texts, numbered)
+        following: tuple[int, JSON] | None = (number, line)
+        while following is not None:
+            with placed(path, following[0]):
+                judges = _Judges(following[1], asked, lost, keep)
+            parts.append(judges)
+            following = judges.read(path, texts, numbered)
     finally:
         if path != STDIN:
             source.close()
+    if len(parts) > 1:  # they are judged together, for which their lines are needed
+        if not keep:
+            return _judged(path, asked, tell, lost, MAX_KEPT)
+        return joined((part.system, *one) for part in parts for one in part.judgements(path))
     found = judges.verdicts(path)
     if judges.nodes > KEPT_NODES:
         _automaton.cache_clear()
@@ -207,11 +218,11 @@ class _Judges:
             anywhere=asked.anywhere or first.anywhere,
             others=asked.others or first.others,
         )
-        self._system = judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others)
-        self.addresses = Addresses(by_params=self._system.codec.robot_in_params)
+        self.system = judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others)
+        self.addresses = Addresses(by_params=self.system.codec.robot_in_params)
         self.addresses.whose(line)
-        readings = self._system.chosen(asked.profile, asked.readings)
-        decided = assumed(self._system.spec, readings, no_flagged=asked.no_flagged)
+        readings = self.system.chosen(asked.profile, asked.readings)
+        decided = assumed(self.system.spec, readings, no_flagged=asked.no_flagged)
         self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
         patience = PATIENCE if self._waits else SECOND_PATIENCE
@@ -233,7 +244,7 @@ class _Judges:
         calls = (self._lost or {}).get(robot, frozenset())
         automaton, keep = self._automaton, self._keep
         return Judge(
-            self._system,
+            self.system,
             self._head,
             automaton,
             no_flagged=self._no_flagged,
@@ -250,8 +261,12 @@ class _Judges:
         """How many nodes the automaton has that they walked."""
         return self._automaton.size[0]
 
-    def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> None:
-        """Take all lines into account. Raises UnreadableError for one that is not of the format."""
+    def read(self, path: str, texts: Lines, numbered: Iterator[tuple[int, bytes]]) -> tuple[int, JSON] | None:
+        """Take all lines into account, up to the first line of another conversation: its number and the line.
+
+        Raises:
+            UnreadableError: a line is not of the format.
+        """
         again, take = self._texts.again, self._nobody.take
         read_again = not (self._keep or self._only or self._settled_after is not None)
         looks, nobody = self._lost is None, self._nobody
@@ -261,11 +276,15 @@ class _Judges:
                     self._look(nobody)
                 known = again(text) if read_again and not self.addresses.by_call else None
                 if known is None:
-                    self._take(number, text, texts.json(text))
+                    line = texts.json(text)
+                    if type(line) is dict and "missionfsm" in line:
+                        return number, line
+                    self._take(number, text, line)
                 elif not take(known, number):  # it names neither a time nor a robot, as most lines
                     self._stopped.setdefault(None, nobody.place or number)
             except UnreadableError as error:
                 raise wrong_line(path, number, error) from None
+        return None
 
     def _take(self, number: int, text: bytes, line: JSON) -> None:
         plain = type(line) is dict and "at" not in line and "robot" not in line
@@ -294,6 +313,10 @@ class _Judges:
 
         Raises UnreadableError where the file says too little for what is asked.
         """
+        return [(robot, verdict) for robot, _, verdict in self.judgements(path)]
+
+    def judgements(self, path: str) -> list[tuple[str | None, Judge, Verdict]]:
+        """The same with the judges."""
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
             raise _UndecidedError(by_params=self.addresses.by_call)
@@ -302,7 +325,9 @@ class _Judges:
             message = f"{called(path)}: {says}"
             raise UnreadableError(message)
         told = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
-        return [(robot, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told]
+        return [
+            (robot, judge, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told
+        ]
 
     def _completed(self, verdict: Verdict) -> Verdict:
         """A verdict that conforms, with the rules that could be missed for want of drives."""
@@ -321,7 +346,9 @@ def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) 
     with open_history(path) as source:
         for number, line in lines(source, path):
             whose, told = addresses.whose(line)
-            if number > 1 and whose == robot:
+            if type(line) is dict and "missionfsm" in line:
+                kept.clear()
+            elif whose == robot:
                 kept.append(told)
             if number == verdict.violation.at:
                 break

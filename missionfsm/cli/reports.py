@@ -38,8 +38,9 @@ def write_record(path: str | None, system: System, verdict: Verdict) -> None:
         return
     from missionfsm.adapters.outputs import write_history, write_whole  # noqa: PLC0415
     from missionfsm.tools.check.narrate import as_mermaid, as_pytest  # noqa: PLC0415
+    from missionfsm.tools.conform.contradiction import recorded  # noqa: PLC0415 - as above
 
-    history = verdict.violation.history
+    history = recorded(verdict.violation)
     form = Path(path).suffix
     if form == ".py":
         name = re.sub(r"\W+", "_", Path(path).stem.removeprefix("test_")).strip("_") or system.name.replace(".", "_")

@@ -14,7 +14,17 @@ from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.tools.check import causes
-from missionfsm.tools.check.nearest import CODE, LEFT_OUT, SHAPE, UNOWED, Candidate, Circumstances, Nearest, Problem
+from missionfsm.tools.check.nearest import (
+    CODE,
+    LEFT_OUT,
+    SHAPE,
+    UNOWED,
+    VALUE,
+    Candidate,
+    Circumstances,
+    Nearest,
+    Problem,
+)
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 
@@ -212,13 +222,17 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
 
 
 def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
-    """The rules of what has made a message due, then of what has happened last."""
+    """The rules of what has made a message due, then of what has happened last.
+
+    Where a message that is due has come with another value, only the first: something else has hardly happened.
+    """
     owing: tuple[str, ...] = ()
+    other_value = candidate is not None and any(problem.weight >= VALUE for problem in candidate.problems)
     if candidate is not None and candidate.owed is not None:
         channel, owed = candidate.owed
         owing = causes.owing(nearest.belief, owed.view, channel.topic)
     unseen = reversed(candidate.unseen) if candidate else ()
-    return list(dict.fromkeys((*unseen, *owing, *causes.exercised(nearest.belief))))
+    return list(dict.fromkeys((*unseen, *owing, *(() if owing and other_value else causes.exercised(nearest.belief)))))
 
 
 def _due(here: Explanation) -> list[tuple[Channel, Owed]]:

@@ -10,8 +10,10 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.system import System
+from missionfsm.kernel.text import printable
 from missionfsm.oracle.transcript import Transcript
 from missionfsm.tools.check.phrases import answer_words, event_words, name_words
+from missionfsm.tools.check.verdict import Violation
 
 WORLD = 240
 """How many characters of a world a story has room for."""
@@ -25,6 +27,17 @@ def story(system: System, history: tuple[JSON, ...]) -> str:
     lines = [f"{number:>3}. {line}" for number, line in enumerate(_told(system, history), 1)]
     unusual = _unusual(system, history[0].get("world") or {}) if history else ""
     return "\n".join([f"  0. in the world {unusual}", *lines] if unusual else lines)
+
+
+def story_of(system: System, violation: Violation) -> str:
+    """The conversation that shows a violation, or all that it takes, each with what it shows and its world."""
+    if not violation.sides:
+        return story(system, violation.history)
+    parts = []
+    for number, side in enumerate(violation.sides, 1):
+        usual = "" if _unusual(system, side.history[0].get("world") or {}) else "  0. in the usual world\n"
+        parts.append(f"conversation {number}: {printable(side.says)}\n{usual}{story(system, side.history)}")
+    return "\n\n".join(parts)
 
 
 def _unusual(system: System, world: JSON) -> str:

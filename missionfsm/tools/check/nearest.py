@@ -306,8 +306,7 @@ class Nearest:
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
             least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
-            unowed = self.spec.delivery(channel.topic).unowed if least == VALUE else ()
-            return [Problem(ways.says, (ways.rule, *unowed), least + further)]
+            return [Problem(ways.says, (ways.rule,), least + further)]
         found: list[list[Problem]] = []
         for way in ways:
             own = (channel.name, *(owed.names[ref] for ref, _ in way.names))

@@ -232,6 +232,7 @@ class Verdict:
                 "observed": self.violation.observed,
                 "explanation": self.violation.explanation,
                 "history": list(self.violation.history),
+                "conversations": [{"shows": side.says, "history": list(side.history)} for side in self.violation.sides],
             },
         }
 

@@ -13,7 +13,7 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Baseline, held_against
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import by_ambiguity
-from missionfsm.tools.check.narrate import story
+from missionfsm.tools.check.narrate import story_of
 from missionfsm.tools.check.scope import flagged_in_all, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Outcome, Verdict
@@ -22,7 +22,7 @@ from missionfsm.tools.conform.distinguish import distinguish as tell_apart
 from missionfsm.tools.conform.distinguish import proposed
 from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.run import BOUNDS, Run
-from missionfsm.tools.conform.shortening import shorten, shorten_evidence
+from missionfsm.tools.conform.shortening import beside_others, shorten, shorten_evidence
 from missionfsm.tools.conform.tour import fill, play, some, tour
 from missionfsm.tools.explore.undriven import Missed, missed_without
 
@@ -206,6 +206,7 @@ def verdict_of(
         violation = judge.violation
         if len(violation.history) <= LONGEST_SUSPECTED or not run.enough():
             violation = with_suspects(run.system, violation, run.narrowing.asked_for)
+        violation = beside_others(run, violation, asks_again=asks_again)
     elif ledger.contradiction is not None:
         if asks_again:
             shorten_evidence(run)
@@ -228,7 +229,7 @@ def verdict_of(
         (*flagged_in_all(spec, followed, ledger.rulings, ledger.departing), *ledger.oddities),
         unchecked(spec, (*used, *run.partner.info.drives)),
         _untested(run, left_out),
-        story(run.system, violation.history) if violation and run.found is not None else "",
+        story_of(run.system, violation) if violation else "",
         by_ambiguity(spec.ambiguities, ledger.rulings),
         tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
         rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advice else {},

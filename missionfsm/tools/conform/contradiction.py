@@ -1,14 +1,25 @@
-"""What is wrong with an implementation that follows one reading now and another later."""
+"""What is wrong with an implementation that follows one reading now and another later, or several that fit no other."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from missionfsm.kernel.readings import Ambiguity
+from attrs import evolve
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, meet
 from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.system import System
+from missionfsm.oracle.belief import Automaton
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Side, Violation
+
+MAX_KEPT = 1_000_000
+"""How many lines of a conversation are kept to be judged again."""
+
+Evidence = Mapping[tuple[str, str], Judge]
+"""Ambiguity id and letter to the judge of a conversation that rules it out."""
 
 
 def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]) -> Violation:
@@ -24,14 +35,15 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
-        if ruling is None:
+        if judge is None or ruling is None:
             notes.append(f"{letter} is ruled out: another reading had to be followed")
-            continue
-        rules += ruling.rules
-        notes.append(f"{letter} is ruled out: {ruling}")
-        last = judge
-        assert judge is not None, "an event was ruled on by a judge"  # noqa: S101
-        shown.setdefault(id(judge), (judge, []))[1].append(f"not {letter}: {ruling}")
+        else:
+            rules += ruling.rules
+            notes.append(f"{letter} is ruled out: {ruling}")
+            last = judge
+        if judge is not None:
+            says = f"not {letter}" + (f": {ruling}" if ruling else "")
+            shown.setdefault(id(judge), (judge, []))[1].append(says)
     sides = tuple(Side("; ".join(says), judge.history) for judge, says in shown.values())
     return Violation(
         rules_in_words(spec, rules),
@@ -41,3 +53,89 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         last.history if last else (),
         sides=sides if len(sides) > 1 else (),
     )
+
+
+def together(system: System, judges: Sequence[Judge]) -> Violation | None:
+    """What is wrong with conversations each of which is explained, if no choice of readings explains all of them."""
+    evidence: dict[tuple[str, str], Judge] = {}
+    left: dict[str, tuple[str, ...]] = {}
+    for judge in judges:
+        for ambiguity in system.spec.ambiguities:
+            letters = judge.belief.readings.get(ambiguity.id)
+            if letters is None:
+                continue
+            before = left.get(ambiguity.id, tuple(ambiguity.readings))
+            evidence.update({(ambiguity.id, one): judge for one in before if one not in letters})
+            left[ambiguity.id] = tuple(one for one in before if one in letters)
+            if not left[ambiguity.id]:
+                own = {letter: which for (name, letter), which in evidence.items() if name == ambiguity.id}
+                return inconsistent(system.spec, ambiguity, own)
+    for judge in judges:
+        again = under(system, judge, left)
+        if again.violation is not None:
+            needed = essential(system, judge, left)
+            return beside(again.violation, needed, {key: one for key, one in evidence.items() if one is not judge})
+    return None
+
+
+def under(system: System, judge: Judge, readings: Mapping[str, tuple[str, ...]]) -> Judge:
+    """The judge of the same conversation, of an implementation that follows one of some readings of each question."""
+    ambiguities = system.spec.ambiguities
+    decided = meet(UNCONSTRAINED, (one[readings[one.id]] for one in ambiguities if readings.get(one.id)))
+    automaton = Automaton(system.spec, judge.head.drives, decided or UNCONSTRAINED)
+    again = Judge(system, judge.head, automaton, keep=MAX_KEPT, apart=True, waits=False)
+    for line in judge.lines:
+        if not again.feed(line):
+            break
+    return again
+
+
+def essential(system: System, judge: Judge, readings: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """As few of some decided questions as suffice for a conversation not to be explained."""
+    needed = {
+        one.id: readings[one.id]
+        for one in system.spec.ambiguities
+        if readings.get(one.id) and len(readings[one.id]) < len(one.readings)
+    }
+    size = len(needed)
+    while size:
+        for names in [list(needed)[at : at + size] for at in range(0, len(needed), size)]:
+            fewer = {name: letters for name, letters in needed.items() if name not in names}
+            if under(system, judge, fewer).violation is not None:
+                needed = fewer
+        size //= 2
+    return needed
+
+
+def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence: Evidence) -> Violation:
+    """The violation with the conversations that rule out the other readings of the questions that it needs."""
+    shown: dict[int, tuple[Judge, list[str]]] = {}
+    for (name, letter), judge in evidence.items():
+        if name in needed and letter not in needed[name]:
+            ruling = judge.rulings.found.get((name, letter))
+            says = f"not {name}={letter}" + (f": {ruling}" if ruling else "")
+            shown.setdefault(id(judge), (judge, []))[1].append(says)
+    if not shown:
+        return violation
+    sides = [Side("; ".join(says), judge.history) for judge, says in shown.values()]
+    return evolve(violation, sides=(*sides, Side(f"and yet {violation.observed}", violation.history)))
+
+
+def recorded(violation: Violation) -> tuple[JSON, ...]:
+    """The lines of a history that shows a violation: one conversation after the other, where it takes several.
+
+    No two calls have one number.
+    """
+    if not violation.sides:
+        return violation.history
+    lines: list[JSON] = []
+    first = 0
+    for side in violation.sides:
+        numbers = [line["call"] for line in side.history if "call" in line]
+        lines += (_renumbered(line, first) for line in side.history)
+        first += max(numbers, default=0)
+    return tuple(lines)
+
+
+def _renumbered(line: JSON, first: int) -> JSON:
+    return {key: value + first if key in ("call", "return") else value for key, value in line.items()}

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.actions import SETTLE, Action, length
+from missionfsm.tools.conform.contradiction import beside, essential
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortest import everything, shortest
@@ -112,10 +114,30 @@ def _shorten(
 
 def shorten_evidence(run: Run) -> None:
     """Make the conversations that ruled out the readings of a contradiction as short as can be."""
+    if run.ledger.contradiction is not None:
+        _shorten_those(run, [key for key in run.ledger.settled_by if key[0] == run.ledger.contradiction])
+
+
+def beside_others(run: Run, violation: Violation, *, asks_again: bool) -> Violation:
+    """The violation of the conversation that a run found, with the others that it contradicts, if it takes any."""
+    assert run.found is not None, "something was found"  # noqa: S101 - whoever calls this has found it
+    ledger, judge = run.ledger, run.found.judge
+    if not run.found.under(run.narrowing.wide).right:
+        return violation
+    needed = essential(run.system, judge, ledger.readings)
+    keys = [key for key in ledger.settled_by if key[0] in needed and key[1] not in needed[key[0]]]
+    if asks_again:
+        _shorten_those(run, keys)
+    return beside(violation, needed, {key: ledger.settled_by[key].judge for key in keys})
+
+
+def _shorten_those(run: Run, keys: Iterable[tuple[str, str]]) -> None:
+    """Make the conversations short that rule out these readings."""
     ledger = run.ledger
-    for (name, letter), conversation in list(ledger.settled_by.items()):
-        if name != ledger.contradiction or run.enough():
-            continue
+    for name, letter in keys:
+        if run.enough():
+            return
+        conversation = ledger.settled_by[name, letter]
 
         def shows(tried: Conversation, name: str = name, letter: str = letter) -> bool:
             return tried.right and letter not in tried.judge.belief.readings.get(name, (letter,))

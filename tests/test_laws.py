@@ -5,6 +5,7 @@ Choices of readings are the default one and those that differ from it in a singl
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import functools
 import os
@@ -27,11 +28,15 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Emission, Mismatch, Step
+from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.explain import ACCUSED
 from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.conform.conform import Plan, conform
 from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
+from missionfsm.tools.mutate.teeth import Mutant, mutants
 
 BOUNDS = Bounds(2, goals=2, batch=2)
 NEAR = 100
@@ -370,6 +375,48 @@ def test_every_violation_names_the_rule_that_is_broken(name: str, part: int) -> 
 
 
 SPECS = Path(__file__).parent.parent / "specs"
+BROKEN = {"bear.mission": 200, "bear.status": 400, "isaac.server": 31, "isaac.robot": 10}
+"""Of how many mutants of a system one is fed its own findings where not all are."""
+
+
+def fed_back(system: System, mutant: Mutant, seed: int) -> Verdict:
+    """The verdict on a mutant once everything is expected of it that runs before have found."""
+    expected: tuple[str, ...] = ()
+    for _ in range(FINDINGS):
+        plan = Plan(4, 8, 0, 20, 0)
+        verdict = conform(system, mutant.subject(system), plan=plan, seed=seed, expected=expected, advice=False)
+        if verdict.violation is None:
+            break
+        assert not set(verdict.violation.known_by) & set(expected), str(verdict)
+        expected += verdict.violation.known_by
+    return verdict
+
+
+FINDINGS = 12
+"""After so many findings of a mutant, one more is one too many."""
+
+
+@pytest.mark.parametrize("name", systems.names())
+def test_what_a_run_has_found_can_be_expected_of_the_next(name: str) -> None:
+    """Of a sample of mutants: with all findings listed, a run with the same seed ends well, with none of them stale."""
+    found = systems.system(name)
+    for mutant in list(mutants(found))[1 :: BROKEN[name]]:
+        verdict = fed_back(found, mutant, 1)
+        assert (mutant.name, verdict.violation, verdict.stale) == (mutant.name, None, ())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("name", systems.names())
+def test_what_every_mutant_is_found_to_break_can_be_expected(name: str, seed: int) -> None:
+    """The same of every mutant of every system."""
+    found = systems.system(name)
+    for mutant in mutants(found):
+        with contextlib.suppress(SubjectError):  # it does not speak the protocol any more
+            verdict = fed_back(found, mutant, seed)
+            assert (mutant.name, verdict.violation, verdict.stale) == (mutant.name, None, ())
+
+
 CASES = next((one / "shared" / "cases" for one in Path(__file__).parents if (one / "shared" / "cases").is_dir()), None)
 
 

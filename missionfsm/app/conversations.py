@@ -1,4 +1,4 @@
-"""Several conversations in one file: each is explained by itself or not, and then all of them by one choice of readings."""
+"""Several conversations in one file: each is explained or not, and then all of them by one choice of readings."""
 
 from __future__ import annotations
 

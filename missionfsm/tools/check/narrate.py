@@ -50,7 +50,7 @@ def _unusual(system: System, world: JSON) -> str:
         with contextlib.suppress(UnreadableError):  # what must be said cannot be usual
             rest = {other: value for other, value in differs.items() if other != name}
             differs = rest if read(rest) == read(world) else differs
-    text = json.dumps(differs, ensure_ascii=False)
+    text = printable(json.dumps(differs, ensure_ascii=False))
     return text if len(text) <= WORLD else f"{text[: WORLD - 1]}…"
 
 

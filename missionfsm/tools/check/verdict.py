@@ -77,6 +77,8 @@ class Violation:
         history: the shortest history known that shows it, as lines of the history format.
         at: where it is: the number of the event, or of the line in a file, from 1.
         sides: the conversations that contradict one another, where no single one of them is wrong.
+        listed: ids of the rules by which a list of known violations knows it, if those are not its own: a search meets
+            it in a conversation that is longer than the one that is shown, and that may break other rules as well.
     """
 
     rules: tuple[CitedRule, ...]
@@ -87,6 +89,12 @@ class Violation:
     at: int = 0
     where: str = ""
     sides: tuple[Side, ...] = ()
+    listed: tuple[str, ...] = ()
+
+    @property
+    def known_by(self) -> tuple[str, ...]:
+        """Ids of the rules by which a list of known violations knows it, each once."""
+        return self.listed or tuple(dict.fromkeys(rule.id for rule in self.rules))
 
     @property
     def sent(self) -> str:
@@ -95,7 +103,7 @@ class Violation:
         answered = self.history[-1].get("return") if doubtful and self.history else None
         calls = (line for line in reversed(self.history) if answered is not None and line.get("call") == answered)
         call = next(calls, None)
-        return "" if call is None else json.dumps(call.get("params"), ensure_ascii=False)
+        return "" if call is None else printable(json.dumps(call.get("params"), ensure_ascii=False))
 
     @property
     def explanation(self) -> str:
@@ -228,6 +236,7 @@ class Verdict:
             if self.violation is None
             else {
                 "rules": [rule.id for rule in self.violation.rules],
+                "known_by": list(self.violation.known_by),
                 "expected": [str(one) for one in self.violation.expected],
                 "observed": self.violation.observed,
                 "explanation": self.violation.explanation,
@@ -275,16 +284,16 @@ class Verdict:
         lines = [f"{self.headline}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
         lines += [f"  {line}" for line in self.rests_on(all_names=verbose)]
         if self.because:
-            lines.append(f"  because {self.because}")
+            lines.append(f"  because {printable(self.because)}")
         if self.violation:
             if self.story:
                 lines += ["", self.story]
             lines += ["", self.violation.explanation, *self._rule_ids()]
         lines += [f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times]
         lines += [f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale]
-        lines += [f"  {note}" for note in self.notes]
+        lines += [f"  {printable(note)}" for note in self.notes]
         if self.flagged:
-            lines += ["", "flagged:", *(f"  {one}" for one in self.flagged)]
+            lines += ["", "flagged:", *(f"  {printable(one)}" for one in self.flagged)]
         lines += self._readings(verbose=verbose)
         if verbose:
             for experiment in self.experiments:
@@ -302,7 +311,7 @@ class Verdict:
 
     def _rule_ids(self) -> list[str]:
         """The rules that are broken as a list of known violations takes them."""
-        ids = dict.fromkeys(rule.id for rule in self.violation.rules) if self.violation else {}
+        ids = self.violation.known_by if self.violation else ()
         return ["  as --expect-violations takes it:", *(f"    {one}" for one in ids)] if ids else []
 
     def _readings(self, *, verbose: bool) -> list[str]:

@@ -16,7 +16,7 @@ from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.narrate import story_of
 from missionfsm.tools.check.scope import flagged_in_all, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
-from missionfsm.tools.check.verdict import Outcome, Verdict
+from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 from missionfsm.tools.conform.coverage import rare
 from missionfsm.tools.conform.distinguish import distinguish as tell_apart
 from missionfsm.tools.conform.distinguish import proposed
@@ -191,6 +191,7 @@ def verdict_of(
     known, ledger = known or Baseline(), run.ledger
     advice = advice and not _has_found(run) and not run.enough()
     outcome, because, violation, followed = Outcome.CONFORMS, "", None, ledger.readings
+    met: Violation | None = None
     exercised = run.narrowing.exercised()
     idle = _idle(run, exercised)
     if idle:
@@ -198,6 +199,7 @@ def verdict_of(
     elif run.found is not None and run.found.judge.exhausted:
         outcome, because = Outcome.INCONCLUSIVE, "an event had too many explanations to decide"
     elif run.found is not None:
+        met = run.found.judge.violation
         if asks_again:
             shorten(run)
         judge = run.found.judge
@@ -208,9 +210,12 @@ def verdict_of(
             violation = with_suspects(run.system, violation, run.narrowing.asked_for)
         violation = beside_others(run, violation, asks_again=asks_again)
     elif ledger.contradiction is not None:
+        met = ledger.inconsistency()
         if asks_again:
             shorten_evidence(run)
         outcome, violation = Outcome.VIOLATES, ledger.inconsistency()
+    if violation is not None and met is not None:
+        violation = evolve(violation, listed=met.known_by)
     spec = run.system.spec
     left_out = uncovered(spec, exercised, followed)
     used = (name for name, codes in ledger.answers.items() if codes)

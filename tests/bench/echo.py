@@ -1,8 +1,13 @@
-"""A bare echo server of grpcio in a process of its own; the first line that it prints is its port."""
+"""A bare echo server of grpcio in a process of its own; with a port as its argument, a bare relay to the server there.
+
+The first line that it prints is its port.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import sys
 from typing import Any
 
 import grpc
@@ -19,14 +24,34 @@ class Echo(grpc.GenericRpcHandler):
         return grpc.unary_unary_rpc_method_handler(echo)
 
 
-async def main() -> None:
+class Relay(grpc.GenericRpcHandler):
+    """Passes the bytes of every unary call on, and nothing else."""
+
+    def __init__(self, channel: aio.Channel) -> None:
+        self._channel = channel
+
+    def service(self, details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler:
+        ask = self._channel.unary_unary(details.method)
+
+        async def answer(request: bytes, _: Any) -> Any:
+            return await ask(request)
+
+        return grpc.unary_unary_rpc_method_handler(answer)
+
+
+async def main(upstream: str) -> None:
     server = aio.server()
-    server.add_generic_rpc_handlers((Echo(),))
+    handler = Relay(aio.insecure_channel(f"127.0.0.1:{upstream}")) if upstream else Echo()
+    server.add_generic_rpc_handlers((handler,))
     port = server.add_insecure_port("127.0.0.1:0")
     await server.start()
     print(port, flush=True)
-    await server.wait_for_termination()
+    try:
+        await server.wait_for_termination()
+    finally:
+        await server.stop(0)
 
 
 if __name__ == "__main__":
-    asyncio.run(main())
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(main("".join(sys.argv[1:])))

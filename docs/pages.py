@@ -33,24 +33,14 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", 
 LOADED = "Math.round(performance.getEntriesByType('navigation')[0].loadEventEnd)"
 
 
-def make(folder: Path) -> dict[str, Path]:
-    """Every page in a folder, by what it is."""
-    made = {}
-    for name, command in PAGES.items():
-        made[name] = folder / f"{name.replace(', ', '-').replace(' ', '-')}.html"
-        head, sign, tail = (command, (), ()) if "--" not in command else _parted(command)
-        subprocess.run(
-            [*PROGRAM, *head, "--html", str(made[name]), *sign, *tail],
-            stdout=subprocess.DEVNULL,
-            check=False,
-            cwd=folder,
-        )
+def make(name: str, folder: Path) -> Path:
+    """One of the pages, in a folder."""
+    made = folder / f"{name.replace(', ', '-').replace(' ', '-')}.html"
+    command = PAGES[name]
+    at = command.index("--") if "--" in command else len(command)
+    whole = [*PROGRAM, *command[:at], "--html", str(made), *command[at:]]
+    subprocess.run(whole, stdout=subprocess.DEVNULL, check=False, cwd=folder)
     return made
-
-
-def _parted(command: tuple[str, ...]) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-    at = command.index("--")
-    return command[:at], ("--",), command[at + 1 :]
 
 
 def main() -> None:
@@ -63,7 +53,8 @@ def main() -> None:
         folder = keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
-        for name, path in make(folder).items():
+        for name in PAGES:
+            path = make(name, folder)
             page = browser.new_page()
             page.goto(path.as_uri())
             size = path.stat().st_size / 1000

@@ -9,14 +9,18 @@ import json
 import os
 import re
 import runpy
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
+import typer
 from commandline import CommandLine
 
 from missionfsm.app.docpages import regenerate
+from missionfsm.cli import app
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
@@ -119,6 +123,47 @@ def test_shell_that_is_shown_runs(script: str, tmp_path: Path) -> None:
             assert re.sub(r"\d+", "N", found) in re.sub(r"\d+", "N", ran.stdout)
             assert ran.stdout.startswith("violates: bear.mission missionfsm reference 1")
             assert "\nfault.jsonl: violates: bear.mission" in ran.stdout
+
+
+ENDS = frozenset(("|", "||", "&&", ">", "--", ";"))
+"""Where a shell, or an adapter, goes on."""
+
+
+def shown_commands(text: str) -> list[list[str]]:
+    """The words of our commands in the shell and console blocks of a page, each up to where a shell goes on."""
+    found = []
+    for kind, block in BLOCK.findall(text):
+        if kind not in ("bash", "console"):
+            continue
+        for line in block.replace("\\\n", " ").splitlines():
+            after = re.match(r"(?:\$ )?(missionfsm .*)", line)
+            if after:
+                words = shlex.split(after[1], comments=True)
+                end = min(
+                    (at for at, one in enumerate(words) if one in ("|", "||", "&&", ">", "--", ";")), default=None
+                )
+                found.append(words[1:end])
+    return found
+
+
+@pytest.mark.parametrize("page", sorted(EVERY_PAGE), ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_command_that_is_shown_is_one(page: Path) -> None:
+    """What a page shows of the command line is a command that there is, with options that it has."""
+    group = typer.main.get_group(app)
+    for name, *rest in shown_commands(page.read_text()):
+        if name.startswith("-"):
+            continue
+        command = group.commands[name]
+        assert [one for one in rest if one.startswith("--") and one not in known(command)] == [], (name, *rest)
+
+
+def known(command: click.Command) -> set[str]:
+    return {option for one in command.params for option in (*one.opts, *one.secondary_opts)}
+
+
+def test_commands_that_are_shown_are_found() -> None:
+    """There are such commands, so that the test above tests something."""
+    assert len([one for page in EVERY_PAGE for one in shown_commands(page.read_text())]) > 30
 
 
 @pytest.mark.parametrize("script", [script for path in PAGES for script in RUN_PYTHON.findall(path.read_text())])

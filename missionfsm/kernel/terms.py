@@ -23,6 +23,9 @@ Incident = Any
 View = Any
 """What one message shows; its names stand beside it."""
 
+Topic = Any
+"""What a channel of a stream or a connection is about."""
+
 Content = Any
 """What one message that came says; its names stand beside it."""
 

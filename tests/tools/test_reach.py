@@ -6,8 +6,11 @@ import itertools
 import random
 
 import pytest
+from attrs import evolve
 
 from missionfsm.bear.mission.matrix import MATRIX
+from missionfsm.bear.status.matrix import OFFLINE, ONE, PLACE, SOME
+from missionfsm.bear.status.state import STATE_PARTS, TOPICAL, Endpoint
 from missionfsm.systems import system
 from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.conform import FILLS, Plan, conform
@@ -15,7 +18,9 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import fill
 from missionfsm.tools.reference.subject import ReferenceSubject
 
-MISSION = system("bear.mission")
+MISSION, STATUS = system("bear.mission"), system("bear.status")
+ONLY_SO = {("carti state", "changes")}
+"""What a robot that carries trays does not do: there is one conveyor state to report."""
 KINDS = {
     "base": ("base navigate", "base navigate-auto"),
     "servi": (
@@ -84,10 +89,38 @@ def test_what_was_met_too_seldom_is_told() -> None:
     assert reached.to_json() == {"cells": 40, "holes": holes, "never": ["cleared"]}
 
 
+@pytest.mark.long
+def test_every_subscription_is_watched_while_everything_changes() -> None:
+    """Each subscription to one robot, to several and to a location sees each part that it shows change in every way."""
+    run = Run.of(STATUS, ReferenceSubject(STATUS))
+    assert run.reach is not None
+    assert fill(run, random.Random(1), FILLS, 40)
+    assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
+    wholes = {f"{Endpoint.ROBOT.value} to {whom}" for whom in (ONE, SOME, PLACE)}
+    parts = {part.replace("_", " ") for part in STATE_PARTS}
+    expected = {
+        (situation, f"{part} {change}, of a watched robot")
+        for situation in wholes
+        for part in parts
+        for change in ("changes", "is unset")
+        if (part, change) not in ONLY_SO
+    }
+    assert expected - set(run.reach.times) == set()
+    expected = {
+        (f"{endpoint.value} to {whom}", f"{part.replace('_', ' ')} {change}, of a watched robot{offline}")
+        for endpoint, part in TOPICAL.items()
+        for whom in (ONE, SOME, PLACE)
+        for change in ("changes", "is unset", "comes up", "comes again")
+        for offline in ("", OFFLINE)
+        if endpoint is not Endpoint.ONLINE
+    }
+    assert expected - set(run.reach.times) == set()
+
+
 def test_a_system_that_names_no_situation_has_no_matrix() -> None:
     """Nothing is told of situations that nobody names."""
-    status = system("bear.status")
-    verdict = conform(status, ReferenceSubject(status), plan=Plan(1, 1, 1, 5), seed=1, advice=False)
+    nameless = evolve(STATUS, matrix=None)
+    verdict = conform(nameless, ReferenceSubject(nameless), plan=Plan(1, 1, 1, 5), seed=1, advice=False)
     assert (verdict.reach, verdict.to_json()["reach"]) == (None, None)
     assert "situations" not in str(verdict)
 

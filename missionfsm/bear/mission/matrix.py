@@ -21,8 +21,8 @@ MANY = 4
 _BATCHES = ("CreateMissionBatch", "AppendMissionBatch")
 
 
-def situation(robot: Robot) -> str | None:
-    """The situation that a robot is in; None where it cannot start, or does not start what waits."""
+def situation(robot: Robot, _: object = ()) -> str | None:
+    """The situation that a robot is in, whoever watches; None where it cannot start, or does not start what waits."""
     if robot.world.blocked:
         return None
     if robot.active is None:
@@ -63,7 +63,7 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
 }
 
 
-def columns(robot: Robot, asked: Request | Happening, refs: tuple[int | None, ...]) -> tuple[str, ...]:
+def columns(robot: Robot, _: object, asked: Request | Happening, refs: tuple[int | None, ...]) -> tuple[str, ...]:
     """The kinds of actions that a request or an event is an example of, to a robot."""
     if isinstance(asked, Happening):
         return _of_event(asked)

@@ -106,7 +106,7 @@ REPORTS: tuple[tuple[str, tuple[JSON, ...]], ...] = (
     ("mission", MISSIONS),
     ("twist", TWISTS),
     ("pose", (*POSES, None)),
-    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}})),
+    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}}, None)),
     ("cartiState", (CONVEYOR, None)),
     ("localizationState", ({"state": "STATE_SUCCEEDED"},)),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from missionfsm.bear.status.alphabet import alphabet
 from missionfsm.bear.status.codec import CODEC
+from missionfsm.bear.status.matrix import MATRIX
 from missionfsm.bear.status.mutations import BENDS, TWISTS
 from missionfsm.bear.status.pictures import SKETCHES
 from missionfsm.bear.status.shapes import shapes
@@ -12,7 +13,15 @@ from missionfsm.bear.status.state import SYSTEM as NAME
 from missionfsm.kernel.system import System
 
 SYSTEM = System(
-    NAME, SPEC, CODEC, alphabet, message_mutations=BENDS, step_mutations=TWISTS, sketches=SKETCHES, shapes=shapes
+    NAME,
+    SPEC,
+    CODEC,
+    alphabet,
+    message_mutations=BENDS,
+    step_mutations=TWISTS,
+    sketches=SKETCHES,
+    shapes=shapes,
+    matrix=MATRIX,
 )
 
 __all__ = ["SYSTEM"]

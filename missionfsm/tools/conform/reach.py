@@ -7,15 +7,17 @@ situation × kind that comes up in some conversation is to be met `OFTEN` times.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+import random
+from collections.abc import Hashable, Iterator
 from typing import Any
 
 from attrs import define, field, frozen
 
 from missionfsm.kernel.alphabet import ANY_NAME
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.matrix import Matrix, Open
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Incident
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.actions import CANCEL, Action, Bindings, NameRef, filled
@@ -32,13 +34,14 @@ Cell = tuple[str, str]
 
 @frozen
 class Candidate:
-    """Something that could be done now, and the cells that it would meet."""
+    """Something that could be done now, the cells that it would meet, and of a drive what happens."""
 
     method: str
     params: JSON
     name: NameRef | str | None
     picks: Bindings
     cells: tuple[Cell, ...]
+    event: Incident | None = None
 
 
 @define(eq=False)
@@ -71,12 +74,13 @@ class Reach:
         moves = judge.automaton.moves
         explanations = judge.belief.node.explanations
         here = rested(moves, explanations[0])
-        name = self.matrix.situation(here.state)
-        if len(explanations) > ALIKE or any(
-            self.matrix.situation(rested(moves, one).state) != name for one in explanations[1:]
-        ):
+        name = self._situation(here)
+        if len(explanations) > ALIKE or any(self._situation(rested(moves, one)) != name for one in explanations[1:]):
             return None, here
         return name, here
+
+    def _situation(self, here: Explanation) -> str | None:
+        return self.matrix.situation(here.state, opened(here))
 
     def note(self, conversation: Conversation, action: Action) -> None:
         """An action is about to be done."""
@@ -96,7 +100,7 @@ class Reach:
             what = self._what(action)
             if action.method == "drive" and not self.system.spec.drives[what.name].steps(here.state, what, ()):
                 return  # it cannot happen there
-            columns = self.matrix.columns(here.state, what, refs)
+            columns = self.matrix.columns(here.state, opened(here), what, refs)
         for column in columns:
             self.times[situation, column] = self.times.get((situation, column), 0) + 1
 
@@ -112,19 +116,32 @@ class Reach:
                 self._read[key] = codec.request(action.method, rest)
         return self._read[key]
 
-    def candidates(self, conversation: Conversation, world: int) -> list[Candidate]:
-        """What could be done now in cells that were met too seldom, those that were met least often."""
+    def choose(self, conversation: Conversation, world: int, draw: random.Random) -> Candidate | None:
+        """Something to do now in a cell that was met too seldom, one of those that were met least often."""
         situation, here = self.situation(conversation)
         if situation is None:
-            return []
-        found: list[Candidate] = []
+            return None
+        left: list[Candidate] = []
         for one in self._possible(conversation, here, world, situation):
-            for cell in one.cells:
-                self.times.setdefault(cell, 0)
-            if any(self.times[cell] < OFTEN for cell in one.cells):
-                found.append(one)
-        seldom = min((self._least(one) for one in found), default=0)
-        return [one for one in found if self._least(one) == seldom]
+            # Whether something happens is dear to tell: it is asked of cells that are new, and of what is chosen.
+            if self.times.keys() >= set(one.cells) or self._happens(here, one):
+                for cell in one.cells:
+                    self.times.setdefault(cell, 0)
+                left.append(one)
+        while left:
+            # Another stream may make another situation: as long as there is something else to do here, it waits.
+            here_still = [one for one in left if one.method not in (*self.system.codec.streams, CANCEL.method)] or left
+            seldom = min(map(self._least, here_still))
+            some = [one for one in here_still if self._least(one) == seldom]
+            chosen = some[draw.randrange(len(some))]
+            if self._happens(here, chosen):
+                return chosen
+            left = [one for one in left if one is not chosen]
+        return None
+
+    def _happens(self, here: Explanation, one: Candidate) -> bool:
+        event = one.event
+        return event is None or bool(tuple(self.system.spec.drives[event.name].steps(here.state, event, ())))
 
     def _least(self, one: Candidate) -> int:
         return min(self.times[cell] for cell in one.cells)
@@ -143,28 +160,28 @@ class Reach:
             for position, number in enumerate(here.names)
             if belief.name(number) in given
         ]
-        columns = functools.partial(self.matrix.columns, here.state)
+        columns = functools.partial(self.matrix.columns, here.state, opened(here))
         for method, calls in self.guide.calls[world].items():
             for call in calls if method not in absent else ():
                 for where, name in names if call.named else ((None, None),):
                     kinds = columns(call.request, (where,) if call.named else ())
-                    if kinds:
-                        cells = tuple((situation, kind) for kind in kinds)
+                    cells = tuple((situation, kind) for kind in kinds)
+                    if self._lack(cells):
                         yield Candidate(method, call.prompt.params, name, (), cells)
         explanations = conversation.judge.belief.node.explanations
         for event, drive in ((event, drive) for some in self.guide.events[world].values() for drive, event in some):
             cells = tuple((situation, kind) for kind in columns(event, ()))
             does = self.system.spec.drives[event.name]
-            if (
-                any(self.times.get(cell, 0) < OFTEN for cell in cells)
-                and not any(does.waits(one.state) for one in explanations)
-                and does.steps(here.state, event, ())
-            ):
-                yield Candidate("drive", drive, None, (), cells)
+            if self._lack(cells) and not any(does.waits(one.state) for one in explanations):
+                yield Candidate("drive", drive, None, (), cells, event)
         streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
         if streams:
-            cell = (situation, CANCEL.method)
-            yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), (cell,))
+            cells = ((situation, CANCEL.method),)
+            if self._lack(cells):
+                yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cells)
+
+    def _lack(self, cells: tuple[Cell, ...]) -> bool:
+        return any(self.times.get(cell, 0) < OFTEN for cell in cells)
 
     @property
     def met(self) -> int:
@@ -183,6 +200,14 @@ class Reach:
             },
             tuple(situation for situation in self.matrix.ways if situation not in met),
         )
+
+
+def opened(here: Explanation) -> Open:
+    """What the channels of each stream or connection that is open are about."""
+    found: dict[int, list[Hashable]] = {}
+    for channel in here.channels:
+        found.setdefault(channel.name, []).append(channel.topic)
+    return tuple(map(tuple, found.values()))
 
 
 def _position(conversation: Conversation, here: Explanation, name: NameRef | str) -> int | None:

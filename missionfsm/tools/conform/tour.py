@@ -107,10 +107,9 @@ def _filled(  # noqa: PLR0913 - what one conversation needs
         return None
     before = reach.met
     for _ in range(steps):
-        candidates = [] if run.over or run.enough() else reach.candidates(run.conversation, world)
-        if not candidates:
+        one = None if run.over or run.enough() else reach.choose(run.conversation, world, draw)
+        if one is None:
             break
-        one = candidates[draw.randrange(len(candidates))]
         if not (run.act(one.method, one.params, one.name, one.picks) and run.settle()):
             return None
     return reach.met - before if run.gather() else None

@@ -1,0 +1,182 @@
+"""In which situations of a fleet a tester should have asked what: who watches whom, and what then changes."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+
+from missionfsm.bear.status.messages import RobotConnection, RobotState
+from missionfsm.bear.status.samples import CONNECTIONS, CONVEYOR, at, by_ids, report
+from missionfsm.bear.status.state import (
+    GET,
+    STATE_PARTS,
+    TOPICAL,
+    Endpoint,
+    Fleet,
+    Happening,
+    Request,
+    Robot,
+)
+from missionfsm.bear.status.stream import Topic
+from missionfsm.bear.wire.protojson import camel
+from missionfsm.kernel.alphabet import Bounds, ScriptStep
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.matrix import Matrix
+
+NOBODY, SEVERAL = "nobody watches", "several streams are watched"
+ONE, SOME, PLACE = "one robot", "several robots", "a location"
+OFFLINE = " that is offline"
+AGAIN, UP = "comes again", "comes up"
+_SELECTIONS = {ONE: by_ids("r1"), SOME: by_ids("r1", "r2"), PLACE: at("L1")}
+
+Streams = tuple[tuple[Topic, ...], ...]
+"""The streams that are open, each as what its channels are about."""
+
+
+def situation(_: Fleet, streams: Streams) -> str:
+    """The situation that a fleet is in: which subscription is open, and whom it is to."""
+    if len(streams) != 1:
+        return SEVERAL if streams else NOBODY
+    (topics,) = streams
+    whom = PLACE if topics[0].location is not None else ONE if len(topics) == 1 else SOME
+    return f"{topics[0].endpoint.value} to {whom}"
+
+
+def columns(
+    fleet: Fleet, streams: Streams, asked: Request | Happening, _: tuple[int | None, ...] = ()
+) -> tuple[str, ...]:
+    """The kinds of actions that a request or an event is an example of."""
+    if isinstance(asked, Request):
+        return tuple(_of_request(fleet, streams, asked))
+    return tuple(_of_event(fleet, streams, asked))
+
+
+def _of_request(fleet: Fleet, streams: Streams, asked: Request) -> Iterator[str]:
+    kind = _whom(_outline(fleet), asked)
+    if not streams:
+        yield f"{asked.operation} of {kind}"
+    # What is watched has no say in whether a request is right: those that are will do.
+    elif asked.operation == GET:
+        if kind in (ONE, f"{ONE}{OFFLINE}"):
+            yield f"{GET} of {kind}"
+    elif kind in (ONE, SOME, PLACE):
+        watched = {topics[0].endpoint.value for topics in streams}
+        yield "the same subscription" if asked.operation in watched else "another subscription"
+
+
+@functools.lru_cache(maxsize=100)
+def _outline(fleet: Fleet) -> Fleet:
+    """All of a fleet that decides whom a request is about."""
+    return Fleet(tuple(map(_told, fleet.robots)), fleet.locations)
+
+
+def _told(robot: Robot) -> Robot:
+    said = RobotState(connection=robot.state.connection or RobotConnection()) if robot.seen else RobotState()
+    return Robot(robot.id, robot.location, robot.owned, said)
+
+
+@functools.lru_cache(maxsize=10_000)
+def _whom(fleet: Fleet, asked: Request) -> str:
+    """Whom a request is about, or what is wrong with it."""
+    if asked.malformed or asked.unknown_fields:
+        return "a malformed request"
+    if asked.location is not None:
+        location = fleet.location(asked.location)
+        if asked.by_ids:
+            return "robots and a location"
+        if location is None:
+            return "an unknown location"
+        whose = "a location" if location.owned else "somebody else's location"
+        return whose if fleet.at(asked.location) else f"{whose} without robots"
+    if not any(asked.ids):
+        return "nobody"
+    robots = [fleet.robot(one) for one in asked.ids]
+    if None in robots:
+        return "an unknown robot" if len(robots) == 1 else "an unknown robot and another"
+    if not all(one.owned for one in robots if one):
+        return "somebody else's robot" if len(robots) == 1 else "somebody else's robot and another"
+    if asked.repeated:
+        return "the same robot twice"
+    if len(robots) > 1:
+        return SOME
+    (robot,) = (one for one in robots if one)
+    return f"{ONE}{_situation(robot)}"
+
+
+def _situation(robot: Robot) -> str:
+    return OFFLINE if robot.offline else "" if robot.seen else " that never reported anything"
+
+
+def _of_event(fleet: Fleet, streams: Streams, event: Happening) -> Iterator[str]:
+    robot = fleet.robot(event.robot)
+    if robot is None:
+        yield event.name
+        return
+    topics = [one for topics in streams for one in topics if one.robot == robot.id and _follows(one, robot)]
+    whose = "a watched robot" if topics else "a robot that nobody watches"
+    offline = OFFLINE if robot.offline and topics else ""
+    if event.name == "move":
+        yield f"{whose} {'stays where it is' if event.value == robot.location else 'moves'}"
+    elif event.name != "report":
+        yield f"{event.name} of {whose}{offline}"
+    elif not any(event.part in _shown(one.endpoint) for one in topics):
+        yield f"{whose} reports what is not shown"
+    else:
+        change = _change(robot.part(event.part), event.value)
+        # Of the many parts of a robot's whole state any will do for what is the same for all.
+        whole = any(one.endpoint is Endpoint.ROBOT for one in topics)
+        many = whole and (offline or change in (AGAIN, UP))
+        yield f"{'a part' if many else event.part.replace('_', ' ')} {change}, of {whose}{offline}"
+
+
+def _follows(topic: Topic, robot: Robot) -> bool:
+    return topic.member if topic.location is None else topic.member or topic.location == robot.location
+
+
+def _shown(endpoint: Endpoint) -> tuple[str, ...]:
+    return (TOPICAL[endpoint],) if endpoint in TOPICAL else STATE_PARTS
+
+
+def _change(before: object, after: object) -> str:
+    if before == after:
+        return AGAIN
+    return UP if before is None else "is unset" if after is None else "changes"
+
+
+def _reported(part: str, value: JSON) -> ScriptStep:
+    return ScriptStep("drive", report("r1", part, value))
+
+
+_OFF = _reported("connection", CONNECTIONS[1])
+_CARTI = _reported("cartiState", CONVEYOR)
+_SETTLE = ScriptStep("settle")
+
+
+def _forgets(*parts: str) -> tuple[ScriptStep, ...]:
+    return (*(_reported(camel(part), None) for part in parts), _SETTLE)
+
+
+def _ways() -> Iterator[tuple[str, tuple[tuple[ScriptStep, ...], ...]]]:
+    yield NOBODY, ((), (_OFF, _SETTLE))
+    for endpoint in Endpoint:
+        shown = _shown(endpoint)
+        others = tuple(part for part in shown if part != "connection")
+        for whom, selection in _SELECTIONS.items():
+            begun = (ScriptStep(endpoint.value, selection), _SETTLE)
+            ways = (
+                begun,
+                (*begun, _CARTI, _SETTLE),
+                (*begun, *_forgets(*shown)),
+                (*begun, _OFF, *_forgets(*others)),
+            )
+            yield f"{endpoint.value} to {whom}", ways
+    battery, robot = (ScriptStep(one.value, _SELECTIONS[ONE]) for one in (Endpoint.BATTERY, Endpoint.ROBOT))
+    yield (
+        SEVERAL,
+        ((battery, battery, _SETTLE), (battery, robot, _CARTI, _SETTLE), (battery, robot, *_forgets(*STATE_PARTS))),
+    )
+
+
+WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = dict(_ways())
+
+MATRIX = Matrix(situation, columns, WAYS, Bounds())

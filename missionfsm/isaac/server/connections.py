@@ -5,9 +5,10 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import Moves, acknowledged, closed, ends, lost, started, untimed
+from missionfsm.isaac.server.lifecycle import acknowledged, closed, ends, lost, untimed
 from missionfsm.isaac.server.readings import (
     AI_07,
     AI_09,

@@ -6,28 +6,26 @@ The names of a state are, for each mission, its handle and its identifier, and t
 from __future__ import annotations
 
 import functools
-import itertools
 from collections.abc import Hashable, Iterator, Mapping
 
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
+from missionfsm.isaac.server.clocks import started, zero_means
 from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe, later
+from missionfsm.isaac.server.dispatch import urgent
 from missionfsm.isaac.server.independence import Part, concerned, parts
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Passes, Statuses, Submission
-from missionfsm.isaac.server.lifecycle import closed, started, urgent, zero_means
+from missionfsm.isaac.server.lifecycle import closed
+from missionfsm.isaac.server.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.isaac.server.readings import (
-    AI_02,
-    AI_04,
     AI_05,
     AI_18_UNNAMED,
     AI_19,
     AI_22_STARTED,
-    AI_25_HEADER,
-    AI_28_CONFIG,
     AI_39,
     AMBIGUITIES,
 )
@@ -40,25 +38,23 @@ from missionfsm.isaac.server.state import (
     RUN,
     START,
     SYSTEM,
-    UNDER_WAY,
     Mission,
     Move,
-    Sends,
     Server,
     Status,
     emissions,
     topic,
 )
+from missionfsm.isaac.server.stream import agrees, matches, may_be_called, shown
 from missionfsm.isaac.server.time import calmed, passes, settled, unseen
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
-from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
-from missionfsm.kernel.spec import Delivery, Drive, Invariant, Spec
-from missionfsm.kernel.step import Match, Mismatch, Opening, Step
+from missionfsm.kernel.spec import Delivery, Drive, Spec
+from missionfsm.kernel.step import Opening, Step
 
 
 def _step(
@@ -97,7 +93,7 @@ def _outcomes(
     refs: tuple[int | None, ...],
 ) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
-        return tuple(_shown(server))
+        return tuple(shown(server))
     return _submitted(operations["submit"], server, request, tuple(_mission_at(server, ref) for ref in refs))
 
 
@@ -269,156 +265,13 @@ def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
 
 
 def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
-    shown = None if focus.answer is None else focus.answer.shape
-    if not isinstance(shown, tuple) or len(shown) != len(server.missions):
+    seen = None if focus.answer is None else focus.answer.shape
+    if not isinstance(seen, tuple) or len(seen) != len(server.missions):
         return ()
     for part in parts(server):
-        if any(not _may_be_called(server.missions[index], shown[index]) for index in part.missions):
+        if any(not may_be_called(server.missions[index], seen[index]) for index in part.missions):
             return _silent_in(server, part)
     return ()
-
-
-def _may_be_called(mission: Mission, word: object) -> bool:
-    """Whether a mission that stands where it stands is called so under some reading."""
-    words = {_word(mission, names, waiting) for names in AI_02.readings for waiting in AI_04.readings}
-    return word in words or ("lost" in words and word in ("failed", "aborted"))
-
-
-# What is seen.
-
-_CANCELED = {"a": "canceled", "b": "failed", "c": "canceled"}
-_ABORTED = {"a": "aborted", "b": "failed", "c": "timed out"}
-"""AI-02: how missions are called that were cancelled and that were aborted."""
-
-
-def _word(mission: Mission, names: str, waiting: str) -> str:
-    """How a mission is shown under AI-02 read as `names` and AI-04 as `waiting`."""
-    if mission.status is Status.CANCELED:
-        return _CANCELED[names]
-    if mission.status is Status.ABORTED:
-        return _ABORTED[names]
-    if mission.status is Status.QUEUED and (mission.waits or mission.doomed):
-        return {"a": "queued", "b": "created"}[waiting]
-    return "lost" if mission.status is Status.LOST else mission.status.value.lower()
-
-
-def _shown(server: Server) -> Iterator[Step]:
-    """The answers to ``statuses``, one for each way in which the readings name what is there."""
-    found: dict[tuple[str, ...], tuple[str, str]] = {}
-    for names, waiting in itertools.product(AI_02.readings, AI_04.readings):
-        shape = tuple(_word(one, names, waiting) for one in server.missions)
-        before = found.get(shape, ("", ""))
-        found[shape] = (before[0] + names * (names not in before[0]), before[1] + waiting * (waiting not in before[1]))
-    handles = tuple(2 * index for index in range(len(server.missions)))
-    told = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
-    quiet = calmed(server)
-    for shape, letters in sorted(found.items(), key=lambda one: AI_02.default not in one[1][0]):
-        assumes = tuple(
-            question[tuple(kept)]
-            for question, kept in zip((AI_02, AI_04), letters, strict=True)
-            if len(kept) < len(question.readings)
-        )
-        yield Step(quiet, answer=Answer(OK, shape), refs=handles, rules=told, assumes=assumes)
-
-
-def _agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
-    """Whether an answer is one that is allowed; how a mission is called whose robot was lost is nowhere said."""
-    if isinstance(came, Malformed):
-        return Mismatch(OPERATIONS["statuses"].promises[0].id, came.says)
-    if allowed == came:
-        return (Match(),)
-    if not isinstance(allowed, tuple) or not isinstance(came, tuple) or len(came) != len(allowed):
-        return Mismatch(OPERATIONS["statuses"].promises[0].id, "not every mission is shown, or too many are")
-    wrong = [
-        (one, other)
-        for one, other in zip(allowed, came, strict=True)
-        if one != other and not (one == "lost" and other in ("failed", "aborted"))
-    ]
-    if not wrong:
-        return (Match(),)
-    one, other = next((pair for pair in wrong if pair[1] == "canceled"), wrong[0])
-    besides = ", though no upstream of it has failed" if other == "canceled" else ""
-    return Mismatch(_broken(one, other), f"a mission that is {one} is shown as {other}{besides}")
-
-
-_GIVEN_UP = ("aborted", "timed out")
-_REPORTED = ("success", "failed")
-
-
-def _broken(one: str, other: str) -> str:
-    """The rule that a server breaks that shows a mission as `other` where it is `one`."""
-    pair = {one, other}
-    if "canceled" in pair:
-        return rules.CANCELED.id
-    if not pair.isdisjoint(_GIVEN_UP):
-        return (rules.OVERRUN if "running" in pair else rules.ABORTED).id
-    if "lost" in pair:
-        return rules.DROPPED.id
-    if not pair.isdisjoint(_REPORTED):
-        return (rules.LATE if pair <= set(_REPORTED) else rules.FINAL).id
-    if pair == {"started", "running"}:
-        return rules.RUNNING.id
-    return (OPERATIONS["statuses"].promises[0] if pair == {"queued", "created"} else rules.SENT).id
-
-
-def _matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
-    if isinstance(content, Malformed):
-        return Mismatch(rules.ENVELOPE.id, content.says)
-    if content.kind != "mission":
-        return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
-    wrong = [path for path in content.bare if path != "header.uuid"]
-    if wrong:
-        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)
-    if content.channel != view.channel:
-        says = f"the mission came on channel {content.channel!r}, not {view.channel!r}"
-        return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)
-    if content.what != view.config:
-        return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}", near=True)
-    assumes = (AI_28_CONFIG["b" if content.form == "text" else "a"], AI_25_HEADER["n" if content.bare else "s"])
-    told = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
-    return (Match(assumes, ((0, 0),) if content.named else (), told),)
-
-
-# What holds of every server, and what some server can come to.
-
-
-def _one_serves(server: Server) -> bool:
-    served = [one.name for one in server.links if one.serves]
-    return len(served) == len(set(served)) and None not in served
-
-
-INVARIANTS = (
-    Invariant("one-connection-serves-a-robot", "No robot is served on two connections.", _one_serves),
-    Invariant(
-        "what-is-sent-has-no-open-upstream",
-        "A mission that was sent waits for nothing, and no upstream of it has failed.",
-        lambda server: all(not one.waits and not one.doomed for one in server.missions if one.sent),
-    ),
-    Invariant(
-        "what-has-ended-has-no-clock",
-        "No clock runs for a mission that has ended.",
-        lambda server: all(not one.clocks for one in server.missions if one.status in ENDED),
-    ),
-    Invariant(
-        "what-is-under-way-was-sent",
-        "Only a mission that was sent is under way.",
-        lambda server: all(one.sent for one in server.missions if one.status in UNDER_WAY),
-    ),
-)
-
-
-def _some_mission_is(status: Status, server: Server) -> bool:
-    return any(one.status is status for one in server.missions)
-
-
-POSSIBILITIES = tuple(
-    Invariant(
-        f"a-mission-is-{status.name.lower()}",
-        f"Some mission is {status.name}.",
-        functools.partial(_some_mission_is, status),
-    )
-    for status in LIFECYCLE.states
-)
 
 
 def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | None, ...]) -> tuple[str, ...]:
@@ -469,7 +322,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         spontaneous=_spontaneous,
         silent_for=_silent_for,
         calmed=settled,
-        matches=_matches,
+        matches=matches,
         delivery=lambda _: _DELIVERY,
         closing=_closing,
         unopened=(rules.UNNAMED.id,),
@@ -483,7 +336,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         charts=(LIFECYCLE,),
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
-        answers=_agrees,
+        answers=agrees,
         abstraction=Abstraction(shape=shape, idle_shape=idle_shape, size=size, extent=extent, outline=outline),
         decided=functools.partial(specification, operations),
         rebuilt=specification,

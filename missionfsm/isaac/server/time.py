@@ -17,8 +17,9 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server.deciding import merged, split, ways
+from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, urgent
 from missionfsm.isaac.server.independence import Part, parts
-from missionfsm.isaac.server.lifecycle import forgotten, in_vain, lapses, possible, sends, strikes, untimed, urgent
+from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
 from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Move, Server
 from missionfsm.kernel.values import value

@@ -1,0 +1,249 @@
+"""What is sent next, and what of it follows at once. ``MissionSubmission › Robot Identification``.
+
+Every function takes a `Move` and gives the moves that it can lead to, each with the readings that it decided recorded
+in its state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from attrs import evolve
+
+from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.clocks import Moves, looks, started
+from missionfsm.isaac.server.deciding import split, ways
+from missionfsm.isaac.server.independence import Part
+from missionfsm.isaac.server.lifecycle import becomes, cancellations, ends, failures_that_cancel, forgotten, sent_again
+from missionfsm.isaac.server.readings import (
+    AI_03,
+    AI_03_WHEN,
+    AI_05,
+    AI_07,
+    AI_11,
+    AI_12,
+    AI_13,
+    AI_15,
+    AI_16_UNDER_WAY,
+    AI_19,
+    AI_24_WHOLE,
+    AI_36,
+    AI_39,
+    AI_39_ORDER,
+)
+from missionfsm.isaac.server.state import (
+    RUN,
+    START,
+    UNDER_WAY,
+    WAITS,
+    Link,
+    Mission,
+    Move,
+    Sends,
+    Server,
+    Status,
+)
+
+
+def lapses(state: Server, link: Link) -> list[Move]:
+    """AI-03.when p: what becomes of a doomed mission that a scheduling pass finds first in an idle robot's queue."""
+    if state.letters(AI_03_WHEN) != "p":
+        return []
+    own = [index for index, one in enumerate(state.missions) if one.robot == link.name]
+    queue = [index for index in own if state.missions[index].status is Status.QUEUED]
+    if not queue or not state.missions[queue[0]].doomed or busy(state, link):
+        return []
+    head = state.missions[queue[0]]
+    move, _ = split(Move(state), AI_03, failures_that_cancel(head))
+    if move is not None and head.waits:
+        move, _ = split(move, AI_36, "a")
+    return [] if move is None else [ends(move, queue[0], "cancel", rules.CANCELED.id)]
+
+
+def busy(state: Server, link: Link) -> set[str]:
+    """The channels of the missions that keep a connection's robot busy."""
+    apart = state.letters(AI_16_UNDER_WAY) == "m"  # what goes on on an older connection keeps nobody busy
+    return {
+        one.channel
+        for one in state.missions
+        if one.status in UNDER_WAY
+        and one.robot == link.name
+        and not (apart and one.link is not None and one.link != link.slot)
+    }
+
+
+def dispatches(move: Move, part: Part) -> Moves:
+    """Every way to send a mission now to a robot that is there; where that is left to later, the decision alone.
+
+    Robots make no difference to one another, unless they share missions that name none: the first comes first.
+    """
+    for link in move.state.links:
+        if link.serves and link.name is not None and link.slot in part.slots:
+            ways = tuple(dispatches_to(move, link))
+            yield from ways
+            if ways and "b" not in move.state.letters(AI_19):
+                return
+
+
+def dispatches_to(move: Move, link: Link) -> Moves:
+    """Every way to send a mission on a connection now."""
+    if any(one.robot is None and one.ready for one in move.state.missions):
+        anybody, nobody = split(move, AI_19, "b")
+        if anybody is not None and nobody is not None:
+            yield anybody
+            yield nobody
+            return
+    choices = list(_choices(move, link))
+    # Where it is decided whether anything may be sent, that it may be is decided although nothing is sent yet.
+    decides = any(index is None and chosen is not move for index, chosen in choices)
+    for index, chosen in choices:
+        if index is None:
+            if chosen is not move:
+                yield chosen
+            continue
+        now, later = split(chosen, AI_39, "a")
+        if now is not None:
+            yield from sends(now, link, index)
+        if later is not None and later.state.letters(AI_39) != chosen.state.letters(AI_39):
+            yield looks(later)
+        elif later is not None and decides and later.state != move.state:
+            yield later
+
+
+def possible(state: Server, link: Link) -> list[tuple[int, Move]]:
+    """What a server that looks now and then (AI-39 b) may send on a connection when it looks."""
+    return [(index, chosen) for index, chosen in _choices(Move(state), link) if index is not None]
+
+
+def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
+    """Missions that may be sent on a connection, each with what that decides; None for deciding to send nothing."""
+    missions = move.state.missions
+    own = [index for index, one in enumerate(missions) if one.robot == link.name]
+    if "b" in move.state.letters(AI_19):
+        own = [index for index, one in enumerate(missions) if one.robot in (link.name, None)]
+    queue = [index for index in own if missions[index].status is Status.QUEUED]
+    if not any(missions[index].ready for index in queue):
+        return
+    taken = busy(move.state, link)
+    if not taken:
+        yield from _from_free(move, queue)
+        return
+    apart = _lanes(missions, [index for index in queue if missions[index].channel not in taken])
+    holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
+    held, several = split(move, AI_11, holding)
+    if several is not None:
+        for letter, way in ways(several, AI_11, "b", "c"):
+            yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
+    if held is not None:
+        yield None, held
+
+
+def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
+    """The missions of a queue, those of each channel by themselves."""
+    lanes: dict[str, list[int]] = {}
+    for index in queue:
+        lanes.setdefault(missions[index].channel, []).append(index)
+    return list(lanes.values())
+
+
+def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
+    """What may be sent of several queues that do not wait for one another."""
+    missions = move.state.missions
+    surely = any(missions[lane[0]].ready for lane in lanes)
+    for lane in lanes:
+        for index, way in _from_lane(move, lane):
+            if index is not None or not surely:
+                yield index, way
+
+
+def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """Nothing is under way: the queue as one, or (AI-11 c) by channels, where that makes a difference."""
+    missions = move.state.missions
+    lanes = _lanes(missions, queue)
+    if len(lanes) == 1:
+        yield from _from_lane(move, queue)
+        return
+    first = queue[0]
+    if missions[first].ready:
+        yield first, move
+    found: dict[int | None, list[Move]] = {}
+    whole, apart = split(move, AI_11, "ab")
+    if whole is not None:
+        for index, way in _from_lane(whole, queue):
+            found.setdefault(index, []).append(way)
+    if apart is not None:
+        for index, way in _from_lanes(apart, lanes):
+            found.setdefault(index, []).append(way)
+    for index, moves in found.items():
+        if index != first:
+            yield from ((index, way) for way in dict.fromkeys(moves))
+
+
+def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """Of missions in the order of submission: the first that is ready, or (AI-13 b) another that is."""
+    missions = move.state.missions
+    ready = [index for index in queue if missions[index].ready]
+    if not ready:
+        return
+    overtakes, holds = (move, None) if ready[0] == queue[0] else split(move, AI_12, "a")
+    if overtakes is not None:
+        yield ready[0], overtakes
+    if len(ready) > 1:
+        any_order, _ = split(move, AI_13, "b")
+        free = None if any_order is None else split(any_order, AI_12, "a")[0]
+        if free is not None:
+            yield from ((index, free) for index in ready[1:])
+    if holds is not None:
+        yield None, holds
+
+
+def sends(move: Move, link: Link, index: int) -> Moves:
+    """A mission is sent on a connection."""
+    mission = move.state.missions[index]
+    if mission.start == 0 and "a" in move.state.letters(AI_05):
+        # Nothing can be acknowledged before no time has passed, so a server may as well not set the robot going.
+        ours, _ = split(move, AI_05, "a")
+        needs = None if ours is None else split(ours, AI_07, "ab")[0]
+        needs = None if needs is None else split(needs, AI_24_WHOLE, "x")[0]
+        if needs is not None:
+            yield ends(needs, index, "time out", rules.ABORTED.id)
+    if mission.robot is None:
+        chosen, _ = split(move, AI_19, "b")
+        if chosen is None:
+            return
+        move = chosen.mission(index, robot=link.name)
+    move = becomes(move, index, "send").mission(index, link=link.slot, sent=True)
+    for kind, since in ((START, "send"), (RUN, "send"), (RUN, WAITS)):
+        move = started(move, index, kind, since)
+    because = [rules.SENT.id, rules.UNNAMED.id]
+    if mission.depends:
+        because.append(rules.UPSTREAM.id)
+    view = Sends(mission.channel, mission.config)
+    yield move.emit(link.slot, index, view).to(move.state, *because)
+
+
+def urgent(move: Move, part: Part) -> tuple[Move, ...]:
+    """What follows from where things stand in a part of the server, one thing at a time."""
+    due = tuple(cancellations(move, part))
+    return due or tuple(dispatches(move, part))
+
+
+def in_vain(move: Move, gone: Link) -> Moves:
+    """AI-39.order s: a pass sends on a connection that has dropped, and then notices that."""
+    choices = _choices(move, gone) if move.state.letters(AI_39) == "b" else ()
+    for index, chosen in choices:
+        here, _ = (None, None) if index is None else split(forgotten(chosen, gone), AI_39_ORDER, "s")
+        if index is None or here is None:
+            continue
+        for after in sends(here, gone, index):
+            unheard = evolve(after, sent=move.sent)
+            if after.state.missions[index].status is not Status.STARTED:
+                yield unheard
+                continue
+            if gone.slot >= 0:
+                unheard = after
+            for letter, way in ways(unheard.mission(index, link=None), AI_15, "c", "a", "b"):
+                if letter == "c":
+                    yield ends(way, index, "lose")
+                else:
+                    yield way if letter == "a" else sent_again(way, index)

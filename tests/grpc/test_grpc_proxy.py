@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import concurrent.futures
 import json
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -343,15 +345,20 @@ def test_a_page_that_cannot_be_written_is_told_once(tmp_path: Path) -> None:
 
 
 def test_a_robot_that_is_killed_and_comes_back_is_served_again(lines: list[JSON]) -> None:
-    """Calls in between are UNAVAILABLE and streams end with it; the proxy lives on and finds the new robot."""
-    with serve("bear.mission") as robot:
-        relay, port = Relay(robot.target, lines.append), robot.port
+    """Streams end with UNAVAILABLE, and so do calls in between; the proxy lives on and finds the new robot."""
+    command = [sys.executable, "-m", "missionfsm", "serve", "bear.mission", "--grpc", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as robot:
+        assert robot.stdout is not None
+        port = int(robot.stdout.readline().split(";")[0].rpartition(":")[2])
+        relay = Relay(f"127.0.0.1:{port}", lines.append)
         method = METHODS["SubscribeMissionStatus"]
         stream = relay.channel.unary_stream(path(method))(b"")
         next(stream)
-    with pytest.raises(grpc.RpcError) as ended:
-        next(stream)
-    assert ended.value.code() in (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.CANCELLED)
+        robot.kill()
+    for ask in (lambda: next(stream), lambda: relay.call("ChargeRobot")):
+        with pytest.raises(grpc.RpcError) as ended:
+            ask()
+        assert ended.value.code() is grpc.StatusCode.UNAVAILABLE
     with serve("bear.mission", port=port):
         assert eventually(lambda: _answers(relay))
     assert [line for line in lines if line.get("closed")] != []

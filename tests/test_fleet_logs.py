@@ -104,6 +104,15 @@ def test_patterns_are_taken_where_no_file_has_that_name(command_line: CommandLin
     assert (ended.status, ended.err) == (2, f"missionfsm: {tmp_path}/*.log: no file fits this pattern\n")
 
 
+def test_a_log_that_is_missing_is_said_to_be(command_line: CommandLine, tmp_path: Path) -> None:
+    """A link that leads nowhere is told, a folder that is called like a log is looked into, and the rest is judged."""
+    written(tmp_path / "day.jsonl" / "a.jsonl", FIRST, *RIGHT)
+    (tmp_path / "b.jsonl").symlink_to("nowhere")
+    ended = command_line("check", tmp_path)
+    assert (ended.status, ended.err) == (2, f"missionfsm: {tmp_path}/b.jsonl: No such file or directory\n")
+    assert ended.out.startswith("1 judged: 1 conforms, ")
+
+
 def test_five_hundred_robots_are_summed_up_in_twenty_lines(command_line: CommandLine, tmp_path: Path) -> None:
     """One file of many robots is summed up as a folder is: how many conform, what is broken where first."""
     path = written(

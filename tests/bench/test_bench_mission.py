@@ -204,14 +204,23 @@ def test_bench_mission_events_of_a_log_that_has_not_all(benchmark: Any, log: Pat
     )
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_bench_mission_a_folder_of_days(benchmark: Any, tmp_path: Path, jobs: int) -> None:
-    """Lines a second of four logs in one folder, judged in so many processes."""
-    for robot in range(4):
-        written(tmp_path / f"{robot}.jsonl", LINES // 4)
-    found = benchmark.pedantic(lambda: list(judge_files(histories([str(tmp_path)]), {}, jobs=jobs)), rounds=1)
-    assert all(verdict.conforms for one in found for _, verdict in one.verdicts)
-    print(f"\n{LINES / benchmark.stats.stats.min:,.0f} lines a second in {jobs} processes")
+@pytest.mark.parametrize("robots", ["files", "in one file"])
+def test_bench_mission_a_folder_of_days(benchmark: Any, tmp_path: Path, robots: str) -> None:
+    """Four robots' logs, each a file or all in one, in two processes: as a ratio to the same in one process."""
+    if robots == "files":
+        for robot in range(4):
+            written(tmp_path / f"{robot}.jsonl", LINES // 4)
+    else:
+        days = [({**line, "robot": f"r{robot}"} for line in day(LINES // 4)) for robot in range(4)]
+        with (tmp_path / "day.jsonl").open("wb") as file:
+            file.write(orjson.dumps(HEAD) + b"\n")
+            file.writelines(orjson.dumps(line) + b"\n" for lines in zip(*days, strict=True) for line in lines)
+    files = histories([str(tmp_path)])
+    alone = rate(LINES, lambda: list(judge_files(files, {}, jobs=1)))
+    found = benchmark.pedantic(lambda: list(judge_files(files, {}, jobs=2)), rounds=3)
+    assert [verdict.conforms for one in found for _, verdict in one.verdicts] == [True] * 4
+    together = LINES / benchmark.stats.stats.min
+    print(f"\n{alone:,.0f} lines a second in one process, {together:,.0f} in two: {together / alone:.2f} times")
 
 
 def test_bench_mission_memory_of_a_long_file(benchmark: Any, tmp_path: Path) -> None:

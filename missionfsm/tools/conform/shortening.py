@@ -44,7 +44,7 @@ def shortened(run: Run, found: Conversation, *, known: Callable[[Conversation], 
     best = [found]
     seen, tried = 0, 0
     try:
-        again = _again(run, found, found.judge.automaton)
+        again = run.replay(found.world, tuple(found.actions), found.judge.automaton)
         attempt = _Attempt(run, found, 1 if shows(again) else TRIES)
         _shorten(run, found, attempt, best, shows)
         while tried < TRIES and not run.enough():

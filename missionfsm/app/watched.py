@@ -113,7 +113,8 @@ class _Subscription:
         robots = self.status.robots if self.status else len(self.missions)
         repeats, redelivered = (sum(getattr(one, name) for one in monitors) for name in ("repeats", "redelivered"))
         notes = [f"{robots} robots, {repeats} messages that say nothing new, {self.flagged} tolerated oddities"]
-        unchecked = [rule for rule in _concerned(spec, self.topic) if rule not in checked]
+        concerned = _concerned(spec, self.topic)
+        unchecked = [rule for rule in concerned if rule not in checked]
         notes.append(f"not checked, since no bare message can break them: {len(unchecked)} rules")
         if self.problems > 1:
             notes.append(f"{self.problems - 1} more problems in this stream")
@@ -133,6 +134,7 @@ class _Subscription:
             unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
             untested=Untested(drives=tuple(spec.drives), unseen=True, all_drives=len(spec.drives)),
             notes=tuple(notes),
+            uncounted=frozenset(rule.id for rule in concerned if rule in checked) if self.events else frozenset(),
         )
 
 

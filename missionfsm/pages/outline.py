@@ -32,6 +32,7 @@ class Standing(enum.Enum):
     VIOLATED = "violated"
     AMBIGUOUS = "ambiguous"
     EXERCISED = "exercised"
+    UNCOUNTED = "not counted"
     NOT_REACHED = "not reached"
     OTHERWISE = "read otherwise"
     WAIVED = "waived"
@@ -46,6 +47,7 @@ MEANINGS: Mapping[Standing, str] = {
     Standing.VIOLATED: "something that was observed breaks it",
     Standing.AMBIGUOUS: "it was exercised, and what was observed fits several readings of it",
     Standing.EXERCISED: "it was put to the test, and kept",
+    Standing.UNCOUNTED: "all messages were held against it, and nobody counted which of them could break it",
     Standing.NOT_REACHED: "nothing that was observed put it to the test",
     Standing.OTHERWISE: "it belongs to a reading that is not followed",
     Standing.WAIVED: "no rule follows from it; the specification says why",
@@ -61,12 +63,14 @@ class Evidence:
         violated: ids of the rules that are broken.
         readings: ambiguity id to the readings that are still possible, for those that mattered.
         rare: rule id to why it was exercised less often than it should be.
+        uncounted: ids of rules that are looked at in bare messages, without a count.
     """
 
     exercised: Mapping[str, int] = field(factory=dict)
     violated: frozenset[str] = frozenset()
     readings: Mapping[str, tuple[str, ...]] = field(factory=dict)
     rare: Mapping[str, str] = field(factory=dict)
+    uncounted: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Evidence:
@@ -75,6 +79,7 @@ class Evidence:
         readings: dict[str, tuple[str, ...]] = {}
         violated: set[str] = set()
         rare: dict[str, str] = {}
+        uncounted: set[str] = set()
         for verdict in verdicts:
             for rule, times in verdict.exercised.items():
                 exercised[rule] = max(times, exercised.get(rule, 0))
@@ -87,7 +92,8 @@ class Evidence:
             if verdict.violation:
                 violated |= {rule.id for rule in verdict.violation.rules}
             rare |= verdict.rare
-        return cls(exercised, frozenset(violated), readings, rare)
+            uncounted |= verdict.uncounted
+        return cls(exercised, frozenset(violated), readings, rare, frozenset(uncounted))
 
     def standing(self, rule: Rule) -> Standing:
         """How a rule fared."""
@@ -99,7 +105,9 @@ class Evidence:
                 return Standing.OTHERWISE
             if rule.id in self.exercised and left is not None and len(left) > 1:
                 return Standing.AMBIGUOUS
-        return Standing.EXERCISED if rule.id in self.exercised else Standing.NOT_REACHED
+        if rule.id in self.exercised:
+            return Standing.EXERCISED
+        return Standing.UNCOUNTED if rule.id in self.uncounted else Standing.NOT_REACHED
 
 
 @frozen

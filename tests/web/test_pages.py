@@ -7,11 +7,13 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from attrs import evolve
 
 from missionfsm import systems
+from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import UNCONSTRAINED, constrain
 from missionfsm.oracle.transcript import head
@@ -257,3 +259,16 @@ def test_a_page_counts_as_the_explorer_does(name: str) -> None:
     graph = Graph(one, found.bounds, UNCONSTRAINED).data()
     assert (graph["held"], sum(graph["shapes"].values())) == (found.states, found.states)
     assert set(graph["shapes"]) == {words for words, _, _ in graph["states"]}
+
+
+def test_a_page_on_bare_messages_calls_nothing_unreached_that_it_looks_at(tmp_path: Path) -> None:
+    """Rules that bare messages are held against are not counted, which is not to say that they were not reached."""
+    log = tmp_path / "battery"
+    log.write_text('{"metadata": {"sequenceNumber": "1"}, "batteryState": {"chargePercent": 50}}\n')
+    ((_, verdict),) = check_file(str(log))
+    evidence = Evidence.of([verdict])
+    rules = {rule.id: rule for rule in systems.system("bear.status").spec.all_rules}
+    broken = {rule.id for rule in verdict.violation.rules} if verdict.violation else set()
+    assert {evidence.standing(rules[one]) for one in verdict.uncounted - broken} == {Standing.UNCOUNTED}
+    others = {evidence.standing(rule) for one, rule in rules.items() if one not in verdict.uncounted | broken}
+    assert others == {Standing.NOT_REACHED}

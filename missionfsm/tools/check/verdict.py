@@ -171,6 +171,7 @@ class Verdict:
         stale: ids of rules whose violation was expected and was not met.
         rare: ids of rules that were exercised less often than they should be, to the reason.
         notes: what else there is to know about how the run went.
+        uncounted: ids of rules that all that came was held against, without counting what put them to the test.
         reach: in which situations what was asked; None where the system does not say which there are.
         advised: whether it was thought about experiments and about what came up seldom.
     """
@@ -196,6 +197,7 @@ class Verdict:
     stale: tuple[str, ...] = ()
     rare: Mapping[str, str] = field(factory=dict)
     notes: tuple[str, ...] = ()
+    uncounted: frozenset[str] = frozenset()
     reach: Reached | None = None
     advised: bool = True
 

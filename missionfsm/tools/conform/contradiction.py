@@ -7,10 +7,13 @@ from collections.abc import Mapping, Sequence
 from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Driven, Received
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.oracle.belief import Automaton
+from missionfsm.tools.check.eliminations import Elimination
+from missionfsm.tools.check.explain import ACCUSED
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Side, Violation
@@ -38,7 +41,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         if judge is None or ruling is None:
             notes.append(f"{letter} is ruled out: another reading had to be followed")
         else:
-            rules += ruling.rules
+            rules += ruling.rules or _exercised(judge, ruling)
             notes.append(f"{letter} is ruled out: {ruling}")
             last = judge
         if judge is not None:
@@ -46,13 +49,23 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
             shown.setdefault(id(judge), (judge, []))[1].append(says)
     sides = tuple(Side("; ".join(says), judge.history) for judge, says in shown.values())
     return Violation(
-        rules_in_words(spec, rules),
+        rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
         tuple(notes),
         last.history if last else (),
         sides=sides if len(sides) > 1 else (),
     )
+
+
+def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
+    """Ids of the rules that a message or a drive exercised which rules something out."""
+    event = ruling.event
+    content = event.content if isinstance(event, Received) else event.event if isinstance(event, Driven) else None
+    for symbol, edge in ruling.before.next.items() if ruling.before and content is not None else ():
+        if symbol[:2] == (type(event), content):
+            return judge.automaton.numbers[edge.exercises]
+    return ()
 
 
 def together(system: System, judges: Sequence[Judge]) -> Violation | None:

@@ -49,5 +49,5 @@ def outline(server: Server) -> Server:
         evolve(one, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks)) if one.clocks else one
         for one in server.missions
     )
-    links = tuple(evolve(one, early=(), held=0) if one.early or one.held else one for one in server.links)
+    links = tuple(evolve(one, early=(), held=(0, 0)) if one.early or one.held[1] else one for one in server.links)
     return Server(server.name_channel, missions, links, tolerance=server.tolerance)

@@ -167,7 +167,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
     """A connection that serves no robot says a name."""
     holder = move.state.serving(key)
     passes = "b" in move.state.letters(AI_39) and "s" in move.state.letters(AI_39_ORDER)
-    move = move.link(link.slot, name=key, held=LOOK if passes else 0)
+    move = move.link(link.slot, name=key, held=(LOOK, move.state.next_pass(0)) if passes else (0, 0))
     if holder is None:
         yield from _served(move, link)
         return

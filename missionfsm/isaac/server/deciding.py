@@ -57,7 +57,9 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
 
 def _in_order(server: Server) -> Server:
     """A server that takes up names and drops before it sends, or all at once."""
-    return evolve(server, gone=(), links=tuple(evolve(one, held=0) if one.held else one for one in server.links))
+    return evolve(
+        server, gone=(), links=tuple(evolve(one, held=(0, 0)) if one.held[1] else one for one in server.links)
+    )
 
 
 def _in_time(server: Server, mission: Mission) -> Mission:

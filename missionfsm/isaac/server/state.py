@@ -167,7 +167,8 @@ class Link:
         early: statuses that came before the name and are kept (AI-18.early b).
         over: the slot of the connection that it took over from, as long as no pass need have noticed that (AI-39 b).
         fresh: microseconds until a pass must have noticed it.
-        held: microseconds for which the pass that takes up its name may have sent before it did (AI-39.order s).
+        held: microseconds until the pass that sends to a name may be the one after that which takes it up, and until
+            it is (AI-39.order s).
         look: how many microseconds ago a scheduling pass may have come that sent or cancelled something here and of
             which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
     """
@@ -178,7 +179,7 @@ class Link:
     early: tuple[Report, ...] = ()
     over: int | None = None
     fresh: int = 0
-    held: int = 0
+    held: tuple[int, int] = (0, 0)
     look: int | None = None
 
 

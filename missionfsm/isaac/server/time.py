@@ -60,7 +60,9 @@ def passes(state: Server, time: int) -> tuple[Move, ...]:
 
 def _in_order(move: Move, part: Part) -> list[Move]:
     """AI-39.order is decided where a pass is about to send to a name that none need have taken up."""
-    held = any(link.held and link.slot in part.slots and _waits_for_pass(move.state, link) for link in move.state.links)
+    held = any(
+        link.held[1] and link.slot in part.slots and _waits_for_pass(move.state, link) for link in move.state.links
+    )
     return [way for _, way in ways(move, AI_39_ORDER, "n", "s")] if held else [move]
 
 
@@ -154,14 +156,14 @@ def _waits_quietly(state: Server, link: Link) -> bool:
 
 def _held(state: Server, link: Link) -> int:
     """Before when no pass sends on a connection since none has taken up its name (AI-39.order s), in microseconds."""
-    return link.held - state.tolerance if link.held and state.letters(AI_39_ORDER) == "s" else -EVER
+    return link.held[0] - state.tolerance if link.held[0] and state.letters(AI_39_ORDER) == "s" else -EVER
 
 
 def _pass(state: Server, slot: int, last: int) -> int:
     """Until when a scheduling pass has come for a connection that waits for one since a moment, in microseconds."""
     link = state.link(slot)
-    if link is not None and link.held:
-        last = max(last, state.slow + LOOK if state.slow else link.held)
+    if link is not None:
+        last = max(last, link.held[1])
     return state.next_pass(last) + state.tolerance
 
 
@@ -286,8 +288,9 @@ def _shifted(move: Move, time: int) -> Move:
             after = after.link(link.slot, look=time - link.look)
         if link.fresh:
             after = _noticed(after, link, time)
-        if link.held:
-            after = after.link(link.slot, held=max(0, link.held - time))
+        if link.held[1]:
+            first, last = link.held
+            after = after.link(link.slot, held=(max(0, first - time), max(0, last - time)))
     state = after.state
     if state.slow or state.gone:
         gone = tuple(_gone(one, time) for one in state.gone if one.fresh > time or (one.fresh and one.slot >= 0))

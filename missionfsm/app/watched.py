@@ -6,7 +6,7 @@ comes on one is never compared with what comes on another.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from attrs import define, field
 
@@ -134,8 +134,13 @@ class _Subscription:
             unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
             untested=Untested(drives=tuple(spec.drives), unseen=True, all_drives=len(spec.drives)),
             notes=tuple(notes),
-            uncounted=frozenset(rule.id for rule in concerned if rule in checked) if self.events else frozenset(),
+            uncounted=_looked_at(concerned, unchecked, self.events),
         )
+
+
+def _looked_at(concerned: Iterable[Rule], unchecked: Collection[Rule], messages: int) -> frozenset[str]:
+    """The ids of the rules that messages were held against, if there were any."""
+    return frozenset(rule.id for rule in concerned if messages and rule not in unchecked)
 
 
 def _concerned(spec: Spec, topic: str) -> tuple[Rule, ...]:

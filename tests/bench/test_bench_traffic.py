@@ -75,14 +75,16 @@ def written(path: Path, lines: Iterable[Any]) -> Path:
     return path
 
 
+@pytest.mark.parametrize("behind", [2, 8, sys.maxsize], ids=["2 behind", "8 behind", "ever more behind"])
 @pytest.mark.parametrize("readings", ["default", "all"])
 @pytest.mark.parametrize(("clients", "lines"), [(3, 200), (4, 500), (6, 500), (3, 2_000), (6, 2_000)])
-def test_bench_traffic_clients(tmp_path: Path, clients: int, lines: int, readings: str) -> None:
-    """Clients whose calls overlap, with streams, and a robot that moves by itself; nothing is lost."""
-    habits = Habits(clients=clients, lost=0, late=0, ends=0)
+def test_bench_traffic_clients(tmp_path: Path, clients: int, lines: int, readings: str, behind: int) -> None:
+    """Clients whose calls overlap, streams that lag, and a robot that moves by itself; nothing is lost."""
+    habits = Habits(clients=clients, lost=0, late=0, ends=0, behind=behind)
     decided = [f"--reading={one.id}={one.default}" for one in MISSION.spec.ambiguities] if readings == "default" else []
     path = written(tmp_path / "log.jsonl", busy(clients, lines, habits))
-    shown(f"{clients} clients, {readings} readings", path, *decided)
+    lag = f"streams up to {behind} behind" if behind < sys.maxsize else "streams ever more behind"
+    shown(f"{clients} clients, {lag}, {readings} readings", path, *decided)
 
 
 @pytest.mark.parametrize(("clients", "seeds"), [(2, 30), (3, 30), (5, 20)])

@@ -387,4 +387,5 @@ def take(
 
 def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
-    return step.after is not state or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)
+    moved = step.after is not state and step.after != state
+    return moved or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)

@@ -260,15 +260,14 @@ class Lookahead:
         passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
         places = {0}
         for position, message in enumerate(messages):
-            shown = [self._may_show(one, message) for one in owed]
             following: set[int] = set()
             for place in places:
                 for index in range(place, len(owed)):
-                    if shown[index]:
+                    if self._may_show(owed[index], message):
                         following.add(index if owed[index].stays else index + 1)
                     if not passable[index]:
                         break
-            if again and (any(shown) or (last is not None and self._may_show(last, message))):
+            if again and any(self._may_show(one, message) for one in (last, *owed) if one is not None):
                 following |= places
             if not following:
                 # What is owed before it has to go unsaid then, and the message to show what is to come.

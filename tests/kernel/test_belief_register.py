@@ -13,6 +13,7 @@ from toys import REGISTER, Request
 from missionfsm.kernel.history import Answer, Called, Event, Returned
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, OK
 from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.successors import Successors
 
 AUTOMATON = Automaton(REGISTER)
 
@@ -186,3 +187,12 @@ def answer(number: int, shape: object = None, code: str = OK) -> Returned:
 def test_histories_are_judged(says: str, events: list[Event], verdict: bool) -> None:  # noqa: ARG001, FBT001
     """Known histories get the verdict that they deserve."""
     assert accepted(events) is verdict
+
+
+def test_a_state_is_known_again_by_what_it_is() -> None:
+    """What an operation changes in a state does not depend on which of two equal states was asked about first."""
+    first, second = int("1000"), int("1000")
+    assert first is not second
+    moves, read = Successors(REGISTER), ("read",)
+    steps = moves.outcomes(first, read, ())
+    assert (moves.effects(second, read, ()), moves.idle(second, read, ())) == ((), steps)

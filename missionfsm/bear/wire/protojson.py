@@ -209,9 +209,15 @@ def _is_tuple(declared: Any) -> bool:  # noqa: ANN401 - a type
     return getattr(declared, "__origin__", None) is tuple
 
 
+MAX_KNOWN = 5_000
+"""How many of the messages in lists are known again: a list that grows has the same ones in it again and again."""
+
+
 def _tuple_hook(declared: Any) -> Callable[[object, object], tuple[Any, ...]]:  # noqa: ANN401 - a type
     inner = get_args(declared)[0]
     hook = CONVERTER.get_structure_hook(inner)
+    if attrs.has(inner):
+        hook = _knowing(hook)
 
     def structure(value: object, _: object = None) -> tuple[Any, ...]:
         if not isinstance(value, list):
@@ -223,6 +229,23 @@ def _tuple_hook(declared: Any) -> Callable[[object, object], tuple[Any, ...]]:  
             except MalformedError as error:
                 raise error.inside(f"[{index}]") from None
         return tuple(found)
+
+    return structure
+
+
+def _knowing(hook: Callable[[object, object], Any]) -> Callable[[object, object], Any]:
+    """A hook that gives the same message for the same JSON; messages are frozen, so that they can be shared."""
+    known: dict[str, Any] = {}
+
+    def structure(value: object, kind: object) -> Any:  # noqa: ANN401 - a message
+        text = repr(value)
+        found = known.get(text)
+        if found is None:
+            found = hook(value, kind)
+            if len(known) >= MAX_KNOWN:
+                known.clear()
+            known[text] = found
+        return found
 
     return structure
 

@@ -11,8 +11,8 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.window import Window
 
-FIRST = 64
-"""How many events wait before they are looked at for the first time; then twice as many, and so on."""
+FIRST, TIMES = 64, 4
+"""How many events wait before they are looked at for the first time; then so many times as many, and so on."""
 
 
 @frozen
@@ -61,8 +61,8 @@ class Held:
         return len(self.lines) >= self._size
 
     def wait(self) -> None:
-        """Let as many more events come as there are."""
-        self._size = 2 * len(self.lines)
+        """Let so many more events come that looking at all of them anew costs little beside looking at the last."""
+        self._size = TIMES * len(self.lines)
 
     def explain(self, *, whole: bool) -> tuple[bool, bool]:
         """Whether the events are explained, and whether all of their explanations are known then.

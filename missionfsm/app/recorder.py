@@ -32,6 +32,8 @@ BATCH_SECONDS = 0.02
 MAX_BATCH_LINES = 10_000
 MAX_WAITING_BATCHES = 100_000
 """Batches that may wait to be judged; then the judge gives up."""
+LAG_SECONDS = 90.0
+"""How long a judge that lags behind may take for what waits, once traffic is over."""
 PAGE_SECONDS = 2
 """How often the page is written and refreshed."""
 _END = None
@@ -150,11 +152,11 @@ class Recorder:
                 if said.verdict is None:
                     self._tell(said.text)
 
-    def close(self, seconds: float = 30.0) -> Judged | None:
+    def close(self, seconds: float = LAG_SECONDS) -> Judged | None:
         """Write and judge what has come, and end.
 
         Args:
-            seconds: how long the judge may take for what waits.
+            seconds: how long the judge may take for what waits; Ctrl-C gives it up before.
 
         Returns:
             What the judge said last; None without one, or where it did not get to an end.
@@ -163,7 +165,8 @@ class Recorder:
         self._thread.join(seconds)
         if self._left_out:
             self._tell(f"{self._left_out} lines came faster than they could be written, and are left out")
-        self._listener.join(seconds)
+        with contextlib.suppress(KeyboardInterrupt):
+            self._listener.join(seconds)
         if self._listener.is_alive():  # it ends when the process has said all that it has to say
             self._process.kill()
             self._tell("the judge did not get to the end of what was recorded")

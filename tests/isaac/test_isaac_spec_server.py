@@ -113,7 +113,7 @@ def test_a_server_that_looks_now_and_then_has_a_second() -> None:
     # When the first pass comes is not said, but that passes are a second apart.
     assert [waits(seconds, History().robot(1)) for seconds in (2.9, 3.1)] == [True, False]
     begun = History().submit(1).robot(1).settles.waits(1.3).settles.waits(1.3).settles
-    assert (begun.judged().conforms, begun.waits(0.5).settles.judged().conforms) == (True, False)
+    assert (begun.judged().conforms, begun.waits(1.1).settles.judged().conforms) == (True, False)
     named_later = [waits(seconds, History().waits(3).robot(1)) for seconds in (1.9, 2.1)]
     assert named_later == [True, False]
 

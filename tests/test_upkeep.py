@@ -45,7 +45,7 @@ COMPLEX = {
         "operations._rank_charge",
         "operations._rank_format_and_state",
     },
-    "bear.status": {"stream._matched", "stream._part", "stream._whole_shown"},
+    "bear.status": {"matrix._of_event", "matrix._whom", "stream._matched", "stream._part", "stream._whole_shown"},
     "isaac.shared": {"line._named"},
     "kernel": {"middle.in_the_middle", "rules.decide"},
     # What a mission server may do next: a case for each reading.

@@ -60,7 +60,6 @@ MALFORMED = {
     "a wrong value in the world": ([first(world={"family": "cat"})], 1, "world.family: 'cat' is none of"),
     "a wrong type in the world": ([first(world={"blocked": 1})], 1, "world.blocked: 1 is not true or false"),
     "a world that is no object": ([first(world=[])], 1, "world: [] is not an object"),
-    "a second first line": ([FIRST, FIRST], 2, "is none of call, return"),
     "a line of no kind": ([FIRST, '{"frobnicate": 1}'], 2, "is none of call, return"),
     "a line of two kinds": ([FIRST, clear(**{"return": 1})], 2, "'return' is not known in a call line"),
     "an unknown key": ([FIRST, clear(parms={})], 2, "'parms' is not known in a call line"),

@@ -84,10 +84,11 @@ def test_of_what_is_wrong_with_a_file_the_first_is_told(tmp_path: Path) -> None:
 
 
 def test_what_names_no_robots_is_judged_in_one_piece(tmp_path: Path) -> None:
-    """Bare messages, a file that is malformed or is not there: whoever judges it says what is wrong."""
+    """Bare messages, several histories in one file, a file that is malformed or is not there."""
     bare = written(tmp_path / "a.jsonl", {"metadata": {}, "missionStates": {"missions": []}})
     torn = written(tmp_path / "b.jsonl", FIRST, 7)
-    for path in (bare, torn, tmp_path / "none"):
+    two = written(tmp_path / "c.jsonl", FIRST, {**RIGHT[0], "robot": "a"}, FIRST, {**RIGHT[0], "robot": "b"})
+    for path in (bare, torn, two, tmp_path / "none"):
         assert many.robots(str(path)) == {}
         assert many.pieces([str(path)], 2) == [(many.Piece(str(path)),)]
 

@@ -97,7 +97,8 @@ def histories(paths: Iterable[str]) -> list[str]:
 def robots(path: str) -> Mapping[str | None, int]:
     """The robots that a history speaks of, in the order of their first lines, and how many lines each has.
 
-    There are none in bare messages, nor in what cannot be read: whoever judges it says why.
+    None are told of bare messages, of several histories in one file, which are judged together, and of what cannot be
+    read: whoever judges it says why.
     """
     found: Counter[str | None] = Counter()
     with contextlib.suppress(UnreadableError), open_history(path) as source:
@@ -105,8 +106,12 @@ def robots(path: str) -> Mapping[str | None, int]:
         by_params = system(head(next(numbered, (0, None))[1]).system).codec.robot_in_params
         addresses = Addresses(by_params=by_params)
         for _, line in numbered:
-            found[addresses.whose(line)[0]] += 1
-        return found
+            robot, line_alone = addresses.whose(line)
+            if "missionfsm" in line_alone:
+                break
+            found[robot] += 1
+        else:
+            return found
     return {}
 
 

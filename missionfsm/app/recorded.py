@@ -6,7 +6,7 @@ import functools
 import itertools
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from attrs import evolve
@@ -131,13 +131,7 @@ def _judged(
         with placed(path, number):
             line = texts.json(text)
         if subscription(line):
-            _refuse_without_effect(path, asked)
-            messages = itertools.chain([(number, line)], texts.parsed(numbered))
-            try:
-                watched = watch_messages(messages, tell, strict=asked.strict)
-                return [(None, held_to_the_text(one) if asked.no_flagged else one) for one in watched]
-            except UnplacedError as error:
-                raise wrong_line(path, error.number, error) from None
+            return _watched(path, asked, tell, itertools.chain([(number, line)], texts.parsed(numbered)))
         with placed(path, number):
             if isinstance(line, dict) and "missionfsm" not in line:
                 message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
@@ -163,6 +157,18 @@ def _judged(
     return [
         (robot, verdict if keep else _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found
     ]
+
+
+def _watched(
+    path: str, asked: Asked, tell: Callable[[str], None], messages: Iterable[tuple[int, JSON]]
+) -> list[tuple[str | None, Verdict]]:
+    """The verdict on each subscription of which a file has the bare messages."""
+    _refuse_without_effect(path, asked)
+    try:
+        watched = watch_messages(messages, tell, strict=asked.strict)
+    except UnplacedError as error:
+        raise wrong_line(path, error.number, error) from None
+    return [(None, held_to_the_text(one) if asked.no_flagged else one) for one in watched]
 
 
 def _refuse_without_effect(path: str, asked: Asked) -> None:
@@ -291,15 +297,19 @@ class _Judges:
         robot, line = self.addresses.whose(line)
         if self._only and robot not in self._only:
             return
-        judge = self._judges.get(robot)
-        if judge is None:
-            judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
+        judge = self._judge_of(robot)
         if self._lost is None and robot is not None and not judge.read % LOOK:
             self._look(judge)
         comes_again = plain and not self._keep and robot is None and judge.quiet is None
         right = judge.take(self._texts.read(text, line), number) if comes_again else judge.feed(line, number)
         if not right:
             self._stopped.setdefault(robot, judge.place or number)
+
+    def _judge_of(self, robot: str | None) -> Judge:
+        judge = self._judges.get(robot)
+        if judge is None:
+            judge = self._judges[robot] = self._nobody if robot is None else self._new(robot)
+        return judge
 
     def _look(self, judge: Judge) -> None:
         """Raise _UndecidedError where a judge waits for the same call as when this was last asked."""

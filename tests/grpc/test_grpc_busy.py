@@ -38,4 +38,7 @@ def test_a_break_among_ten_busy_clients_is_found(tmp_path: Path) -> None:
     ran = run(tmp_path, 2, pause=0.3, broken=BREAK)
     assert lost(ran) == []
     assert (ran.status, ran.verdict["verdict"]) == (1, "violates"), ran.told
-    assert ran.verdict["violation"]["rules"] == ["bear.mission/SubscribeMissionStatus/updates-follow-the-state"]
+    promises = "bear.mission/SubscribeMissionStatus/"
+    later = [f"{promises}updates-follow-the-state"]
+    first = [f"{promises}the-current-mission-index-is-the-active-mission", f"{promises}the-latest-state-comes-first"]
+    assert ran.verdict["violation"]["rules"] in (later, first)  # as a stream shows it with its first message or later

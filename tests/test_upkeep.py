@@ -26,6 +26,7 @@ COMPLEX = {
         "line_cache.Texts._remember",
         "lookahead.Lookahead.__init__",
         "lookahead.Lookahead._leading",
+        "lookahead.Lookahead._narrowed",
         "lookahead.Lookahead.narrowed",
         "transition.TransitionFunction._ended",
         "transition.TransitionFunction._nothing_owed",
@@ -35,7 +36,7 @@ COMPLEX = {
     "tools.reference": {"model.Reference._take"},
     # Readers of what others wrote: a case for each thing that may be wrong with it.
     "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
-    "app": {"recorded._Judges._take", "watched._unwrapped"},
+    "app": {"watched._unwrapped"},
     "bear.mission": {
         "codec.answer",
         "glimpse.samples",
@@ -52,14 +53,15 @@ COMPLEX = {
     "isaac.robot": {"effects._concluded"},
     "isaac.runtime": {"server.MissionServerCore._name"},
     "isaac.server": {
+        "dispatch._choices",
+        "dispatch.dispatches_to",
         "independence.concerned",
         "independence.parts",
         "lifecycle._cancellation",
-        "lifecycle._choices",
-        "lifecycle.dispatches_to",
         "lifecycle.lost",
         "lifecycle.strikes",
         "spec._unowed",
+        "time._next",
         "time.calmed",
     },
     # Commands: an option after the other.
@@ -86,6 +88,8 @@ COMPLEX = {
 """For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""
 
 CALLED_BY_OTHERS = {
+    # a protocol of functions
+    "__call__",
     # Python and its standard library
     "__dir__",
     "__getattr__",

@@ -34,10 +34,19 @@ def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
     if len({where.name for where, _, _ in found}) > 1:
         return verdicts[-1]
     where, judges = found[-1][0], [judge for _, judge, _ in found]
+    whole = _added_up(verdicts)
+    violation = together(where, judges)
+    if violation is None:
+        return whole
+    return evolve(whole, outcome=Outcome.VIOLATES, violation=violation, story=story_of(where, violation))
+
+
+def _added_up(verdicts: Sequence[Verdict]) -> Verdict:
+    """What conversations come to of which none is bad."""
     exercised: Counter[str] = Counter()
     for one in verdicts:
         exercised.update(one.exercised)
-    whole = evolve(
+    return evolve(
         next((one for one in verdicts if one.conforms), verdicts[-1]),
         examples=len(verdicts),
         events=sum(one.events for one in verdicts),
@@ -45,7 +54,3 @@ def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
         uncovered=tuple(rule for rule in verdicts[-1].uncovered if rule not in exercised),
         flagged=tuple(dict.fromkeys(line for one in verdicts for line in one.flagged)),
     )
-    violation = together(where, judges)
-    if violation is None:
-        return whole
-    return evolve(whole, outcome=Outcome.VIOLATES, violation=violation, story=story_of(where, violation))

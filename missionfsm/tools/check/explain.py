@@ -139,12 +139,13 @@ def _wrong_code(nearest: Nearest, event: Returned, allowed: list[Candidate]) -> 
     reasons.sort(key=lambda rule: rule.under is not None)
     conditions = "; ".join(dict.fromkeys(rule.says for rule in reasons[:ACCUSED]))
     note = f"{code} needs a reason, and none holds: {conditions}"
-    # What has to be refused is refused wrongly; what may be done is refused without a reason.
-    refused = [rule for one in allowed if not one.what.startswith(OK) for rule in one.rules]
     own = [rule.id for rule in reasons]
-    must = not any(one.what.startswith(OK) for one in allowed)
-    done = [rule for one in allowed if one.what.startswith(OK) for rule in one.rules]
-    return _alternately(*((refused, own) if must else (own, refused, done))), [note]
+    by_success: dict[bool, list[str]] = {True: [], False: []}
+    for one in allowed:
+        by_success[one.what.startswith(OK)] += one.rules
+    if any(one.what.startswith(OK) for one in allowed):  # what may be done is refused without a reason
+        return _alternately(own, by_success[False], by_success[True]), [note]
+    return _alternately(by_success[False], own), [note]  # what has to be refused is refused wrongly
 
 
 def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:

@@ -84,7 +84,7 @@ class _Script:
     def drop(self, link: int) -> _Script:
         params = {"event": "disconnect", "connection": pick("connection", LINK)}
         self.lines.append(ScriptStep("drive", params, ((LINK, link),)))
-        return self.wait()
+        return self.look().wait()
 
 
 _LAPS = {"goals.path": {"FollowPath": {"laps": 2, "tolerance": 0.25}}}

@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from attrs import evolve
 
 from missionfsm.bear.mission.effects import Way, become, end, failed, failed_to_start, reselected
-from missionfsm.bear.mission.readings import AM_45_NONE, AM_53_THEN, QUEUE, part_of
+from missionfsm.bear.mission.readings import AM_43_LEFT, AM_45_NONE, AM_53_THEN, QUEUE, part_of
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     NOT_CHOSEN,
@@ -24,7 +24,7 @@ from missionfsm.bear.mission.state import (
     is_foreign,
     is_missing,
 )
-from missionfsm.bear.wire.messages import State
+from missionfsm.bear.wire.messages import Goal, State
 from missionfsm.kernel.values import value
 
 
@@ -77,7 +77,9 @@ def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[W
 def by_itself(
     world: World, active: Mission | None, head: Mission | None, *, halted: bool, queued: bool
 ) -> Iterator[Way]:
-    """What a robot may do at any time: a hopeless mission fails, and so does one that it is unable to start (AM-53).
+    """What a robot may do at any time: a hopeless mission fails.
+
+    So does one of which a goal has left the map (AM-43), and one that the robot is unable to start (AM-53).
 
     Args:
         head: the first waiting mission.
@@ -85,10 +87,18 @@ def by_itself(
     """
     if active is not None and active.hopeless:
         yield from failed(_alone(world, active, queued=queued), active)
+    elif active is not None and is_missing(world, _ahead(active)):
+        for edit, assumes in failed(_alone(world, active, queued=queued), active):
+            yield edit, (AM_43_LEFT["e"], *assumes)
     elif active is None and head is not None and world.blocked and head.held and not halted:
         running = head.moved("start")
         for edit, assumes in failed_to_start(_alone(world, running, queued=queued), running):
             yield ((Op.START, running), *edit), (AM_53_THEN[head.first or QUEUE]["f"], *assumes)
+
+
+def _ahead(mission: Mission) -> tuple[Goal, ...]:
+    """The goals that a mission has not left behind for good."""
+    return mission.goals if mission.kind in PATROLS else mission.goals[max(mission.goal, 0) :]
 
 
 def _alone(world: World, mission: Mission, *, queued: bool) -> Situation:

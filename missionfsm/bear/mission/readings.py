@@ -486,6 +486,12 @@ AM_43 = _each(
     (*CREATING, *APPENDING),
     flagged="bd",
 )
+AM_43_LEFT = Ambiguity(
+    "AM-43.left",
+    "What becomes of a mission under way of which a goal leaves the map?",
+    {"a": "it goes on", "e": "it may fail"},
+    default="a",
+)
 AM_44 = _each(
     "AM-44",
     "{}: may a goal occur twice in one mission?",

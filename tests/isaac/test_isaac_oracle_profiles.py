@@ -113,6 +113,29 @@ def test_a_cancellation_that_the_next_pass_notices() -> None:
     assert right(begun, 1.1, queued, canceled)["documented"] == [canceled]
 
 
+def test_a_pass_may_time_out_and_cancel_whenever_it_is_looked() -> None:
+    """What a pass has timed out it may cancel the downstreams of (AI-03.when q), also if it came before all settled."""
+    begun = History().submit(1, start_timeout=3).submit(2, robot="s", upstream=[1]).robot(1).settles
+    begun = (
+        begun.waits(1.3)
+        .sends(1, 1)
+        .waits(1.3)
+        .waits(1.3)
+        .waits(1.3)
+        .settles.shows("FAILED_TIMEDOUT", "FAILED_UPSTREAM")
+    )
+    readings = {**SERVER.profiles["documented"], "AI-03.when": "q", "AI-39": "b"}
+    assert begun.judged(readings=readings).conforms
+
+
+def test_a_drop_is_noticed_in_no_time_by_nobody() -> None:
+    """As shipped a pass notices a drop, and none comes while no time passes."""
+    begun = sent().drive("disconnect", connection=1).settles
+    assert right(begun, 0.001, STARTED, LOST)["as-shipped"] == [STARTED, LOST]
+    chosen = {**SERVER.profiles["as-shipped"], "AI-25.header": "s"}
+    assert not begun.shows("FAILED_DISCONNECTED").judged(readings=chosen).conforms
+
+
 def test_a_take_over_that_no_pass_noticed() -> None:
     """The newer connection is gone before a pass comes: the mission may keep its timeouts or lose them."""
     begun = sent(start_timeout=2).drive("connect", connection=2).says(2).drive("disconnect", connection=2).settles

@@ -205,7 +205,7 @@ def closed(move: Move, link: Link, *, seen: bool = False) -> Moves:
         until = state.next_pass(move.at[1]) + state.tolerance
         slot = link.slot if seen else min((0, *(one.slot for one in gone))) - 1
         gone = (*gone, Link(slot, link.name, serves=True, fresh=until))
-    yield from lost(move.to(evolve(state, links=links, gone=gone)), link)
+    yield from lost(move.to(evolve(state, links=links, gone=gone)), link, still=seen)
 
 
 def forgotten(move: Move, gone: Link) -> Move:
@@ -214,7 +214,7 @@ def forgotten(move: Move, gone: Link) -> Move:
     return move.to(evolve(move.state, gone=tuple(one for one in rest if one.serves or one.slot >= 0)))
 
 
-def lost(move: Move, link: Link) -> Moves:
+def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     """A connection is no robot's any more: what was sent on it goes on, is sent again, or has failed (AI-15)."""
     missions = move.state.missions
     if link.serves:
@@ -232,7 +232,7 @@ def lost(move: Move, link: Link) -> Moves:
             here, later = split(way, AI_15_WHEN, "n")
         for index in affected:
             if later is not None:
-                later = _to_be_noticed(later.mission(index, link=None), index, DROP)
+                later = _to_be_noticed(later.mission(index, link=None), index, DROP, still=still)
             if here is not None and letter == "a":
                 here = here.mission(index, link=None)
             elif here is not None and letter == "c":
@@ -242,14 +242,14 @@ def lost(move: Move, link: Link) -> Moves:
         yield from (one for one in (here, later) if one is not None)
 
 
-def _to_be_noticed(move: Move, index: int, kind: str) -> Move:
+def _to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) -> Move:
     """The next scheduling pass notices a drop or a failed upstream; one that is to come notices all."""
     low, high = move.at
     clocks = move.state.missions[index].clocks
     if any(one.kind == kind for one in clocks):
         return move
-    if not move.state.tolerance:
-        low += 1  # no pass comes while no time passes
+    if still and not move.state.tolerance:
+        low += 1  # no pass comes while no time passes; what a pass itself brings about it may notice
     return ticking(move, index, (*clocks, Clock(kind, kind, low, move.state.next_pass(high) + move.state.tolerance)))
 
 

@@ -87,7 +87,7 @@ class Drive:
         by_itself: the events that the environment may produce unseen where nobody drives them.
         cite: where the documents speak of it, if they do.
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
-        ends: what arrived while it was being done, arrived before it (it ends a channel).
+        ends: it ends a channel: what arrived on that while it was being done arrived before it.
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
         waits: whether one that was driven before still waits in a state; the tester drives none while one does.
         later: for a drive that only lets time pass: its words before what comes next ("2 s later"); None for others.

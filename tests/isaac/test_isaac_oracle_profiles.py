@@ -11,9 +11,12 @@ from server_history import SERVER, History
 
 from missionfsm.adapters.isaac.subjects import ServerSubject
 from missionfsm.isaac.runtime.profile import DOCUMENTED
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import names, system
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 
 def right(begun: History, seconds: float, *ends: tuple[str, ...]) -> dict[str, list[tuple[str, ...]]]:
@@ -182,6 +185,27 @@ def test_time_that_passes_stands_before_what_comes_next() -> None:
         "  8. statuses() → OK ('started',) mission 1",
         "  9. 3 s pass",
     ]
+
+
+class AtOnce:
+    """A subject that tells everything that a request causes before it answers it."""
+
+    def __init__(self, inner: Subject) -> None:
+        self.inner = inner
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        found = self.inner.exchange(method, params)
+        return attrs.evolve(found, before=(*found.before, *found.after), after=())
+
+    def close(self) -> None:
+        self.inner.close()
+
+
+def test_what_a_drop_causes_on_other_connections_may_come_before_its_answer() -> None:
+    """The robot whose older connection drops is free with that, and is sent the next mission on the newer one."""
+    server = AtOnce(ReferenceSubject(SERVER, {"AI-16.under-way": "k"}))
+    verdict = conform(SERVER, server, plan=Plan(0, 0, 40, 0), seed=1, advice=False)
+    assert verdict.conforms, str(verdict)
 
 
 def test_profiles_of_systems() -> None:

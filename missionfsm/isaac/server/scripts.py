@@ -327,6 +327,8 @@ _SCRIPTS = (
     _Script().submit(A, timeout=90_000).robot(0, A).report(0, 0, "running").wait(90_100),
     # Of two connections the one that connected first says the name last.
     _Script().connect().connect().name(1, A).wait().name(0, A).wait().submit(A).wait(),
+    # A connection that was taken over drops, and the robot may be free with that.
+    _Script().submit(A).submit(A).robot(0, A).connect().name(1, A).drop(0),
     # What goes on on a connection that was taken over runs out of time, or not.
     _Script().submit(A, timeout=4).robot(0, A).report(0, 0, "running").robot(1, A).wait(8),
     # One upstream fails while the other runs.

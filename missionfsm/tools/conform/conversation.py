@@ -183,9 +183,11 @@ class Conversation:
             message = f"the adapter answered drive with {brief(exchange.result)}, not with happened true or false"
             raise SubjectError(message)
         self._notifications(exchange.earlier)
-        first = not happened or self.system.spec.drives[event["event"]].ends
-        if first:
-            self._notifications(exchange.before)
+        earlier, caused = exchange.before, exchange.after
+        if happened:
+            earlier, caused = self._about_what_ends(event, exchange.before)
+            caused += exchange.after
+        self._notifications(earlier)
         if happened:
             # What the environment gave a name to (a connection), the history says with the drive.
             told = {**event, **{key: value for key, value in result.items() if key != "happened"}}
@@ -195,7 +197,17 @@ class Conversation:
             self._hear({"drive": told})
             self._bind(_read(self.system.codec.happened, told)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
-        self._notifications(exchange.after if first else exchange.before + exchange.after)
+        self._notifications(caused)
+
+    def _about_what_ends(
+        self, event: JSON, came: tuple[Notification, ...]
+    ) -> tuple[tuple[Notification, ...], tuple[Notification, ...]]:
+        """Of what came while something was driven: what came on a channel that this ends, and all else."""
+        if not self.system.spec.drives[event["event"]].ends:
+            return (), came
+        own = [event.get("connection") in (None, one.params.get("connection", 1)) for one in came]
+        first = tuple(one for one, ended in zip(came, own, strict=True) if ended)
+        return first, tuple(one for one, ended in zip(came, own, strict=True) if not ended)
 
     def _settle(self) -> None:
         exchange = self._result(SETTLE, {})

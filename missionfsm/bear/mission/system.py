@@ -9,10 +9,10 @@ from missionfsm.bear.mission.matrix import MATRIX
 from missionfsm.bear.mission.mutations import BENDS, REACHING, TWISTS
 from missionfsm.bear.mission.pictures import SKETCHES
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
-from missionfsm.bear.mission.scripts import SCRIPTS
+from missionfsm.bear.mission.scripts import CREATED, SCRIPTS
 from missionfsm.bear.mission.shapes import shapes
 from missionfsm.bear.mission.spec import SPEC
-from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Input, Naming
+from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Input, Naming, ScriptStep
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
@@ -59,6 +59,13 @@ _DEFECTIVE: tuple[JSON, ...] = (
     of_family("carti", "traverseMission", "nowhere"),
 )
 """Missions that no robot should accept, whatever its family."""
+
+_FORMS: tuple[JSON, ...] = (
+    *_DEFECTIVE,
+    {"serviMission": {"deliveryMission": {"goals": [*goals_at(TABLES[0]), {}]}}},
+    {"baseMission": {"navigateAutoMission": {"goals": [*goals_at(TABLES[0]), {}]}}},
+)
+"""The same, and others that are wrong for a reason that they have."""
 
 _FOREIGN: dict[str, tuple[JSON, ...]] = {
     "base": (of_family("servi", "deliveryMission", TABLES[0]), of_family("carti", "traverseMission", TABLES[0])),
@@ -226,6 +233,27 @@ _WORLDS: tuple[JSON, ...] = (
 )
 
 
+def _refused() -> Iterator[tuple[ScriptStep, ...]]:
+    """Each form of a request that is wrong, also where others are wrong for the same reason."""
+    for method in ("CreateMission", "CreateMissionBatch"):
+        wrapped = map(_wrapped, _FORMS)
+        yield tuple(ScriptStep(method, one if method == "CreateMission" else {"missions": [one]}) for one in wrapped)
+    yield tuple(
+        ScriptStep("CreateMissionWorkflow", {} if one is None else {"missionWorkflow": one})
+        for one in (*_DEFECTIVE_WORKFLOWS[:7], {"serviWorkflow": {"delivery": {"goals": [*goals_at(TABLES[0]), {}]}}})
+    )
+    for method in ("AppendMission", "AppendMissionBatch"):
+        wrapped = map(_wrapped, _FORMS)
+        append = (ScriptStep(method, one if method == "AppendMission" else {"missions": [one]}) for one in wrapped)
+        yield (*CREATED, *append)
+    yield (*CREATED, *(ScriptStep(one.method, one.params, ((0, 0),)) for one in _updates() if _is_no_command(one)))
+
+
+def _is_no_command(update: Input) -> bool:
+    command = update.params.get("missionCommand", {})
+    return "missionId" in command and command.get("command") not in COMMANDS
+
+
 def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
     """What is worth trying on a robot in a world."""
     family = (world or {}).get("family", "servi")
@@ -236,7 +264,7 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
         core_drives=_DRIVES[:3],
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
-        scripts=SCRIPTS,
+        scripts=(*SCRIPTS, *_refused()),
     )
 
 

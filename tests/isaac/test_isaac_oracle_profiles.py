@@ -208,6 +208,14 @@ def test_what_a_drop_causes_on_other_connections_may_come_before_its_answer() ->
     assert verdict.conforms, str(verdict)
 
 
+def test_a_name_that_is_said_again_may_do_nothing_and_yet_count_when_the_other_drops() -> None:
+    """The connection named later is the robot, though the other says its name again; once it drops, the other is."""
+    begun = History().drive("connect", connection=1).robot(2).says(1).says(2).submit(1).sends(1, 1).settles
+    verdict = begun.reports(1, 1, "success").drive("disconnect", connection=1).submit(2).sends(2, 2).settles.judged()
+    assert verdict.conforms, str(verdict)
+    assert (verdict.readings["AI-16"], verdict.readings["AI-16.back"]) == (("n",), ("s",))
+
+
 def test_profiles_of_systems() -> None:
     """Isaac's systems have two; a profile is overruled by what is asked for besides, and another one is refused."""
     assert {name: list(system(name).profiles) for name in names()} == {

@@ -70,7 +70,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
     if not gone.serves or not heirs:
         yield move
         return
-    at_once, later = split(move, AI_16_BACK, "p")  # q and r: not before it says it again, or never
+    at_once, later = split(move, AI_16_BACK, "ps")  # q and r: not before it says it again, or never
     if at_once is not None:
         yield from _served(at_once, heirs[-1])
     if later is not None:
@@ -152,7 +152,7 @@ def _named(move: Move, link: Link, key: str) -> Moves:
             yield never
     else:
         # It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q).
-        keeps, without = split(move, AI_16_BACK, "pr")
+        keeps, without = split(move, AI_16_BACK, "prs")
         if without is not None:
             yield from _claims(without, link, key)
         if keeps is not None:

@@ -185,7 +185,12 @@ AI_16_UNDER_WAY = Ambiguity(
 AI_16_BACK = Ambiguity(
     "AI-16.back",
     "The connection that is the robot drops, and another has said the same name: is that the robot now?",
-    {"p": "at once", "q": "when it says its name again", "r": "never"},
+    {
+        "p": "at once, and so it becomes by saying its name again while the other is there",
+        "q": "when it says its name again",
+        "r": "never",
+        "s": "at once; saying its name again does nothing",
+    },
     default="q",
 )
 AI_17 = Ambiguity(

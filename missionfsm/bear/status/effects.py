@@ -238,6 +238,9 @@ def reported(fleet: Fleet, event: Happening, _: tuple[int | None, ...], alone: s
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
+    if fleet.unheard:
+        # What it reported before may have been the same, and of its other parts nothing is known: nothing is due.
+        return (Step(fleet, label="report"),)
     return tuple(
         step
         for value, assumes in _accepted(robot, event.part, event.value)

@@ -216,6 +216,15 @@ def test_a_name_that_is_said_again_may_do_nothing_and_yet_count_when_the_other_d
     assert (verdict.readings["AI-16"], verdict.readings["AI-16.back"]) == (("n",), ("s",))
 
 
+@pytest.mark.parametrize("heir", [1, 2])
+def test_of_several_connections_with_a_name_any_may_be_the_next_robot(heir: int) -> None:
+    """Three said the name, and the last of them drops: the newest of the others may be it, or the next to last."""
+    begun = History().drive("connect", connection=1).robot(2).says(1).robot(3)
+    known = {"AI-16": "n", "AI-16.back": "s", "AI-39": "a"}
+    verdict = begun.drive("disconnect", connection=3).settles.submit(1).sends(heir, 1).settles.judged(readings=known)
+    assert verdict.conforms, str(verdict)
+
+
 def test_profiles_of_systems() -> None:
     """Isaac's systems have two; a profile is overruled by what is asked for besides, and another one is refused."""
     assert {name: list(system(name).profiles) for name in names()} == {

@@ -72,7 +72,8 @@ def _succeeded(move: Move, gone: Link) -> Moves:
         return
     at_once, later = split(move, AI_16_BACK, "ps")  # q and r: not before it says it again, or never
     if at_once is not None:
-        yield from _served(at_once, heirs[-1])
+        for heir in reversed(heirs):  # nobody says which of several, the newest or the one that said it last
+            yield from _served(at_once, heir)
     if later is not None:
         yield later
 

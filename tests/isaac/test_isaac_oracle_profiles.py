@@ -225,6 +225,13 @@ def test_of_several_connections_with_a_name_any_may_be_the_next_robot(heir: int)
     assert verdict.conforms, str(verdict)
 
 
+def test_a_mission_may_have_timed_out_before_its_robot_is_there() -> None:
+    """A start_timeout of 0 that counts from submission has elapsed: the robot that comes is sent nothing."""
+    begun = History().submit(1, start_timeout=0).settles.robot(1).settles
+    verdict = begun.judged(readings={"AI-05": "b", "AI-39": "a"})
+    assert verdict.conforms, str(verdict)
+
+
 def test_profiles_of_systems() -> None:
     """Isaac's systems have two; a profile is overruled by what is asked for besides, and another one is refused."""
     assert {name: list(system(name).profiles) for name in names()} == {

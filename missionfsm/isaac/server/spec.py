@@ -254,14 +254,21 @@ def _silent_in(server: Server, part: Part) -> tuple[Step, ...]:
 def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
     """What may have happened before an observation, in the parts that it is about.
 
-    What settled can tell of is urgent. All statuses tell of all parts, and of one after the other: of the first that is
-    not shown as it stands.
+    What settled can tell of is urgent, and what can keep that from happening. All statuses tell of all parts, and
+    of one after the other: of the first that is not shown as it stands.
     """
     if focus.kind == SETTLED:
-        return _urgent(server)
+        part = next((one for one in parts(server) if _urgent_in(server, one)), None)
+        return () if part is None else _silent_in(server, part) if _may_be_late(server, part) else _urgent(server)
     if focus.kind == RETURNED and isinstance(focus.what, Statuses):
         return _silent_before(server, focus)
     return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part))
+
+
+def _may_be_late(server: Server, part: Part) -> bool:
+    """Whether a mission that is about to be sent may have timed out before that."""
+    waiting = (server.missions[index] for index in part.missions if server.missions[index].status is Status.QUEUED)
+    return any(clock.lo <= 0 for one in waiting for clock in one.ticking)
 
 
 def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:

@@ -110,7 +110,9 @@ def _again() -> Iterator[tuple[ScriptStep, ...]]:
 
 
 def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
-    """Missions that should have been refused are followed to their end, if they were not."""
+    """What should have been refused is followed to its end, if it was not: missions, and a command that is none."""
+    for way in _ALIVE:
+        yield (*way, *commanded(0, "COMMAND_UNKNOWN"), *drive("goalReached"))
     foreign = of_family("carti", "traverseMission", *TABLES)
     nowhere = of_family("servi", "deliveryMission", *TABLES, "nowhere")
     for mission in (foreign, nowhere):

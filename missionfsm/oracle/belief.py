@@ -51,16 +51,19 @@ MAX_WALKED = 32
 
 @define(eq=False, slots=True)
 class Node:
-    """All explanations of what was observed, and the edges that were walked from here."""
+    """All explanations of what was observed, and the edges that were walked from here.
+
+    Attributes:
+        bytes: what the node takes, without its edges (see `missionfsm.oracle.memory`).
+    """
 
     explanations: tuple[Explanation, ...]
     width: int
     next: dict[Any, Edge] = field(factory=dict, repr=False)
+    bytes: int = field(init=False, repr=False)
 
-    @property
-    def bytes(self) -> int:
-        """What the node takes, without its edges (see `missionfsm.oracle.memory`)."""
-        return memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
+    def __attrs_post_init__(self) -> None:
+        self.bytes = memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
 
 
 @define(eq=False, slots=True)

@@ -13,7 +13,7 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
-from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS
+from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 from missionfsm.oracle.transcript import Transcript
 
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
@@ -39,7 +39,7 @@ class Texts:
     """
 
     def __init__(self, transcript: Transcript, write: Callable[[JSON], bytes]) -> None:
-        self._bytes = 0
+        self._room = Room(MEMORY // TEXTS)
         self._transcript = transcript
         self._write = write
         self._skim = transcript.codec.skim
@@ -135,9 +135,7 @@ class Texts:
 
     def _remember(self, text: bytes, line: JSON, event: Event, method: str | None) -> None:
         remembered: tuple[dict[Any, Any], ...] = (self._calls, self._answers, self._others, self._contents)
-        self._bytes += ENTRY + TEXT * len(text)
-        if self._bytes > MEMORY // TEXTS:
-            self._bytes = 0
+        if self._room.overflows(ENTRY + TEXT * len(text)):
             for known in remembered:
                 known.clear()
         if type(event) is Called:

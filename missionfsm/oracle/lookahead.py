@@ -21,7 +21,7 @@ from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
-from missionfsm.oracle.memory import MEMORY, STEPS, explanation_bytes
+from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
 
 NEXT = 64
 """How many of the messages that a stream shows next are compared with what it owes."""
@@ -78,7 +78,7 @@ class Lookahead:
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
         self._settled: list[int] = []
         self._latest = latest
-        self._bytes = 0
+        self._room = Room(MEMORY // STEPS)
         self._passed: dict[Any, Narrowed | None] = {}
         self._shows: dict[Any, bool] = {}
         self._ended: dict[int, int] = {}
@@ -313,9 +313,7 @@ class Lookahead:
 
     def _make_room(self, explanation: Explanation) -> None:
         """Count what is going to be remembered of an explanation; forget the rest where that becomes too much."""
-        self._bytes += explanation_bytes(explanation)
-        if self._bytes > MEMORY // STEPS:
-            self._bytes = 0
+        if self._room.overflows(explanation_bytes(explanation)):
             self._passed.clear()
             self._shows.clear()
 

@@ -6,6 +6,8 @@ can find out again, or gives up where it cannot.
 
 from __future__ import annotations
 
+from attrs import define
+
 from missionfsm.oracle.explanation import Explanation
 
 MEMORY = 128 * 2**20
@@ -26,6 +28,22 @@ NAME = 200
 
 TEXT = 4
 """How many bytes one byte of a text takes that is remembered with what it means."""
+
+
+@define(eq=False, slots=True)
+class Room:
+    """How many bytes something may remember at most, and how many it does by now."""
+
+    most: int
+    taken: int = 0
+
+    def overflows(self, more: int) -> bool:
+        """Count what is going to be remembered. Whether that is too much: then all before it is to be forgotten."""
+        self.taken += more
+        if self.taken <= self.most:
+            return False
+        self.taken = 0
+        return True
 
 
 def explanation_bytes(explanation: Explanation) -> int:

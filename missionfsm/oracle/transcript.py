@@ -28,7 +28,7 @@ from missionfsm.kernel.history import (
 from missionfsm.kernel.ids import IdSet
 from missionfsm.kernel.rules import OK, STATUS_NUMBERS
 from missionfsm.kernel.text import brief
-from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS
+from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 
 VERSION = 1
 _SETTLED: tuple[Event, ...] = (Settled(),)
@@ -145,7 +145,7 @@ class Transcript:
         self.answered: Any = None
         self._sent = IdSet()
         self._errors: dict[str, Answer] = {}
-        self._bytes = 0
+        self._room = Room(MEMORY // TEXTS)
         self._requests: dict[Hashable, Any] = {}
         self._interned: dict[Any, Any] = {}
         self._contents: dict[Hashable, Hashable] = {}
@@ -292,9 +292,7 @@ class Transcript:
 
     def _make_room(self, key: Hashable) -> None:
         """Count a request or a message that is going to be known again; forget the others where that is too much."""
-        self._bytes += ENTRY + TEXT * sys.getsizeof(key)
-        if self._bytes > MEMORY // TEXTS:
-            self._bytes = 0
+        if self._room.overflows(ENTRY + TEXT * sys.getsizeof(key)):
             for known in (self._requests, self._interned, self._contents):
                 known.clear()
 

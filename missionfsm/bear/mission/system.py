@@ -235,18 +235,21 @@ _WORLDS: tuple[JSON, ...] = (
 
 def _refused() -> Iterator[tuple[ScriptStep, ...]]:
     """Each form of a request that is wrong, also where others are wrong for the same reason."""
-    for method in ("CreateMission", "CreateMissionBatch"):
-        wrapped = map(_wrapped, _FORMS)
-        yield tuple(ScriptStep(method, one if method == "CreateMission" else {"missions": [one]}) for one in wrapped)
+    yield _wrong("CreateMission")
+    yield _wrong("CreateMissionBatch")
     yield tuple(
         ScriptStep("CreateMissionWorkflow", {} if one is None else {"missionWorkflow": one})
         for one in (*_DEFECTIVE_WORKFLOWS[:7], {"serviWorkflow": {"delivery": {"goals": [*goals_at(TABLES[0]), {}]}}})
     )
-    for method in ("AppendMission", "AppendMissionBatch"):
-        wrapped = map(_wrapped, _FORMS)
-        append = (ScriptStep(method, one if method == "AppendMission" else {"missions": [one]}) for one in wrapped)
-        yield (*CREATED, *append)
+    yield (*CREATED, *_wrong("AppendMission"))
+    yield (*CREATED, *_wrong("AppendMissionBatch"))
     yield (*CREATED, *(ScriptStep(one.method, one.params, ((0, 0),)) for one in _updates() if _is_no_command(one)))
+
+
+def _wrong(method: str) -> tuple[ScriptStep, ...]:
+    """A call with each mission that is of no documented form, by itself or in a batch."""
+    missions = map(_wrapped, _FORMS)
+    return tuple(ScriptStep(method, {"missions": [one]} if method.endswith("Batch") else one) for one in missions)
 
 
 def _is_no_command(update: Input) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from attrs import evolve
 
@@ -33,7 +33,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     """
     expected, notes, rules = [], [], list[str]()
     last: Judge | None = None
-    shown: dict[int, tuple[Judge, list[str]]] = {}
+    ruled_out: list[tuple[Judge, str]] = []
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
@@ -45,9 +45,8 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
             notes.append(f"{letter} is ruled out: {ruling}")
             last = judge
         if judge is not None:
-            says = f"not {letter}" + (f": {ruling}" if ruling else "")
-            shown.setdefault(id(judge), (judge, []))[1].append(says)
-    sides = tuple(Side("; ".join(says), judge.history) for judge, says in shown.values())
+            ruled_out.append((judge, f"not {letter}" + (f": {ruling}" if ruling else "")))
+    sides = _sides(ruled_out)
     return Violation(
         rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
@@ -56,6 +55,14 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         last.history if last else (),
         sides=sides if len(sides) > 1 else (),
     )
+
+
+def _sides(ruled_out: Iterable[tuple[Judge, str]]) -> tuple[Side, ...]:
+    """Each conversation once, with all that it rules out."""
+    says: dict[int, tuple[Judge, list[str]]] = {}
+    for judge, what in ruled_out:
+        says.setdefault(id(judge), (judge, []))[1].append(what)
+    return tuple(Side("; ".join(all_of_it), judge.history) for judge, all_of_it in says.values())
 
 
 def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
@@ -122,15 +129,14 @@ def essential(system: System, judge: Judge, readings: Mapping[str, tuple[str, ..
 
 def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence: Evidence) -> Violation:
     """The violation with the conversations that rule out the other readings of the questions that it needs."""
-    shown: dict[int, tuple[Judge, list[str]]] = {}
+    ruled_out: list[tuple[Judge, str]] = []
     for (name, letter), judge in evidence.items():
         if name in needed and letter not in needed[name]:
             ruling = judge.rulings.found.get((name, letter))
-            says = f"not {name}={letter}" + (f": {ruling}" if ruling else "")
-            shown.setdefault(id(judge), (judge, []))[1].append(says)
-    if not shown:
+            ruled_out.append((judge, f"not {name}={letter}" + (f": {ruling}" if ruling else "")))
+    sides = _sides(ruled_out)
+    if not sides:
         return violation
-    sides = [Side("; ".join(says), judge.history) for judge, says in shown.values()]
     return evolve(violation, sides=(*sides, Side(f"and yet {violation.observed}", violation.history)))
 
 

@@ -285,9 +285,8 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
         write_junit(junit, [(verdict.implementation or system, verdict)])
     with troubles.kept():
         write_record(record, judged, verdict)
-    troubles.end(
-        FAILED if verdict.violation else INTERRUPTED if interruption.asked else DONE if verdict.conforms else FAILED
-    )
+    status = DONE if verdict.conforms else FAILED
+    troubles.end(INTERRUPTED if interruption.asked and verdict.violation is None else status)
 
 
 def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, ...]:

@@ -258,11 +258,18 @@ def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
     of one after the other: of the first that is not shown as it stands.
     """
     if focus.kind == SETTLED:
-        part = next((one for one in parts(server) if _urgent_in(server, one)), None)
-        return () if part is None else _silent_in(server, part) if _may_be_late(server, part) else _urgent(server)
+        return _before_rest(server)
     if focus.kind == RETURNED and isinstance(focus.what, Statuses):
         return _silent_before(server, focus)
     return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part))
+
+
+def _before_rest(server: Server) -> tuple[Step, ...]:
+    for part in parts(server):
+        due = _urgent_in(server, part)
+        if due:
+            return _silent_in(server, part) if _may_be_late(server, part) else due
+    return ()
 
 
 def _may_be_late(server: Server, part: Part) -> bool:

@@ -36,17 +36,6 @@ COMPLEX = {
     "tools.reference": {"model.Reference._take"},
     # Readers of what others wrote: a case for each thing that may be wrong with it.
     "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
-    "app": {"watched._unwrapped"},
-    "bear.mission": {
-        "codec.answer",
-        "glimpse.samples",
-        "matrix._of_missions",
-        "state.apply",
-        # A code for each situation of a call: the rows of a table.
-        "operations._rank_charge",
-        "operations._rank_format_and_state",
-    },
-    "bear.status": {"matrix._of_event", "matrix._whom", "stream._matched", "stream._part", "stream._whole_shown"},
     "isaac.shared": {"line._named"},
     "kernel": {"middle.in_the_middle", "rules.decide"},
     # What a mission server may do next: a case for each reading.

@@ -56,17 +56,17 @@ def subscription(message: JSON) -> str | None:
 
 
 def _unwrapped(message: JSON) -> tuple[str, JSON]:
-    """The robot that a message names outside of its documented fields, and the message as a subscription sends it.
-
-    The body of a webhook has what a message of the subscription says in its `state`.
-    """
+    """The robot that a message names outside of its documented fields, and the message as a subscription sends it."""
     robot = message.get("robot_id") or message.get("robotId") or ""
-    state = message.get("state")
-    if not isinstance(state, dict):
-        topic = subscription(message)
-        if topic == MISSIONS and isinstance(robot, str):  # a message of a mission stream names no robot
-            return robot, {name: value for name, value in message.items() if name not in ("robotId", "robot_id")}
-        return "", message
+    if isinstance(message.get("state"), dict):
+        return _posted(robot, message["state"])
+    if subscription(message) == MISSIONS and isinstance(robot, str):  # a message of a mission stream names no robot
+        return robot, {name: value for name, value in message.items() if name not in ("robotId", "robot_id")}
+    return "", message
+
+
+def _posted(robot: JSON, state: JSON) -> tuple[str, JSON]:
+    """What the body of a webhook says: its `state` is a message of the subscription, without the envelope."""
     known = {name: value for name, value in state.items() if name not in ("current_mission", "current_goal")}
     metadata = {"metadata": known.pop("metadata")} if "metadata" in known else {}
     if "missions" in known:

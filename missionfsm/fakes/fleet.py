@@ -32,8 +32,9 @@ from missionfsm.bear.status.messages import (
     Wifi,
 )
 from missionfsm.bear.status.state import GET, Endpoint
-from missionfsm.bear.status.stream import Promised, show
+from missionfsm.bear.status.stream import show
 from missionfsm.bear.status.system import SYSTEM
+from missionfsm.bear.status.views import Promised
 from missionfsm.bear.wire.messages import EventMetadata
 from missionfsm.bear.wire.protojson import Int64, Timestamp, camel, write
 from missionfsm.fakes.errors import error

@@ -13,8 +13,9 @@ from missionfsm.bear.status.codec import CODEC
 from missionfsm.bear.status.monitor import StreamMonitor, watch
 from missionfsm.bear.status.spec import SPEC
 from missionfsm.bear.status.state import Endpoint
-from missionfsm.bear.status.stream import Seen, View, matches
+from missionfsm.bear.status.stream import matches
 from missionfsm.bear.status.values import CHECKS
+from missionfsm.bear.status.views import Seen, View
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.step import Mismatch
 from missionfsm.oracle.belief import Automaton

@@ -199,7 +199,7 @@ def _write_wanted(wanted: Wanted, kinds: Mapping[tuple[str, str], Kind]) -> JSON
 
 # Answers.
 
-RESULTS: Mapping[str, type] = {
+RESULTS: Mapping[str, type[wire.MissionId | wire.MissionIds]] = {
     "CreateMission": wire.MissionId,
     "AppendMission": wire.MissionId,
     "ChargeRobot": wire.MissionId,
@@ -218,11 +218,7 @@ _WITH_MORE = Answer(OK, MORE), Answer(OK, MORE, unordered=True)
 def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     """What a successful result says; one that is not of the documented form is `Malformed`."""
     if method in STREAMS:
-        stream = result.get("stream") if isinstance(result, dict) else None
-        if isinstance(stream, bool) or not isinstance(stream, int):
-            message = f"{method} answered {brief(result)}, which carries no stream number"
-            raise UnreadableError(message)
-        return Answer(OK), (("stream", stream),)
+        return Answer(OK), (_stream(method, result),)
     kind = RESULTS.get(method)
     if kind is wire.MissionId and isinstance(result, dict) and len(result) == 1:
         name = result.get("missionId")
@@ -230,13 +226,31 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
             return _NAMED, (name,)  # by far the commonest form, read without further ado
     unordered = method == "ClearMissionStatus"
     try:
-        if kind is None:
-            read(wire.Empty, result)
-            said = [name for name, value in result.items() if value is not None]
-            return (Answer(OK, Malformed(f"it has {brief(said[0])}; the answer has no fields")) if said else _NAMED), ()
-        found: wire.MissionId | wire.MissionIds = read(kind, result)
+        return (_empty(result), ()) if kind is None else _ids(kind, result, unordered=unordered)
     except MalformedError as error:
         return Answer(OK, Malformed(str(error)), unordered), ()
+
+
+def _stream(method: str, result: JSON) -> Name:
+    stream = result.get("stream") if isinstance(result, dict) else None
+    if isinstance(stream, bool) or not isinstance(stream, int):
+        message = f"{method} answered {brief(result)}, which carries no stream number"
+        raise UnreadableError(message)
+    return "stream", stream
+
+
+def _empty(result: JSON) -> Answer:
+    """An answer that is documented to have no fields."""
+    read(wire.Empty, result)
+    said = next((name for name, value in result.items() if value is not None), None)
+    return _NAMED if said is None else Answer(OK, Malformed(f"it has {brief(said)}; the answer has no fields"))
+
+
+def _ids(
+    kind: type[wire.MissionId | wire.MissionIds], result: JSON, *, unordered: bool
+) -> tuple[Answer, tuple[Name, ...]]:
+    """An answer that names missions. Raises MalformedError where it is not of its form."""
+    found = read(kind, result)
     ids = found.mission_ids if isinstance(found, wire.MissionIds) else (found.mission_id,)
     if not all(ids):
         return Answer(OK, Malformed("a mission id is missing"), unordered), ()

@@ -113,39 +113,35 @@ def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
 def samples(world: World) -> tuple[Robot, ...]:
     """Robots that stand for all there are as far as answers differ."""
     goals = tuple(Goal(destination_id=name) for name in world.destinations[:2]) or (Goal(destination_id="-"),)
-    kinds = [kind for kind in Kind if FAMILY[kind] in (None, world.family)]
-    active = [
-        Mission(kind, () if kind in GOALLESS else goals, state, goal, finishing)
-        for kind in kinds
-        for state in (State.STATE_RUNNING, State.STATE_PAUSED)
-        for goal in ((0,) if kind in GOALLESS else range(len(goals)))
-        for finishing in (False, True)
-    ]
+    active = tuple(_under_way(world, goals))
     waits = Mission(Kind.BASE_NAVIGATE, goals[:1])
     over = Mission(Kind.BASE_NAVIGATE, goals[:1], State.STATE_SUCCEEDED)
-    calm = [
-        Robot(world),
-        Robot(world, fresh=False),
-        Robot(world, (over,), fresh=False),
-        *(
-            Robot(world, done, None, (waits,), halted=halted, fresh=False)
-            for done in ((), (over,))
-            for halted in (False, True)
-        ),
-        *(
-            Robot(world, done, one, pending, fresh=False)
-            for one in active
-            for done in ((), (over,))
-            for pending in ((), (waits,))
-        ),
-    ]
-    armed = [
+    nothing = (Robot(world), Robot(world, fresh=False), Robot(world, (over,), fresh=False))
+    waiting = (
+        Robot(world, done, None, (waits,), halted=halted, fresh=False)
+        for done, halted in itertools.product(((), (over,)), (False, True))
+    )
+    busy = (
+        Robot(world, done, one, pending, fresh=False)
+        for one, done, pending in itertools.product(active, ((), (over,)), ((), (waits,)))
+    )
+    armed = (
         Robot(one.world, one.done, one.active, one.pending, one.halted, one.fresh, Fault(status, applied))
-        for one in (calm[1], calm[2], Robot(world, (), active[0], (waits,), fresh=False))
-        for status in (INTERNAL, DEADLINE_EXCEEDED)
-        for applied in (False, True)
-    ]
-    return (*calm, *armed)
+        for one in (*nothing[1:], Robot(world, (), active[0], (waits,), fresh=False))
+        for status, applied in itertools.product((INTERNAL, DEADLINE_EXCEEDED), (False, True))
+    )
+    return (*nothing, *waiting, *busy, *armed)
+
+
+def _under_way(world: World, goals: tuple[Goal, ...]) -> Iterator[Mission]:
+    """Every mission that may be active on a robot of this family, at each of its goals."""
+    for kind in Kind:
+        if FAMILY[kind] in (None, world.family):
+            own = () if kind in GOALLESS else goals
+            for state, goal, finishing in itertools.product(
+                (State.STATE_RUNNING, State.STATE_PAUSED), range(len(own) or 1), (False, True)
+            ):
+                yield Mission(kind, own, state, goal, finishing)
 
 
 def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tuple[int, ...]) -> bool:

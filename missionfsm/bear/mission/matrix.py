@@ -99,17 +99,20 @@ def _of_missions(world: World, asked: Request) -> Iterator[str]:
     if asked.defects or any(wrong):
         if not batch and any(_ends_wrong(world, one) for one in asked.wanted):
             yield f"{asked.operation} whose last goal is wrong"
-        return
-    if batch:
+    elif batch:
         yield f"{asked.operation} of {len(asked.wanted)}"
-        return
-    first = asked.wanted[0]
-    kind = first.kind.value if first.kind else ""
-    yield f"{asked.operation} of {kind} to a {world.family.value} robot"
-    if len(first.goals) >= MANY:
-        yield f"{asked.operation} with {MANY} goals to a {world.family.value} robot"
-    if first.kind in AUTOMATIC and first.goals[0].destination_id in world.occupied:
-        yield f"{asked.operation} of {kind} past a goal that is taken"
+    else:
+        yield from _of_mission(world, asked.operation, asked.wanted[0])
+
+
+def _of_mission(world: World, operation: str, wanted: Wanted) -> Iterator[str]:
+    """The kinds of actions that asking for a mission which is right is an example of."""
+    kind = wanted.kind.value if wanted.kind else ""
+    yield f"{operation} of {kind} to a {world.family.value} robot"
+    if len(wanted.goals) >= MANY:
+        yield f"{operation} with {MANY} goals to a {world.family.value} robot"
+    if wanted.kind in AUTOMATIC and wanted.goals[0].destination_id in world.occupied:
+        yield f"{operation} of {kind} past a goal that is taken"
 
 
 def _is_wrong(world: World, wanted: Wanted) -> bool:

@@ -85,10 +85,9 @@ from missionfsm.bear.mission.rules import (
     there_never_was_anything_to_clear,
 )
 from missionfsm.bear.mission.state import MISSION, SYSTEM, Situation
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
-    FAILED_PRECONDITION,
     INTERNAL,
     INVALID_ARGUMENT,
     Operation,
@@ -341,22 +340,26 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     Where no state forbids the call, there is nothing that could come first. What cannot be decoded is
     INVALID_ARGUMENT whatever is looked at first, since there is no request to look at anything for.
     """
-    about = [
-        ambiguity
-        for kind, ambiguity in ((STATE, AM_01[operation]), (ABILITY, AM_01_BLOCKED.get(operation)))
-        if ambiguity is not None and any(one.kind == kind and one.code == FAILED_PRECONDITION for one in holding)
-    ]
-    invalid = [one for one in holding if one.code == INVALID_ARGUMENT]
-    if not about or not invalid:
+    forbidding = tuple(_forbidding(operation, holding))
+    invalid = {one.kind for one in holding if one.code == INVALID_ARGUMENT}
+    if not forbidding or not invalid:
         yield from ((code, ()) for code in _codes(holding))
         return
-    if any(one.kind == FORM for one in invalid):
+    if FORM in invalid:
         yield INVALID_ARGUMENT, ()
-    early = any(one.kind in (FORM, SHAPE, EITHER) for one in invalid)
-    sure = any(one.kind in (FORM, SHAPE) for one in invalid)
+    sure = not invalid.isdisjoint((FORM, SHAPE))  # of EITHER nobody knows whether it is noticed so early
+    early = sure or EITHER in invalid
+    about = dict.fromkeys(ambiguity for _, ambiguity in forbidding)
     yield INVALID_ARGUMENT, tuple(one["a", "c"] if early and "c" in one.readings else one["a"] for one in about)
-    for one in about:
-        yield FAILED_PRECONDITION, (one["b"] if sure or "c" not in one.readings else one["b", "c"],)
+    for code, one in forbidding:
+        yield code, (one["b"] if sure or "c" not in one.readings else one["b", "c"],)
+
+
+def _forbidding(operation: str, holding: tuple[Rule, ...]) -> Iterator[tuple[str, Ambiguity]]:
+    """The codes by which a state forbids the call, each with the part of AM-01 that ranks it against the format."""
+    for kind, ambiguity in ((STATE, AM_01[operation]), (ABILITY, AM_01_BLOCKED.get(operation))):
+        if ambiguity is not None:
+            yield from ((code, ambiguity) for code in _codes(one for one in holding if one.kind == kind))
 
 
 def _rank_update(situation: str, holding: tuple[Rule, ...]) -> Ranked:
@@ -382,18 +385,32 @@ that is missing, and each may be read in several ways already.
 
 def _rank_charge(holding: tuple[Rule, ...]) -> Ranked:
     """AM-38: the mission is answered for, or what is missing."""
+    left = tuple(one for one in holding if one.kind != FORM)
     late: tuple[Assumption, ...] = ()
-    if any(one.kind == FORM for one in holding):
+    if left != holding:
         yield INVALID_ARGUMENT, ()
         late = (AM_01["ChargeRobot"]["b"],)
-    left = [one for one in holding if one.kind != FORM]
-    busy = [(_BUSY[one.name], str(one.code)) for one in left if one.name in _BUSY]
-    missing = [(DOCK if one.name == NO_DOCK[0].name else LOCATION, str(one.code)) for one in left if one.kind == GOALS]
-    if not busy or not missing:
-        yield from ((code, late) for code in _codes(left))
-        return
-    yield from ((code, late) for code in _codes(one for one in left if one.kind != GOALS and one.name not in _BUSY))
-    for _, code in busy:
-        yield code, (*late, *(AM_38_BUSY[state][what]["e"] for what, _ in missing for state, _ in busy))
-    for what, code in missing:
-        yield code, (*late, *(AM_38_BUSY[state][what]["f"] for state, _ in busy))
+    yield from ((code, (*late, *assumes)) for code, assumes in _rank_busy(left))
+
+
+def _rank_busy(holding: tuple[Rule, ...]) -> Ranked:
+    busy = {_BUSY[one.name]: str(one.code) for one in holding if one.name in _BUSY}
+    missing = {_missing(one): str(one.code) for one in holding if one.kind == GOALS}
+    ranked = busy and missing
+    others = [one for one in holding if not (ranked and (one.kind == GOALS or one.name in _BUSY))]
+    yield from ((code, ()) for code in _codes(others))
+    if ranked:
+        yield from _busy_or_missing(busy, missing)
+
+
+def _busy_or_missing(busy: Mapping[str, str], missing: Mapping[str, str]) -> Ranked:
+    """AM-38 for what a robot is busy with and what it lacks, each with its code."""
+    for code in busy.values():
+        yield code, tuple(AM_38_BUSY[state][what]["e"] for what in missing for state in busy)
+    for what, code in missing.items():
+        yield code, tuple(AM_38_BUSY[state][what]["f"] for state in busy)
+
+
+def _missing(rule: Rule) -> str:
+    """What a robot lacks of which a rule says that it cannot charge: its dock, or its location."""
+    return DOCK if rule.name == NO_DOCK[0].name else LOCATION

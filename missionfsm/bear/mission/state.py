@@ -7,7 +7,7 @@ that the documents allow ever breaks that order, so it is the shape of the state
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from attrs import evolve
@@ -239,40 +239,42 @@ Edit = tuple[tuple[Op, Any], ...]
 T = TypeVar("T")
 
 
+Listed = tuple[tuple[Mission, ...], Mission | None, tuple[Mission, ...]]
+"""The ended missions, the active one, and those that wait."""
+
+_REARRANGED: Mapping[Op, Callable[[Listed, Any], Listed]] = {
+    Op.END: lambda listed, ended: ((*listed[0], ended), None, listed[2]),
+    Op.BECOME: lambda listed, active: (listed[0], active, listed[2]),
+    Op.START: lambda listed, first: (listed[0], first, listed[2][1:]),
+    Op.ADD: lambda listed, more: (listed[0], listed[1], listed[2] + more),
+    Op.PUT_FIRST: lambda listed, more: (listed[0], listed[1], more + listed[2]),
+    Op.HOLD: lambda listed, first: (listed[0], listed[1], (first, *listed[2][1:])),
+    Op.END_QUEUE: lambda listed, move: ((*listed[0], *(one.moved(move) for one in listed[2])), listed[1], ()),
+    Op.DROP_QUEUE: lambda listed, _: (listed[0], listed[1], ()),
+    Op.FORGET_ENDED: lambda listed, _: ((), listed[1], listed[2]),
+    Op.CLEAR: lambda _, __: ((), None, ()),
+}
+"""What an operation makes of the missions; the others set what their name says."""
+
+
 def apply(edit: Edit, robot: Robot) -> Robot:
     """The robot after an edit; the same object where it is empty."""
     if not edit:
         return robot
-    done, active, pending = robot.done, robot.active, robot.pending
-    halted, fresh, fault, world = robot.halted, robot.fresh, robot.fault, robot.world
+    listed: Listed = (robot.done, robot.active, robot.pending)
+    settings: dict[Op, Any] = {}
+    fresh = robot.fresh
     for op, what in edit:
-        if op is Op.END:
-            done, active = (*done, what), None
-        elif op is Op.BECOME:
-            active = what
-        elif op is Op.START:
-            active, pending = what, pending[1:]
-        elif op is Op.ADD:
-            pending, fresh = pending + what, False
-        elif op is Op.PUT_FIRST:
-            pending, fresh = what + pending, False
-        elif op is Op.HOLD:
-            pending = (what, *pending[1:])
-        elif op is Op.END_QUEUE:
-            done, pending = (*done, *(one.moved(what) for one in pending)), ()
-        elif op is Op.DROP_QUEUE:
-            pending = ()
-        elif op is Op.FORGET_ENDED:
-            done = ()
-        elif op is Op.CLEAR:
-            done, active, pending = (), None, ()
-        elif op is Op.HALT:
-            halted = what
-        elif op is Op.ARM:
-            fault = what
-        elif op is Op.WORLD:
-            world = what
-    return Robot(world, done, active, pending, halted and bool(pending), fresh, fault)
+        rearranged = _REARRANGED.get(op)
+        if rearranged is None:
+            settings[op] = what
+        else:
+            listed = rearranged(listed, what)
+            fresh = fresh and op is not Op.ADD and op is not Op.PUT_FIRST
+    done, active, pending = listed
+    halted = settings.get(Op.HALT, robot.halted) and bool(pending)
+    fault, world = settings.get(Op.ARM, robot.fault), settings.get(Op.WORLD, robot.world)
+    return Robot(world, done, active, pending, halted, fresh, fault)
 
 
 def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]]:

@@ -27,8 +27,9 @@ from missionfsm.bear.status.state import (
     Value,
     World,
 )
-from missionfsm.bear.status.stream import Promised, Seen, View, canonical, canonical_state, show
+from missionfsm.bear.status.stream import show
 from missionfsm.bear.status.values import clamped, single
+from missionfsm.bear.status.views import Promised, Seen, View, canonical, canonical_state
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import EventMetadata, MissionState, Pose
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, unknown_fields, write

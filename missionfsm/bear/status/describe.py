@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from missionfsm.bear.status.state import GET, Fleet, Happening, Request
-from missionfsm.bear.status.stream import BLANK, Promised, Seen, View, brief_value
+from missionfsm.bear.status.values import brief_value
+from missionfsm.bear.status.views import BLANK, Promised, Seen, View
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.text import brief
 

@@ -49,8 +49,9 @@ from missionfsm.bear.status.state import (
     Value,
     reporting,
 )
-from missionfsm.bear.status.stream import UPDATES, Promised, Seen, Told, Topic, View, blank, each, shows, view
+from missionfsm.bear.status.stream import UPDATES, shows
 from missionfsm.bear.status.values import clamped
+from missionfsm.bear.status.views import Promised, Seen, Told, Topic, View, blank, each, view
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (

@@ -17,7 +17,7 @@ from missionfsm.bear.status.state import (
     Request,
     Robot,
 )
-from missionfsm.bear.status.stream import Topic
+from missionfsm.bear.status.views import Topic
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.alphabet import Bounds, ScriptStep
 from missionfsm.kernel.codec import JSON
@@ -48,7 +48,7 @@ def columns(
     """The kinds of actions that a request or an event is an example of."""
     if isinstance(asked, Request):
         return tuple(_of_request(fleet, streams, asked))
-    return tuple(_of_event(fleet, streams, asked))
+    return (_of_event(fleet, streams, asked),)
 
 
 def _of_request(fleet: Fleet, streams: Streams, asked: Request) -> Iterator[str]:
@@ -81,52 +81,55 @@ def _whom(fleet: Fleet, asked: Request) -> str:
     if asked.malformed or asked.unknown_fields:
         return "a malformed request"
     if asked.location is not None:
-        location = fleet.location(asked.location)
-        if asked.by_ids:
-            return "robots and a location"
-        if location is None:
-            return "an unknown location"
-        whose = "a location" if location.owned else "somebody else's location"
-        return whose if fleet.at(asked.location) else f"{whose} without robots"
-    if not any(asked.ids):
-        return "nobody"
-    robots = [fleet.robot(one) for one in asked.ids]
-    if None in robots:
-        return "an unknown robot" if len(robots) == 1 else "an unknown robot and another"
-    if not all(one.owned for one in robots if one):
-        return "somebody else's robot" if len(robots) == 1 else "somebody else's robot and another"
+        return "robots and a location" if asked.by_ids else _which_location(fleet, asked.location)
+    return _which_robots(fleet, asked) if any(asked.ids) else "nobody"
+
+
+def _which_location(fleet: Fleet, name: str) -> str:
+    location = fleet.location(name)
+    if location is None:
+        return "an unknown location"
+    whose = "a location" if location.owned else "somebody else's location"
+    return whose if fleet.at(name) else f"{whose} without robots"
+
+
+def _which_robots(fleet: Fleet, asked: Request) -> str:
+    robots = [robot for robot in map(fleet.robot, asked.ids) if robot]
+    alone = len(asked.ids) == 1
+    if len(robots) < len(asked.ids):
+        return "an unknown robot" if alone else "an unknown robot and another"
+    if not all(robot.owned for robot in robots):
+        return "somebody else's robot" if alone else "somebody else's robot and another"
     if asked.repeated:
         return "the same robot twice"
-    if len(robots) > 1:
-        return SOME
-    (robot,) = (one for one in robots if one)
-    return f"{ONE}{_situation(robot)}"
+    return f"{ONE}{_situation(robots[0])}" if alone else SOME
 
 
 def _situation(robot: Robot) -> str:
     return OFFLINE if robot.offline else "" if robot.seen else " that never reported anything"
 
 
-def _of_event(fleet: Fleet, streams: Streams, event: Happening) -> Iterator[str]:
+def _of_event(fleet: Fleet, streams: Streams, event: Happening) -> str:
     robot = fleet.robot(event.robot)
     if robot is None:
-        yield event.name
-        return
+        return event.name
     topics = [one for topics in streams for one in topics if one.robot == robot.id and _follows(one, robot)]
     whose = "a watched robot" if topics else "a robot that nobody watches"
-    offline = OFFLINE if robot.offline and topics else ""
     if event.name == "move":
-        yield f"{whose} {'stays where it is' if event.value == robot.location else 'moves'}"
-    elif event.name != "report":
-        yield f"{event.name} of {whose}{offline}"
-    elif not any(event.part in _shown(one.endpoint) for one in topics):
-        yield f"{whose} reports what is not shown"
-    else:
-        change = _change(robot.part(event.part), event.value)
-        # Of the many parts of a robot's whole state any will do for what is the same for all.
-        whole = any(one.endpoint is Endpoint.ROBOT for one in topics)
-        many = whole and (offline or change in (AGAIN, UP))
-        yield f"{'a part' if many else event.part.replace('_', ' ')} {change}, of {whose}{offline}"
+        return f"{whose} {'stays where it is' if event.value == robot.location else 'moves'}"
+    offline = OFFLINE if robot.offline and topics else ""
+    if event.name != "report":
+        return f"{event.name} of {whose}{offline}"
+    if not any(event.part in _shown(one.endpoint) for one in topics):
+        return f"{whose} reports what is not shown"
+    change = _change(robot.part(event.part), event.value)
+    whole = any(one.endpoint is Endpoint.ROBOT for one in topics)
+    return f"{_part(event.part, change, offline, whole=whole)} {change}, of {whose}{offline}"
+
+
+def _part(part: str, change: str, offline: str, *, whole: bool) -> str:
+    """What changed: of the many parts of a robot's whole state any will do for what is the same for all."""
+    return "a part" if whole and (offline or change in (AGAIN, UP)) else part.replace("_", " ")
 
 
 def _follows(topic: Topic, robot: Robot) -> bool:

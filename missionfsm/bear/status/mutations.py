@@ -11,7 +11,8 @@ from missionfsm.bear.status import values
 from missionfsm.bear.status.messages import RobotState
 from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import GET, MAPS, SINGLES, Endpoint
-from missionfsm.bear.status.stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, Promised
+from missionfsm.bear.status.stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED
+from missionfsm.bear.status.views import Promised
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import MessageMutation, StepMutation

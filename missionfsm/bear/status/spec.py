@@ -36,18 +36,9 @@ from missionfsm.bear.status.state import (
     World,
     initial,
 )
-from missionfsm.bear.status.stream import (
-    RULES,
-    SELECTED,
-    SEQUENCE,
-    UPDATES,
-    WELL_FORMED,
-    Topic,
-    answers,
-    concerns,
-    matches,
-)
+from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, WELL_FORMED, answers, matches
 from missionfsm.bear.status.values import faults
+from missionfsm.bear.status.views import Topic, concerns
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Event, Received
 from missionfsm.kernel.readings import Assumption

@@ -33,6 +33,7 @@ from missionfsm.bear.wire.messages import MissionState
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Citation, Rule, promise
+from missionfsm.kernel.text import brief
 
 
 @frozen(eq=False)
@@ -288,3 +289,27 @@ def single(value: Any) -> Any:  # noqa: ANN401 - any part of a message
         changed = {name: content for name, content in new.items() if content is not old[name]}
         return evolve(value, **changed) if changed else value
     return value
+
+
+def difference(wanted: Any, shown: Any) -> str:  # noqa: ANN401 - any values
+    """In what a value differs from the one expected, in a few words."""
+    if attrs.has(type(wanted)) and type(wanted) is type(shown):
+        for attribute in attrs.fields(type(wanted)):
+            one, other = getattr(wanted, attribute.name), getattr(shown, attribute.name)
+            if one != other:
+                inner = difference(one, other)
+                return f"{attribute.name}{'.' if attrs.has(type(one)) and attrs.has(type(other)) else ' '}{inner}"
+    return f"is {brief_value(shown)}, expected {brief_value(wanted)}"
+
+
+def brief_value(value: Any) -> str:  # noqa: ANN401 - any value
+    """A value as a message shows it: what is set, in short."""
+    if value is None:
+        return "unset"
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(brief_value, value[:3])) + (", …]" if len(value) > 3 else "]")
+    if attrs.has(type(value)):
+        fields = attrs.fields(type(value))
+        parts = [(one.name, getattr(value, one.name)) for one in fields if getattr(value, one.name) is not None]
+        return "{" + ", ".join(f"{name}: {brief_value(content)}" for name, content in parts) + "}"
+    return named(value) if hasattr(value, "name") else brief(value)

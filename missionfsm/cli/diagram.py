@@ -94,8 +94,8 @@ def _effective(shown: Sequence[Picture], forms: Sequence[str], wanted: Wanted) -
 
 
 def _called(name: str, shown: Sequence[Picture]) -> list[Picture]:
-    """The picture that is called so; or all of what is called so, under whatever readings; or all of a system."""
-    called = [one for one in shown if name == one.id]
+    """The picture that is called so, with its parts; or what is so under whatever readings; or all of a system."""
+    called = [one for one in shown if name in (one.id, one.whole and f"{one.system}/{one.whole}")]
     called = called or [one for one in shown if name in (one.system, f"{one.system}/{one.subject}")]
     if not called:
         stop(f"there is no picture {name}; there are {', '.join(one.id for one in shown) or 'none'}", BAD_INPUT)
@@ -126,6 +126,15 @@ def _of_file(path: str) -> Picture:
 
 
 def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
+    """Write one picture: the whole of it, but as an SVG, which of what is too much for one picture has the parts."""
+    from missionfsm.tools.draw.gallery import SVG  # noqa: PLC0415 - commands load what they need
+
+    if len(shown) > 1:
+        wholes = {(one.system, one.name) for one in shown}
+        drawn = (
+            one for one in shown if (not one.divided if forms == (SVG,) else (one.system, one.whole) not in wholes)
+        )
+        shown = tuple(drawn)
     if len(shown) != 1 or len(forms) != 1:
         ids = ", ".join(picture.id for picture in shown)
         stop(f"only one picture in one format goes to stdout; name a folder with -o, or one of {ids}", BAD_INPUT)
@@ -136,6 +145,8 @@ def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
 
 
 def _no_machine(shown: Picture, form: str) -> str:
+    if shown.whole:
+        return f"{shown.id} cannot be had as {form}: parts are only drawn; the whole is {shown.system}/{shown.whole}"
     return f"{shown.id} cannot be had as {form}: only a lifecycle is a machine, in which every event leads to one state"
 
 
@@ -181,9 +192,9 @@ def _svg(dot: str) -> str:
     """What Graphviz makes of DOT."""
     import graphviz  # noqa: PLC0415 - only SVG needs it here
 
-    from missionfsm.tools.draw.svg import light_and_dark  # noqa: PLC0415 - as above
+    from missionfsm.tools.draw.svg import drawn  # noqa: PLC0415 - as above
 
     try:
-        return light_and_dark(str(graphviz.Source(dot).pipe(format="svg", encoding="utf-8")))
+        return drawn(dot, lambda text: str(graphviz.Source(text).pipe(format="svg", encoding="utf-8")))
     except graphviz.ExecutableNotFound:
         stop(_WITHOUT_DOT, BAD_INPUT)

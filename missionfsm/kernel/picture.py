@@ -11,6 +11,21 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.terms import Incident, Refs, Request, State, View
 
 
+@frozen
+class Part:
+    """Some of what is done in a system, which is drawn by itself where the whole is too much for one picture.
+
+    Attributes:
+        name: what it shows, in a word; the files of the picture are called after it.
+        title: the same in a few words.
+        labels: what doing that is called.
+    """
+
+    name: str
+    title: str
+    labels: tuple[str, ...]
+
+
 @frozen(eq=False)
 class Sketch:
     """A quotient of the explored graph: which states are one node, and what a step between them is called.
@@ -28,6 +43,8 @@ class Sketch:
         inputs, drives: what is tried.
         world: the one that it starts in.
         contrasts: choices of a reading, such as ``AM-09=b``, that are worth a picture beside the reference's reading.
+        parts: how it is divided where it is too much for one picture; where nothing is said, what ends everything is
+            drawn apart.
     """
 
     name: str
@@ -41,6 +58,7 @@ class Sketch:
     drives: tuple[JSON, ...] = ()
     world: JSON = field(factory=dict)
     contrasts: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
 
 
 @frozen

@@ -37,6 +37,8 @@ from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.tools.draw.diagram import state_name
+from missionfsm.tools.draw.gallery import SVG, drawn
+from missionfsm.tools.draw.index import path
 from missionfsm.tools.draw.tables import markdown
 from missionfsm.tools.mutate.teeth import mutants
 
@@ -173,10 +175,11 @@ def _rule(rule: Rule, named_by: tuple[Clause, ...], ways: int) -> tuple[str, ...
 
 
 def _picture(system: System, name: str) -> Iterator[str]:
-    """The picture as it stands in ``diagrams/``, which are computed as well; nothing if there is none."""
-    known = (*(chart.name for chart in system.spec.charts), *(sketch.name for sketch in system.sketches))
-    if name in known:
-        yield f"![{system.name}: {name}](../diagrams/{system.name}/{name.replace(' ', '-')}.svg)"
+    """The picture as it stands in ``diagrams/``, which are computed as well, or its parts; nothing if there is none."""
+    for number, one in enumerate(drawn(system, name.replace(" ", "-"))):
+        if number:
+            yield ""
+        yield f"![{one.diagram.title}](../diagrams/{path(one, SVG)})"
 
 
 def _chart(spec: Spec, name: str) -> Iterator[str]:

@@ -8,12 +8,13 @@ from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import ANY_NAME, Input
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Sketch
+from missionfsm.kernel.picture import Part, Sketch
 from missionfsm.kernel.terms import Refs
 
 _MOST = 4
 """Listed missions: enough for two to wait behind one, after another has ended."""
 
+_COMMANDS = ("PAUSE", "RESUME", "CANCEL", "FINISH")
 _GOALS: JSON = {"goals": [{"destinationId": "table-1"}, {"destinationId": "table-2"}]}
 _MISSION: JSON = {"mission": {"serviMission": {"deliveryMission": _GOALS}}}
 _PROMPTS = (
@@ -25,7 +26,7 @@ _PROMPTS = (
     Input("ChargeRobot", {}),
     *(
         Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": f"COMMAND_{command}"}})
-        for command in ("PAUSE", "RESUME", "CANCEL", "FINISH")
+        for command in _COMMANDS
     ),
     Input("SkipGoal", {}),
     Input("ClearMissionStatus", {}),
@@ -37,6 +38,16 @@ _HAPPENS = {
     "missionSucceeded": "the mission succeeds",
     "missionFailed": "the mission fails",
 }
+_COME = Part(
+    "come",
+    "how they come and are forgotten",
+    tuple(dict.fromkeys(prompt.method for prompt in _PROMPTS if prompt.method not in ("UpdateMission", "SkipGoal"))),
+)
+_END = Part(
+    "end",
+    "how they are held and end",
+    (*(f"UpdateMission {command}" for command in _COMMANDS), "SkipGoal", *_HAPPENS.values()),
+)
 
 
 def _node(robot: Robot) -> str:
@@ -77,5 +88,6 @@ SKETCHES = (
         inputs=_PROMPTS,
         drives=_DRIVES,
         contrasts=("AM-09=b", "AM-09=c", "AM-10=b"),
+        parts=(_COME, _END),
     ),
 )

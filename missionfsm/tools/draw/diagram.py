@@ -117,13 +117,14 @@ def state_name(state: object) -> str:
     return str(getattr(state, "name", state))
 
 
-_MARKS = "¹²³⁴⁵⁶⁷⁸⁹"
+MARKS = "¹²³⁴⁵⁶⁷⁸⁹"
+"""What stands at an arrow and at the remark that is about it."""
 
 
 def of_chart(system: str, chart: Chart[object]) -> Diagram:
     """A lifecycle. What is noted of a trigger is marked on its arrows and said below."""
     names = tuple(identifier(state_name(state)) for state in chart.states)
-    marks = dict(zip((note for note in chart.notes if note in chart.triggers), _MARKS, strict=False))
+    marks = dict(zip((note for note in chart.notes if note in chart.triggers), MARKS, strict=False))
     moves: dict[tuple[str, str], list[str]] = {}
     for trigger, source, target in chart.table:
         label = f"{trigger} {marks[trigger]}" if trigger in marks else trigger

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from missionfsm.kernel.chart import Chart
-from missionfsm.kernel.picture import Plan, Sketch
+from missionfsm.kernel.picture import Part, Plan, Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.system import System
 from missionfsm.tools.draw import diagram as picture
 from missionfsm.tools.draw import dot, machines, mermaid, plantuml, tables
 from missionfsm.tools.draw.diagram import Diagram
+from missionfsm.tools.draw.parts import apart, parts
 from missionfsm.tools.draw.quotient import quotient
 
 
@@ -25,6 +26,8 @@ class Picture:
         name: the same with the readings that it is drawn under; its files are named after it.
         table: the same in words, as Markdown.
         chart: what it shows, where that is a lifecycle.
+        whole: the name of the picture that this is a part of; empty where it is none.
+        divided: whether it is too much for one picture, so that there are parts of it.
     """
 
     system: str
@@ -33,6 +36,8 @@ class Picture:
     diagram: Diagram
     table: str
     chart: Chart[object] | None = None
+    whole: str = ""
+    divided: bool = False
 
     @property
     def id(self) -> str:
@@ -44,7 +49,8 @@ class Picture:
 class Format:
     """How a picture is written: what its files end in, and the text; None for a picture that it cannot say.
 
-    An SVG is what Graphviz makes of the DOT, so its text is that.
+    An SVG is what Graphviz makes of the DOT, so its text is that; but for what is too much for one picture, of which
+    only the parts are drawn. A table has the whole in it, so the parts have none.
     """
 
     suffix: str
@@ -67,12 +73,12 @@ def _xstate(shown: Picture) -> str | None:
 SVG = "svg"
 FORMATS: Mapping[str, Format] = {
     "dot": Format(".dot", lambda shown: dot.write(shown.diagram)),
-    SVG: Format(".svg", lambda shown: dot.write(shown.diagram)),
+    SVG: Format(".svg", lambda shown: None if shown.divided else dot.write(shown.diagram)),
     "mermaid": Format(".mmd", lambda shown: mermaid.write(shown.diagram)),
     "plantuml": Format(".puml", lambda shown: plantuml.write(shown.diagram)),
     "scxml": Format(".scxml", _scxml),
     "xstate": Format(".xstate.json", _xstate),
-    "table": Format(".md", lambda shown: shown.table),
+    "table": Format(".md", lambda shown: shown.table or None),
 }
 DRAWN = frozenset({"dot", SVG, "mermaid", "plantuml"})
 """The formats that are pictures, which tell refusals only where that is wanted."""
@@ -112,18 +118,50 @@ def pictures(system: System, wanted: Wanted) -> Iterator[Picture]:
     if wanted.versus and not versus:
         return
     if not wanted.versus:
-        yield from (_of_chart(system, chart) for chart in system.spec.charts)
+        for chart in system.spec.charts:
+            yield from _with_parts(_of_chart(system, chart))
     for sketch in system.sketches:
-        if versus:
-            yield _of_contrast(system, sketch, readings, versus, refusals=wanted.refusals)
-            continue
-        yield _of_sketch(system, sketch, readings, refusals=wanted.refusals)
-        if not wanted.readings:
-            for contrast in sketch.contrasts:
-                name, _, letter = contrast.partition("=")
-                yield _of_contrast(system, sketch, {}, {name: letter}, refusals=wanted.refusals)
+        for shown in _of_system(system, sketch, readings, versus, wanted):
+            yield from _with_parts(shown, sketch.parts)
     if not wanted.versus:
         yield from (of_plan(system.name, plan) for plan in system.plans)
+
+
+def drawn(system: System, subject: str) -> tuple[Picture, ...]:
+    """What is drawn of a lifecycle or a sketch under the reference's readings: it, or its parts; nothing of another."""
+    charts = (chart for chart in system.spec.charts if chart.name.replace(" ", "-") == subject)
+    sketches = (sketch for sketch in system.sketches if sketch.name == subject)
+    found = (
+        *(one for chart in charts for one in _with_parts(_of_chart(system, chart))),
+        *(
+            one
+            for sketch in sketches
+            for one in _with_parts(_of_sketch(system, sketch, {}, refusals=False), sketch.parts)
+        ),
+    )
+    return tuple(one for one in found if not one.divided)
+
+
+def _of_system(
+    system: System, sketch: Sketch, readings: Mapping[str, str], versus: Mapping[str, str], wanted: Wanted
+) -> Iterator[Picture]:
+    """The pictures that are made of one sketch."""
+    if versus:
+        yield _of_contrast(system, sketch, readings, versus, refusals=wanted.refusals)
+        return
+    yield _of_sketch(system, sketch, readings, refusals=wanted.refusals)
+    if not wanted.readings:
+        for contrast in sketch.contrasts:
+            name, _, letter = contrast.partition("=")
+            yield _of_contrast(system, sketch, {}, {name: letter}, refusals=wanted.refusals)
+
+
+def _with_parts(shown: Picture, wanted: tuple[Part, ...] = ()) -> Iterator[Picture]:
+    """A picture, and the parts of it where it is too much for one."""
+    found = tuple(parts(shown.diagram, wanted))
+    yield evolve(shown, divided=bool(found))
+    for part, drawn in found:
+        yield Picture(shown.system, shown.subject, f"{shown.name}-{part.name}", drawn, "", whole=shown.name)
 
 
 def _of_chart(system: System, chart: Chart[object]) -> Picture:
@@ -162,7 +200,7 @@ def _of_contrast(
     )
     letters = tuple("".join("-".join(one.possible(assumed)) for one in differing) for assumed in choices)
     stem = _stem(sketch.name, *following, *(one.id for one in differing), *letters)
-    return Picture(system.name, sketch.name, stem, drawn, tables.of_contrast(one, other, (first, second)))
+    return Picture(system.name, sketch.name, stem, apart(drawn), tables.of_contrast(one, other, (first, second)))
 
 
 def _following(ambiguities: Iterable[Ambiguity], assumed: int) -> str:

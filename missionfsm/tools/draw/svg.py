@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from missionfsm.tools.draw.diagram import Side
 from missionfsm.tools.draw.dot import COLOURS, FADED, INK, SHADE
+from missionfsm.tools.draw.legible import faults
 
 DARK: Mapping[str, str] = {
     "white": "#1c2024",
@@ -29,6 +30,42 @@ _STYLE = "\n".join(
         "}</style>",
     )
 )
+
+
+_LAYOUTS = (
+    "",
+    "nodesep=0.8 ranksep=0.8",
+    "nodesep=1.2 ranksep=0.8",
+    "rankdir=BT",
+    "rankdir=LR nodesep=0.5 ranksep=0.8",
+    "rankdir=LR nodesep=0.8 ranksep=1.2",
+    "nodesep=1.6 ranksep=1.2",
+)
+"""Attributes of Graphviz, from the closest layout to the loosest."""
+
+
+def drawn(dot: str, draw: Callable[[str], str]) -> str:
+    """A picture in the first layout in which nothing is in the way of anything; else in the one with the least faults.
+
+    Args:
+        dot: the picture in DOT.
+        draw: DOT to the SVG that Graphviz makes of it.
+    """
+    best, fewest = "", None
+    for layout in _LAYOUTS:
+        svg = draw(_laid_out(dot, layout))
+        wrong = len(faults(svg))
+        if fewest is None or wrong < fewest:
+            best, fewest = svg, wrong
+        if not wrong:
+            break
+    return light_and_dark(best)
+
+
+def _laid_out(dot: str, layout: str) -> str:
+    """What is said last of a graph is what holds."""
+    body, end, rest = dot.rpartition("}")
+    return f"{body}graph [{layout}]\n{end}{rest}" if layout else dot
 
 
 def light_and_dark(svg: str) -> str:

@@ -33,13 +33,9 @@ COMPLEX = {
         "transition.TransitionFunction._received",
         "transition._pairings",
     },
-    "tools.reference": {"model.Reference._take"},
     # Readers of what others wrote: a case for each thing that may be wrong with it.
     "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
-    "isaac.shared": {"line._named"},
-    "kernel": {"middle.in_the_middle", "rules.decide"},
     # What a mission server may do next: a case for each reading.
-    "isaac.robot": {"effects._concluded"},
     "isaac.runtime": {"server.MissionServerCore._name"},
     "isaac.server": {
         "dispatch._choices",
@@ -56,7 +52,6 @@ COMPLEX = {
     # Commands: an option after the other.
     "cli": {"defaults.defaults", "diagram.diagram", "dispatch.dispatch", "check.check", "conform.conform"},
     # To be taken apart.
-    "pages": {"actions.Doings._filled", "graph.Graph._made"},
     "tools.check": {
         "explain._against_answer",
         "explain._against_message",

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Iterator
+from typing import Concatenate, ParamSpec, TypeVar
 
 from attrs import evolve
 
@@ -17,7 +18,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Drive, Spec
 from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step
-from missionfsm.kernel.terms import Content, View
+from missionfsm.kernel.terms import Content, Request, State, View
 from missionfsm.kernel.values import value
 
 LOG_01 = Ambiguity(
@@ -55,6 +56,9 @@ class AnyView:
 
 ANY = AnyView()
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 
 def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
     """The same system in a log that has not all there was.
@@ -64,44 +68,78 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
         others: whether others use it as well.
     """
     middle, decided, rebuilt = spec.middle, spec.decided, spec.rebuilt
-    foresees, succeeds = spec.foresees, spec.succeeds
+    foresees, succeeds, restarted = spec.foresees, spec.succeeds, spec.restarted
     if middle is None or not (anywhere or others):
         return spec
     if middle.glimpses is None:
         return evolve(spec, anywhere=anywhere)
 
-    def matches(view: View, content: Content) -> tuple[Match, ...] | Mismatch:
-        if view is ANY:
-            return Mismatch("", content.says) if isinstance(content, Malformed) else (Match(),)
-        return spec.matches(view, content)
+    def again(other: Spec) -> Spec:
+        return in_the_middle(other, anywhere=anywhere, others=others)
 
     return evolve(
         spec,
         anywhere=anywhere,
         others=others,
-        ambiguities=(*spec.ambiguities, *((LOG_01,) if anywhere else ()), *((LOG_02,) if others else ())),
+        ambiguities=(*spec.ambiguities, *_read(anywhere=anywhere, others=others)),
         initial=Unknown if anywhere else spec.initial,
-        outcomes=lambda state, request, refs: (
-            _imaginable(spec, state, request, len(refs))
-            if isinstance(state, Unknown)
-            else spec.outcomes(state, request, refs)
-        ),
+        outcomes=functools.partial(_outcomes, spec),
         drives={name: _known_only(drive) for name, drive in spec.drives.items()},
-        urgent=lambda state: () if isinstance(state, Unknown) else spec.urgent(state),
-        spontaneous=lambda state: () if isinstance(state, Unknown) else spec.spontaneous(state),
-        matches=matches,
-        looks=lambda view, content: None if view is ANY else spec.looks(view, content),
-        names=lambda state: 0 if isinstance(state, Unknown) else spec.names(state),
-        describe=lambda one: str(one) if isinstance(one, Unknown) else "anything" if one is ANY else spec.describe(one),
-        foresees=foresees and (lambda state, *more: isinstance(state, Unknown) or foresees(state, *more)),
-        succeeds=succeeds and (lambda state, *more: isinstance(state, Unknown) or succeeds(state, *more)),
-        decided=decided and (lambda assumed: in_the_middle(decided(assumed), anywhere=anywhere, others=others)),
-        rebuilt=rebuilt and (lambda operations: in_the_middle(rebuilt(operations), anywhere=anywhere, others=others)),
-        restarted=spec.restarted
-        and (
-            lambda state: spec.restarted(spec.initial(state.world) if isinstance(state, Unknown) else state)  # type: ignore[misc]
-        ),
+        urgent=_of_known(spec.urgent, ()),
+        spontaneous=_of_known(spec.spontaneous, ()),
+        matches=functools.partial(_matches, spec),
+        looks=functools.partial(_looks, spec),
+        names=_of_known(spec.names, 0),
+        describe=functools.partial(_describe, spec),
+        foresees=foresees and _of_known(foresees, unknown=True),
+        succeeds=succeeds and _of_known(succeeds, unknown=True),
+        decided=decided and (lambda assumed: again(decided(assumed))),
+        rebuilt=rebuilt and (lambda operations: again(rebuilt(operations))),
+        restarted=restarted and functools.partial(_restarted, spec),
     )
+
+
+def _read(*, anywhere: bool, others: bool) -> Iterator[Ambiguity]:
+    """What is to be found out about such a log."""
+    if anywhere:
+        yield LOG_01
+    if others:
+        yield LOG_02
+
+
+def _of_known(function: Callable[Concatenate[State, P], T], unknown: T) -> Callable[Concatenate[State, P], T]:
+    """A function of a state, with what it gives for one of which nothing is known."""
+
+    def asked(state: State, /, *more: P.args, **named: P.kwargs) -> T:
+        return unknown if isinstance(state, Unknown) else function(state, *more, **named)
+
+    return asked
+
+
+def _outcomes(spec: Spec, state: State, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+    if isinstance(state, Unknown):
+        return _imaginable(spec, state, request, len(refs))
+    return spec.outcomes(state, request, refs)
+
+
+def _matches(spec: Spec, view: View, content: Content) -> tuple[Match, ...] | Mismatch:
+    if view is ANY:
+        return Mismatch("", content.says) if isinstance(content, Malformed) else (Match(),)
+    return spec.matches(view, content)
+
+
+def _looks(spec: Spec, view: View, content: Content) -> Hashable:
+    return None if view is ANY else spec.looks(view, content)
+
+
+def _describe(spec: Spec, what: Request | View | State) -> str:
+    return str(what) if isinstance(what, Unknown) else "anything" if what is ANY else spec.describe(what)
+
+
+def _restarted(spec: Spec, state: State) -> Step:
+    """What is restarted is in a state that is known, whatever was known before."""
+    assert spec.restarted, "asked only of systems that can be restarted"  # noqa: S101
+    return spec.restarted(spec.initial(state.world) if isinstance(state, Unknown) else state)
 
 
 def _known_only(drive: Drive) -> Drive:

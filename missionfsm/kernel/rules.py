@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from attrs import evolve, field, frozen
 
@@ -243,14 +243,16 @@ def decide(holding: tuple[Rule, ...], rank: Ranking = unranked) -> tuple[Decisio
     decisions: list[Decision] = []
     for case in itertools.product(*_cases([rule.under for rule in holding if rule.under is not None])):
         active = tuple(rule for rule in holding if rule.under is None or meet(UNCONSTRAINED, (*case, rule.under)))
-        if not active:
-            decisions.append(Decision(None, (), case))
-            continue
-        codes = {rule.code for rule in active}
-        for code, assumes in rank(active) if len(codes) > 1 else ((str(active[0].code), ()),):
-            justified = tuple(rule for rule in active if rule.code == code)
-            decisions.append(Decision(code, justified, (*case, *assumes)))
+        decisions += _decided(active, case, rank) if active else (Decision(None, (), case),)
     return tuple(decisions)
+
+
+def _decided(active: tuple[Rule, ...], case: tuple[Assumption, ...], rank: Ranking) -> Iterator[Decision]:
+    """A decision for each code that may be answered where these rules hold in a case of the readings."""
+    codes = {rule.code for rule in active}
+    for code, assumes in rank(active) if len(codes) > 1 else ((str(active[0].code), ()),):
+        justified = tuple(rule for rule in active if rule.code == code)
+        yield Decision(code, justified, (*case, *assumes))
 
 
 def _cases(assumptions: Iterable[Assumption]) -> list[list[Assumption]]:

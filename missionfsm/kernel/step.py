@@ -88,6 +88,11 @@ class Step:
     applied: bool = True
     kinds: tuple[str, ...] = ()
 
+    def adds(self, names: int) -> int:
+        """How many names it adds to so many that the state before it has."""
+        referred = (*(self.names or ()), *self.refs, *[opening.ref for opening in self.opens])
+        return max(0, max(referred, default=-1) + 1 - names)
+
 
 @value
 class Match:

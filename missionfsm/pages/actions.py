@@ -22,6 +22,8 @@ Request = Any
 Event = Any
 
 CALL, DRIVE, ITSELF = "call", "drive", "itself"
+FIXED = -1
+"""Instead of the slot of a name: it stands there as it is."""
 ENVIRONMENT, BY_ITSELF = "environment", "by itself"
 """The headings under which drives and what a system does by itself stand."""
 
@@ -171,21 +173,25 @@ class Doings:
         any_name = ((None, TEXT),) if ANY_NAME in dumped(params) else ()
         wanted: dict[int | None, str] = dict((*slots(params).items(), *any_name))
         stand_ins = {writer.place(kind, at): slot for at, (slot, kind) in enumerate(wanted.items())}
-        marked = put(params, {slot: name for name, slot in stand_ins.items()}, naming)
         # The names in params are picked by us, or stand there as they are.
-        order = names_in(marked)
-        choices = [
-            [None, *(at for at, kind in enumerate(kinds) if kind == wanted[stand_ins[name]])]
-            if name in stand_ins
-            else [None]
-            for name in order
-        ]
-        for refs in itertools.product(*choices):
-            picked = [(stand_ins[name], at) for name, at in zip(order, refs, strict=True) if name in stand_ins]
+        order = names_in(put(params, {slot: name for name, slot in stand_ins.items()}, naming))
+        free = [stand_ins.get(name, FIXED) for name in order]
+        sorts = tuple(
+            wanted[slot] if slot != FIXED else kind_of(name) or TEXT for slot, name in zip(free, order, strict=True)
+        )
+        for refs in itertools.product(*self._choices(free, wanted, kinds)):
             chosen = {
                 slot: writer.made(wanted[slot], 0) if at is None else writer.place(wanted[slot], at)
-                for slot, at in picked
+                for slot, at in zip(free, refs, strict=True)
+                if slot != FIXED
             }
-            told = put(params, chosen, naming)
-            sorts = tuple(wanted[stand_ins[name]] if name in stand_ins else kind_of(name) or TEXT for name in order)
-            yield _Filled(told, refs, names_in(told), sorts, tuple(name not in stand_ins for name in order))
+            filled = put(params, chosen, naming)
+            yield _Filled(filled, refs, names_in(filled), sorts, tuple(slot == FIXED for slot in free))
+
+    def _choices(
+        self, free: list[int | None], wanted: dict[int | None, str], kinds: tuple[str, ...]
+    ) -> Iterator[list[int | None]]:
+        """For every name: the positions of those of its kind that may stand there, and None for one that is no name."""
+        for slot in free:
+            positions = () if slot == FIXED else (at for at, kind in enumerate(kinds) if kind == wanted[slot])
+            yield [None, *positions]

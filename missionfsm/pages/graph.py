@@ -15,6 +15,7 @@ from attrs import frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
@@ -181,10 +182,9 @@ class Graph:
 
     def _made(self, tried: Tried, step: Step, kinds: tuple[str, ...]) -> tuple[Effect, tuple[str, ...]]:
         opened = {opening.ref: opening.kind for opening in step.opens}
-        count = len(kinds)
-        highest = max((*(step.names or ()), *step.refs, *opened, count - 1))
+        added = range(len(kinds), len(kinds) + step.adds(len(kinds)))
         new = iter(step.kinds)
-        pool = (*kinds, *(opened[ref] if ref in opened else next(new, TEXT) for ref in range(count, highest + 1)))
+        pool = (*kinds, *(opened[ref] if ref in opened else next(new, TEXT) for ref in added))
         known = (*kinds, *tried.doing.brings)
         given = tuple(TEXT if at is None else known[at] for at in tried.doing.refs)
 
@@ -192,24 +192,11 @@ class Graph:
             return pool[ref] if ref >= 0 else given[-ref - 1]
 
         after = kinds if step.names is None else tuple(map(kind_of, step.names))
-
-        code = answer = result = ""
-        if step.answer is not None:
-            code, answer = step.answer.code, answer_words(step.answer, ())
-            places = tuple(self._writer.place(kind_of(ref), at) for at, ref in enumerate(step.refs))
-            if code != OK:
-                result = self._writer.text({"error": {"status": code}})
-            elif tried.method in self.system.codec.streams:
-                result = self._writer.text({"result": {"stream": PLACES}})
-            else:
-                written = self.system.codec.write_answer(tried.method, step.answer, places)
-                result = self._writer.text({"result": written})
+        places = tuple(self._writer.place(kind_of(ref), at) for at, ref in enumerate(step.refs))
         effect = Effect(
-            code,
-            answer,
-            result,
+            *self._answered(tried.method, step.answer, places),
             step.names,
-            highest + 1 - count,
+            len(added),
             step.refs,
             tuple(self._rules.number(rule) for rule in step.rules),
             self._assumptions.number(step.assumes),
@@ -219,6 +206,18 @@ class Graph:
             tuple(self._sent(one, step, kind_of) for one in step.emits if self._sends),
         )
         return effect, after
+
+    def _answered(self, method: str, answer: Answer | None, places: tuple[Name, ...]) -> tuple[str, str, str]:
+        """The code of an answer, the answer in words, and its line; empty where nothing is answered."""
+        if answer is None:
+            return "", "", ""
+        if answer.code != OK:
+            result: JSON = {"error": {"status": answer.code}}
+        elif method in self.system.codec.streams:
+            result = {"result": {"stream": PLACES}}
+        else:
+            result = {"result": self.system.codec.write_answer(method, answer, places)}
+        return answer.code, answer_words(answer, ()), self._writer.text(result)
 
     def _sent(
         self, emission: Emission, step: Step, kind_of: Callable[[int], str]

@@ -113,41 +113,42 @@ def _concluded(
         due: the statuses, in order.
     """
     runs = () if mission is None else (mission,)
-    offers = (_emission(here.world, "running", mission, offer=True),) if after.running else ()
     ids = tuple(one.id for one in because)
     if not here.connected:
         yield from _unconnected(here, after, runs, due, ids)
         return
-    for sent in range(len(due), -1, -1):
-        # Those up to `sent` are sent at once, the others wait: one that waits holds up those behind it.
-        now, later = due[:sent], due[sent:]
-        assumes = tuple({one.when: one.when["a"] for one in now[-1:]}.values())
-        if later:
-            assumes = (*assumes, later[0].when["b"])
-        if len({one.of for one in assumes}) < len(assumes):
-            continue
+    for now, later, assumes in _divided(due):
         flushed = bool(now) or not (here.waiting or later) or len(here.waiting) >= MAX_WAITING
-        kept = () if flushed else here.waiting
-        emits: list[Emission] = list(told(here)) if flushed else []
-        for one in now:
-            if one.offered:
-                emits.append(_emission(here.world, "running", one.about, offer=True))
-            emits.append(_emission(here.world, one.status, one.about))
-        waiting = (*kept, *(_waits(here, one) for one in later))
-        if not waiting:
-            emits += offers
-        names = (
-            *(_waiting_names(here) if kept else ()),
-            *(one.about for one in later if one.about is not None),
-            *runs,
+        waiting = (*(() if flushed else here.waiting), *(_waits(here, one) for one in later))
+        waited = 0 if flushed else here.waited
+        emits = (
+            *(told(here) if flushed else ()),
+            *_sent(here, now),
+            *((_emission(here.world, "running", mission, offer=True),) if after.running and not waiting else ()),
         )
-        yield Step(
-            evolve(after, waiting=waiting, waited=here.waited if kept else 0),
-            names=names,
-            emits=tuple(emits),
-            rules=ids,
-            assumes=assumes,
-        )
+        names = (*(() if flushed else _waiting_names(here)), *_names_in(later), *runs)
+        conclusion = evolve(after, waiting=waiting, waited=waited)
+        yield Step(conclusion, names=names, emits=emits, rules=ids, assumes=assumes)
+
+
+def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due, ...], tuple[Assumption, ...]]]:
+    """Those that are sent at once and those that wait, with what that assumes: one that waits holds up those behind."""
+    for sent in range(len(due), -1, -1):
+        now, later = due[:sent], due[sent:]
+        assumes = (*(one.when["a"] for one in now[-1:]), *(one.when["b"] for one in later[:1]))
+        if len({one.of for one in assumes}) == len(assumes):
+            yield now, later, assumes
+
+
+def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
+    for one in due:
+        if one.offered:
+            yield _emission(here.world, "running", one.about, offer=True)
+        yield _emission(here.world, one.status, one.about)
+
+
+def _names_in(due: tuple[Due, ...]) -> Iterator[int]:
+    return (one.about for one in due if one.about is not None)
 
 
 def _waits(here: Codelet, due: Due) -> Waiting:
@@ -161,7 +162,7 @@ def _unconnected(
     before = _waiting_names(here)
     yield Step(evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(AI_15_STATUS["a"],))
     reports = tuple(_waits(here, one) for one in due)
-    names = (*before, *(one.about for one in due if one.about is not None), *runs)
+    names = (*before, *_names_in(due), *runs)
     kept = evolve(after, waiting=(*here.waiting, *reports))
     yield Step(kept, names=names, rules=ids, assumes=(AI_15_STATUS["b"],))
 

@@ -120,34 +120,44 @@ def stamp(line: object) -> int | None:
 
 
 def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ...], LineContent | Malformed]:
-    payload = message.payload
-    own = message.header.uuid if message.header.uuid is not None and message.header.uuid.value else None
-    borrowed = own is not None and not isinstance(payload, TextProto) and own == payload.uuid
-    marks = (_bare(raw), own is not None, borrowed, _unsigned(raw["header"].get("proto")))
-    channel = message.header.channel
+    payload, stamped = message.payload, message.header.uuid
+    own = stamped is not None and bool(stamped.value)
+    borrowed = own and not isinstance(payload, TextProto) and stamped == payload.uuid
+    marks = (_bare(raw), own, borrowed, _unsigned(raw["header"].get("proto")))
     if isinstance(payload, TextProto):
-        return (), LineContent("text", channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
+        return (), LineContent("text", message.header.channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
     names: list[Name] = []
-    named = payload.uuid is not None and payload.uuid.value != 0
-    if named and payload.uuid is not None:
+    if payload.uuid is not None and payload.uuid.value:
         names.append(uuid_name(payload.uuid))
-    header_named = header and message.header.uuid is not None
-    if header_named and message.header.uuid is not None:
-        names.append(uuid_name(message.header.uuid))
-    if isinstance(payload, MissionProto):
-        if raw["payload"].get("config") is None:
-            return tuple(names), Malformed("payload.config is missing: a MissionProto carries its configuration")
-        what = canonical(payload.config)
-        if what is None:
-            return tuple(names), Malformed("the configuration is no JSON object")
-        form = "text" if isinstance((raw["payload"].get("config") or {}).get("serialized"), str) else "object"
-        return tuple(names), LineContent("mission", channel, what, form, named, header_named, *marks)
-    assert isinstance(payload, MissionStatusProto)  # noqa: S101 - the only kind that is left
+    named = bool(names)
+    if header and stamped is not None:
+        names.append(uuid_name(stamped))
+    said = _mission(payload, raw) if isinstance(payload, MissionProto) else _status(payload, raw)
+    if isinstance(said, Malformed):
+        return tuple(names), said
+    kind, what, form = said
+    header_named = header and stamped is not None
+    return tuple(names), LineContent(kind, message.header.channel, what, form, named, header_named, *marks)
+
+
+def _mission(payload: MissionProto, raw: JSON) -> tuple[str, str, str] | Malformed:
+    """What kind of line a mission is, its configuration, and the form in which that is written."""
+    config = raw["payload"].get("config")
+    if config is None:
+        return Malformed("payload.config is missing: a MissionProto carries its configuration")
+    what = canonical(payload.config)
+    if what is None:
+        return Malformed("the configuration is no JSON object")
+    return "mission", what, "text" if isinstance((config or {}).get("serialized"), str) else "object"
+
+
+def _status(payload: MissionStatusProto, raw: JSON) -> tuple[str, str, str] | Malformed:
+    """What kind of line a status is, the status, and the form in which that is written."""
     written = raw["payload"].get("missionStatus")
     form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
     if form == "upper" and written != written.upper():
-        return tuple(names), Malformed(f"payload.missionStatus is written {strictjson.shown(written)}")
-    return tuple(names), LineContent("status", channel, payload.mission_status.value, form, named, header_named, *marks)
+        return Malformed(f"payload.missionStatus is written {strictjson.shown(written)}")
+    return "status", payload.mission_status.value, form
 
 
 def _unsigned(proto: JSON) -> bool:

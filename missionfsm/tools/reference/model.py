@@ -209,25 +209,13 @@ class Reference:
     def _take(
         self, here: Snapshot, step: Step, given: tuple[Name, ...]
     ) -> tuple[Snapshot, list[Sent], tuple[Name, ...]]:
-        channels = {one.ref: one.kind for one in step.opens}
-        highest = max((*(step.names or ()), *step.refs, *channels, len(here.names) - 1))
-        pool = list(here.names)
-        minted = here.minted
-        for ref, kind in zip(
-            range(len(pool), highest + 1), itertools.chain(step.kinds, itertools.repeat("")), strict=False
-        ):
-            minted += 1
-            if ref in channels:
-                pool.append((channels[ref], minted))
-            else:
-                pool.append(self.system.naming.make(kind, minted) if kind else self._mint(minted))
-        pool += reversed(given)
+        made = self._made(here, step)
+        pool = [*here.names, *made, *reversed(given)]
         names = here.names if step.names is None else tuple(pool[ref] for ref in step.names)
-        after = evolve(here, state=step.after, names=names, minted=minted)
-        if self.system.spec.recalls and names is not here.names and (lapsed := set(here.names).difference(names)):
-            after = evolve(after, gone=here.gone | lapsed)
-        if step.closes:
-            after = evolve(after, channels=tuple(one for one in after.channels if one.topic not in step.closes))
+        lapsed = set(here.names).difference(names) if self.system.spec.recalls else ()
+        gone = here.gone.union(lapsed) if lapsed else here.gone
+        left = tuple(one for one in here.channels if one.topic not in step.closes) if step.closes else here.channels
+        after = evolve(here, state=step.after, names=names, minted=here.minted + len(made), gone=gone, channels=left)
         sent: list[Sent] = []
         passing = self.urgent(step.after) is not None if step.emits else False
         concerns = self.system.spec.concerns
@@ -241,6 +229,19 @@ class Reference:
             for emission in opening.owed:
                 after = self._send(after, [channel], emission, pool, sent, passing=False)
         return after, sent, tuple(pool[ref] for ref in step.refs)
+
+    def _made(self, here: Snapshot, step: Step) -> list[Name]:
+        """The names that a step adds: each of its kind, channels by their numbers."""
+        channels = {opening.ref: opening.kind for opening in step.opens}
+        kinds = itertools.chain(step.kinds, itertools.repeat(""))
+        made: list[Name] = []
+        for at in range(step.adds(len(here.names))):
+            ref, kind, number = len(here.names) + at, next(kinds), here.minted + at + 1
+            if ref in channels:
+                made.append((channels[ref], number))
+            else:
+                made.append(self.system.naming.make(kind, number) if kind else self._mint(number))
+        return made
 
     def _send(  # noqa: PLR0913 - what a message is made of
         self,

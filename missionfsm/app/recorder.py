@@ -1,8 +1,8 @@
 """What a proxy sees, written down and judged, while traffic goes on whatever becomes of that.
 
-The proxy only puts lines into a queue. A thread hands them, many at a time, to a process of its own, where one thread
-reads and writes them and another judges them: neither takes the proxy's interpreter from the traffic. A full disk ends
-the file and a judge that lags behind is given up, and both are said; the traffic notices neither.
+The proxy only puts what came by into a queue. A thread hands it, much at a time, to a process of its own, where one
+thread reads it and writes it as lines and another judges them: neither takes the proxy's interpreter from the traffic.
+A full disk ends the file and a judge that lags behind is given up, and both are said; the traffic notices neither.
 """
 
 from __future__ import annotations
@@ -12,34 +12,37 @@ import multiprocessing
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any, Generic, TypeVar
 
 import orjson
 from attrs import frozen
 
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.codec import JSON, UnreadableError
 
 if TYPE_CHECKING:
     from missionfsm.tools.check.verdict import Verdict
 
-MAX_WAITING_LINES = 1_000_000
-"""Lines that may wait to be written or judged; what comes beyond them is counted and left out."""
+MAX_WAITING_BYTES = 256 * 1024 * 1024
+"""What may wait to be read; then recording ends, since a history with a hole in it would be judged wrong."""
+ITEM_BYTES = 500
+"""What anything that waits takes beside its bytes."""
 BATCH_SECONDS = 0.02
-"""How long lines are gathered before they are handed over, many at a time."""
-MAX_BATCH_LINES = 10_000
+"""How long it is gathered before it is handed over, much at a time."""
+MAX_BATCH_ITEMS = 10_000
 MAX_WAITING_BATCHES = 100_000
 """Batches that may wait to be judged; then the judge gives up."""
 LAG_SECONDS = 90.0
 """How long a judge that lags behind may take for what waits, once traffic is over."""
 PAGE_SECONDS = 2
 """How often the page is written and refreshed."""
-_END = None
 
+Item = TypeVar("Item")
 Tell = Callable[[str], None]
-Read = Callable[[dict[str, JSON]], dict[str, JSON]]
+Read = Callable[[Item], Iterable[dict[str, JSON]]]
+"""The lines of a history that what came by makes. Raises UnreadableError where what follows would have a hole."""
 
 
 @frozen
@@ -58,25 +61,24 @@ class _Work:
     Attributes:
         head: the first line of the history.
         file: where the lines are written; "" for nowhere.
-        read: makes of a line as it is handed over one of the format.
-        judge, readings, html: as for `Recorder`.
+        reader, judge, readings, html: as for `Recorder`.
     """
 
     head: dict[str, JSON]
     file: str
-    read: Read
+    reader: Callable[[], Read[Any]]
     judge: bool
     readings: dict[str, str]
     html: str
 
 
-class Recorder:
-    """Takes the lines of a history; never blocks whoever brings them.
+class Recorder(Generic[Item]):
+    """Takes what comes by, and makes a history of it; never blocks whoever brings it.
 
     Args:
         head: the first line of the history.
+        reader: makes what reads what comes by, in another process, and so can be pickled.
         file: where the lines are written; "" for nowhere.
-        read: makes of a line as it is brought one of the format, in another process; a function of a module.
         judge: whether they are judged.
         readings: the readings to assume.
         html: a page that says how it stands, written anew every few seconds; "" for none. Needs `judge`.
@@ -86,27 +88,29 @@ class Recorder:
         OSError: the file cannot be written.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first have a default
+    def __init__(  # noqa: PLR0913 - all but the first two have a default
         self,
         head: dict[str, JSON],
+        reader: Callable[[], Read[Item]],
         *,
         file: str = "",
-        read: Read = dict,
         judge: bool = True,
         readings: dict[str, str] | None = None,
         html: str = "",
         tell: Tell,
     ) -> None:
-        self._lines: queue.SimpleQueue[JSON] = queue.SimpleQueue()
+        self._waiting: queue.SimpleQueue[tuple[Item, int] | None] = queue.SimpleQueue()
+        self._bytes_come = 0
+        self._bytes_gone = 0
         self._tell = tell
-        self._left_out = 0
+        self._over = False
         self.judged: Judged | None = None
         if file:
             Path(file).open("wb").close()  # what cannot be written is said at once
         context = multiprocessing.get_context("spawn")
         receive, self._to_process = context.Pipe(duplex=False)
         self._from_process, send = context.Pipe(duplex=False)
-        work = _Work(head, file, read, judge, readings or {}, html)
+        work = _Work(head, file, reader, judge, readings or {}, html)
         self._process = context.Process(target=_work, args=(work, receive, send), daemon=True)
         self._process.start()
         receive.close()
@@ -115,30 +119,45 @@ class Recorder:
         self._thread = threading.Thread(target=self._run, name="missionfsm-recorder", daemon=True)
         self._listener.start()
         self._thread.start()
-        self.record(head)
 
-    def record(self, line: JSON) -> None:
-        """Take a line; returns at once."""
-        if self._lines.qsize() > MAX_WAITING_LINES:
-            self._left_out += 1
-        else:
-            self._lines.put(line)
+    def record(self, item: Item, size: int = 0) -> None:
+        """Take what came by; returns at once.
+
+        Args:
+            size: of its data, in bytes.
+        """
+        if self._over:
+            return
+        size += ITEM_BYTES
+        if self._bytes_come - self._bytes_gone + size > MAX_WAITING_BYTES:
+            self._end()
+            self._tell("traffic comes faster than it can be read; nothing more is recorded, traffic goes on")
+            return
+        self._bytes_come += size
+        self._waiting.put((item, size))
+
+    def _end(self) -> None:
+        self._over = True
+        self._waiting.put(None)
 
     def _run(self) -> None:
         over = False
         while not over:
-            lines = [self._lines.get()]
-            if lines[-1] is not _END:
-                time.sleep(BATCH_SECONDS)  # the traffic is not woken up for every line
+            batch = [self._waiting.get()]
+            if batch[-1] is not None:
+                time.sleep(BATCH_SECONDS)  # the traffic is not woken up for everything
             with contextlib.suppress(queue.Empty):
-                while lines[-1] is not _END and len(lines) < MAX_BATCH_LINES:
-                    lines.append(self._lines.get_nowait())
-            over = lines[-1] is _END
+                while batch[-1] is not None and len(batch) < MAX_BATCH_ITEMS:
+                    batch.append(self._waiting.get_nowait())
+            over = batch[-1] is None
+            there = [one for one in batch if one is not None]
             try:
-                self._to_process.send(lines)
+                self._to_process.send([item for item, _ in there])
             except (OSError, ValueError):  # the process died
+                self._over = True
                 self._tell("what records and judges has died; nothing more is recorded, traffic goes on")
                 return
+            self._bytes_gone += sum(size for _, size in there)
         self._to_process.close()
 
     def _listen(self) -> None:
@@ -161,10 +180,8 @@ class Recorder:
         Returns:
             What the judge said last; None without one, or where it did not get to an end.
         """
-        self._lines.put(_END)
+        self._end()
         self._thread.join(seconds)
-        if self._left_out:
-            self._tell(f"{self._left_out} lines came faster than they could be written, and are left out")
         with contextlib.suppress(KeyboardInterrupt):
             self._listener.join(seconds)
         if self._listener.is_alive():  # it ends when the process has said all that it has to say
@@ -187,17 +204,34 @@ def _work(work: _Work, lines: Connection, say: Connection) -> None:
     if work.judge:
         judging.start()
     file = _File(work.file, said)
-    with contextlib.suppress(EOFError):
-        while True:
-            batch = [orjson.dumps(work.read(line)) for line in lines.recv() if line is not _END]
-            file.write(b"".join(line + b"\n" for line in batch))
-            if work.judge:
-                to_judge.put(batch)
+    for batch in _batches(work, lines, said):
+        file.write(b"".join(line + b"\n" for line in batch))
+        if work.judge:
+            to_judge.put(batch)
     file.close()
     to_judge.put(None)
     if work.judge:
         judging.join()
     say.close()
+
+
+def _batches(work: _Work, items: Connection, say: _Said) -> Iterator[list[bytes]]:
+    """The lines of the history as they come, many at a time: to the end, or to where there would be a hole."""
+    read = work.reader()
+    yield [orjson.dumps(work.head)]
+    with contextlib.suppress(EOFError):
+        while True:
+            batch: list[bytes] = []
+            try:
+                for item in items.recv():
+                    batch += [orjson.dumps(line) for line in read(item)]
+            except UnreadableError as error:
+                yield batch
+                say(f"{error}; nothing more is recorded, traffic goes on")
+                break
+            yield batch
+        while True:  # what comes is taken, so that nobody waits for it to be
+            items.recv()
 
 
 class _Said:
@@ -249,7 +283,6 @@ class _File:
 def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Said) -> None:
     """Judges lines until their end; says what breaks at once, and the verdict at the end."""
     from missionfsm.app.asked import judged_system  # noqa: PLC0415 - only this process needs it
-    from missionfsm.kernel.codec import UnreadableError  # noqa: PLC0415
     from missionfsm.oracle.transcript import head as read_head  # noqa: PLC0415
     from missionfsm.tools.check.judge import Judge  # noqa: PLC0415
 

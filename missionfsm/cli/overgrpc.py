@@ -31,7 +31,7 @@ def needs_grpc() -> None:
     """End with one line where the extra is not installed."""
     from importlib.util import find_spec  # noqa: PLC0415 - commands load what they need
 
-    if find_spec("grpc") is None or find_spec("grpc_reflection") is None:
+    if any(find_spec(name) is None for name in ("grpc", "grpc_reflection", "hpack")):
         stop("this needs gRPC, which is an extra: pip install 'missionfsm[grpc]'", BAD_INPUT)
 
 

@@ -71,9 +71,11 @@ def proxy(  # noqa: PLR0913 - options of the command
     """
     needs_grpc()
     import asyncio  # noqa: PLC0415 - commands load what they need
+    from functools import partial  # noqa: PLC0415
 
     from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
-    from missionfsm.adapters.grpc.proxy import Proxy, read_line  # noqa: PLC0415
+    from missionfsm.adapters.grpc.overheard import Chunk, Overheard  # noqa: PLC0415
+    from missionfsm.adapters.grpc.proxy import Proxy  # noqa: PLC0415
     from missionfsm.adapters.grpc.server import Security  # noqa: PLC0415
     from missionfsm.adapters.grpc.target import Target  # noqa: PLC0415
     from missionfsm.app.asked import judged_system, refuse_json_only  # noqa: PLC0415
@@ -91,11 +93,20 @@ def proxy(  # noqa: PLR0913 - options of the command
     with bad_input():
         seen_as = judged_system(system, strict=False, anywhere=begins is Beginning.ANYWHERE, others=others)
         refuse_json_only(seen_as, choice(reading))
-        recorder = Recorder(
-            head, file=record or "", read=read_line, readings=choice(reading), html=html or "", tell=complain
+        recorder: Recorder[Chunk] = Recorder(
+            head,
+            partial(Overheard, system),
+            file=record or "",
+            readings=choice(reading),
+            html=html or "",
+            tell=complain,
         )
+
+        def seen(chunk: Chunk) -> None:
+            recorder.record(chunk, len(chunk.data))
+
         security = Security(tls_certificate, tls_key)
-        relay = Proxy(system, Target(target_address(grpc), certificate=tls), recorder.record, security=security)
+        relay = Proxy(Target(target_address(grpc), certificate=tls), seen, security=security)
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(_relayed(relay, host, listen, f"to {grpc}; Ctrl-C ends it"))
         judged = recorder.close()

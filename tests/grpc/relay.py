@@ -7,7 +7,8 @@ import threading
 from typing import Any
 
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
-from missionfsm.adapters.grpc.proxy import Proxy, read_line
+from missionfsm.adapters.grpc.overheard import Chunk, Overheard
+from missionfsm.adapters.grpc.proxy import Proxy
 from missionfsm.adapters.grpc.server import Security
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.kernel.codec import JSON
@@ -15,6 +16,11 @@ from missionfsm.kernel.codec import JSON
 WAIT = 10.0
 """Seconds after which an answer that does not come fails a test."""
 METHODS = methods("bear.mission")
+
+
+def as_they_are() -> Any:
+    """For `Recorder`: what comes by are lines."""
+    return lambda line: (line,)
 
 
 class Relay:
@@ -27,12 +33,15 @@ class Relay:
         self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
         self.thread.start()
         certificate, key = tls or ("", "")
-        self.proxy = Proxy(
-            system,
-            Target(target, certificate=certificate),
-            lambda line: record(read_line(line)),
-            security=Security(certificate, key),
-        )
+        overheard = Overheard(system)
+        self.chunks: list[Chunk] = []
+
+        def seen(chunk: Chunk) -> None:
+            self.chunks.append(chunk)
+            for line in overheard(chunk):
+                record(line)
+
+        self.proxy = Proxy(Target(target, certificate=certificate), seen, security=Security(certificate, key))
         asyncio.run_coroutine_threadsafe(self.proxy.start("127.0.0.1", 0), self.loop).result(WAIT)
         self.channel = Target(f"localhost:{self.proxy.port}", certificate=certificate).channel()
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import grpc
 import pytest
-from relay import METHODS, WAIT, Relay
+from relay import METHODS, WAIT, Relay, as_they_are
 
 from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import decode, path
@@ -263,9 +263,9 @@ def test_busy_clients_lose_nothing(relay: Relay, robot: Served, lines: list[JSON
 # The recorder.
 
 
-def record(lines: list[JSON], file: Path | None = None, **options: Any) -> tuple[Recorder, list[str]]:
+def record(lines: list[JSON], file: Path | None = None, **options: Any) -> tuple[Recorder[JSON], list[str]]:
     told: list[str] = []
-    recorder = Recorder(HEAD, file=str(file or ""), tell=told.append, **options)
+    recorder: Recorder[JSON] = Recorder(HEAD, as_they_are, file=str(file or ""), tell=told.append, **options)
     for line in lines:
         recorder.record(line)
     return recorder, told

@@ -1,8 +1,9 @@
-"""A proxy between a client and a robot: passes on everything as it is, and tells what it saw.
+"""A proxy between clients and a robot: passes every byte on, and tells which came by.
 
-Bytes, metadata, trailers, deadlines and cancellations go through unchanged, unknown calls and fields as well. What is
-seen is handed to a recorder as bytes, which only puts it into a queue: whatever becomes of it there, and however long
-it takes to read it, traffic goes on.
+A connection of a client is one of the proxy to the robot, and what comes in at one end goes out at the other. Metadata,
+trailers, deadlines, cancellations, unknown calls and fields go through, as the proxy does not read them; nor do flow
+control, pings or a robot that goes away need anything of it. What came by is handed to a recorder, which only puts it
+into a queue: whatever becomes of it there, and however long it takes to read, traffic goes on.
 """
 
 from __future__ import annotations
@@ -10,318 +11,259 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import socket
+import ssl
 import time
-from collections.abc import AsyncIterator, Callable
-from typing import Any
+from collections.abc import Callable
 
-import grpc
-from attrs import frozen
-from grpc import aio
-
-from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, methods, path
+from missionfsm.adapters.grpc.authority import Renamed
+from missionfsm.adapters.grpc.overheard import Chunk, Connection, End
 from missionfsm.adapters.grpc.server import Security
 from missionfsm.adapters.grpc.target import Target
-from missionfsm.bear.wire.fields import Method
-from missionfsm.kernel.codec import JSON
 
-Record = Callable[[JSON], None]
-"""Takes a line of a history, with what was said in it as `LineContent`."""
-HOP_BY_HOP = frozenset(("user-agent", "te", "content-type", "grpc-timeout", "grpc-accept-encoding", "grpc-encoding"))
-"""Metadata that the proxy's own connection has."""
-UNLIMITED = (("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1))
-PATIENCE_SECONDS = 0.02
-"""How long the end of the requests of an unknown call is awaited, before it is taken for a stream of requests."""
-REFUSAL_SECONDS = 0.1
-"""How long the refusal of a stream is awaited once it seems to begin: grpc gives a refusal, which has no initial
-metadata, empty ones. A stream with a first message, or with initial metadata, is not held up by it."""
-Context = Any
-"""grpc.aio.ServicerContext, which has no type parameters that fit."""
+CONNECT_SECONDS = 20.0
+"""How long the robot may take to take a connection; a client's own limit is the same."""
+FLUSH_SECONDS = 10.0
+"""How long one end may take to read what the other had sent before it went away."""
+ALPN = ["h2"]
+"""What is spoken under TLS."""
 
-
-def _passed(metadata: Any) -> tuple[tuple[str, str | bytes], ...]:  # noqa: ANN401 - grpc's metadata
-    return tuple((key, value) for key, value in metadata or () if key not in HOP_BY_HOP)
-
-
-@frozen
-class LineContent:
-    """A message as it was on the wire.
-
-    Attributes:
-        message: its name in the table of the wire.
-    """
-
-    message: str
-    data: bytes
-
-    def read(self) -> JSON:
-        """Its protobuf JSON; of bytes that are no message a text that says so."""
-        try:
-            return decode(self.message, self.data)
-        except NotOnTheWireError as error:
-            return f"(malformed: {error})"
-
-
-def read_line(line: dict[str, JSON]) -> dict[str, JSON]:
-    """A line of a history as the format has it: what was said in it is read."""
-    return {key: value.read() if isinstance(value, LineContent) else value for key, value in line.items()}
+Record = Callable[[Chunk], None]
 
 
 class Proxy:
-    """A gRPC server that passes every call on.
+    """A relay of connections.
 
     Args:
-        system: which calls are recorded: those of ``bear.mission`` or ``bear.status``.
-        upstream: the robot.
-        record: takes the lines of the history as they are seen, see `read_line`; must not block.
+        upstream: the robot. Where it has TLS its name stands for the proxy's in what clients ask (``:authority``), as
+            those who serve several names behind one address go by it.
+        record: takes what came by, before it goes out; must not block.
         security: TLS at its own port; tokens are the robot's business.
-        clock: seconds, for the lines' ``at``.
+        clock: seconds, for when it came by.
     """
 
     def __init__(
         self,
-        system: str,
         upstream: Target,
         record: Record,
         *,
         security: Security = Security(),  # noqa: B008 - a frozen value
         clock: Callable[[], float] = time.time,
     ) -> None:
-        self._security = security
-        self._methods = {path(one): one for one in methods(system).values()}
+        self._host, _, port = upstream.address.rpartition(":")
+        self._address = self._host.strip("[]"), int(port)
         self._upstream = upstream
+        self._security = security
         self._record = record
         self._clock = clock
-        self._calls = itertools.count(1)
-        self._streams = itertools.count(1)
-        self._channel: aio.Channel | None = None
-        self._server: aio.Server | None = None
+        self._numbers = itertools.count(1)
+        self._pairs: set[_Pair] = set()
+        self._server: asyncio.Server | None = None
+        self._tls: ssl.SSLContext | None = None
         self.port = 0
 
     async def start(self, host: str, port: int) -> None:
         """Listen. Raises OSError where that is impossible, or a file of TLS cannot be read."""
-        target = self._upstream
-        upstream, own = target.credentials(), self._security.credentials()
-        if upstream is None:
-            self._channel = aio.insecure_channel(target.address, UNLIMITED)
-        else:
-            self._channel = aio.secure_channel(target.address, upstream, UNLIMITED)
-        self._server = aio.server(options=(*UNLIMITED, ("grpc.so_reuseport", 0)))
-        self._server.add_generic_rpc_handlers((_Handlers(self),))
-        where = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
-        try:
-            add = self._server.add_insecure_port
-            self.port = add(where) if own is None else self._server.add_secure_port(where, own)
-        except RuntimeError as error:
-            raise OSError(f"{where}: {str(error).splitlines()[0]}") from None
-        await self._server.start()
+        self._tls = _to_robot(self._upstream)
+        own = _for_clients(self._security)
+        loop = asyncio.get_running_loop()
+        self._server = await loop.create_server(self._accept, host, port, ssl=own)
+        self.port = self._server.sockets[0].getsockname()[1]
 
     async def stop(self, seconds: float = 1.0) -> None:
-        """End what is under way and let go of both sides."""
+        """Let go of both sides.
+
+        Args:
+            seconds: how long what has come by may take to go out.
+        """
         if self._server is not None:
-            await self._server.stop(seconds)
-        if self._channel is not None:
-            await self._channel.close()
+            self._server.close()
+        for pair in tuple(self._pairs):
+            pair.close()
+        if self._pairs:
+            await asyncio.wait([pair.over for pair in self._pairs], timeout=seconds)
+        for pair in tuple(self._pairs):
+            pair.abort()
+        await asyncio.sleep(0)  # connections that are lost say so in the next turn of the loop
 
-    def _note(self, line: dict[str, JSON]) -> None:
-        self._record({**line, "at": round(self._clock(), 6)})
+    def _accept(self) -> _Side:
+        """A client connects."""
+        number = Connection(next(self._numbers))
 
-    # Passing on.
+        def seen(end: End, data: bytes) -> None:
+            self._record(Chunk(self._clock(), number, end, data))
 
-    def handler(self, name: str) -> grpc.RpcMethodHandler:
-        """How a call is passed on.
+        pair = _Pair(self, seen)
+        self._pairs.add(pair)
+        return pair.client
 
-        A call that nobody knows is a stream of requests and one of responses, as any call is on the wire. One that is
-        known is passed on as what it is, which takes a fraction of the time.
-        """
-        method = self._methods.get(name)
-        if method is not None and not method.streams:
-            assert self._channel is not None  # noqa: S101 - it is asked only once it listens
-            return grpc.unary_unary_rpc_method_handler(_Unary(self, method, self._channel.unary_unary(name)).answer)
-
-        async def pass_one(request: bytes, context: Context) -> AsyncIterator[bytes]:
-            async for one in self._passed_on(name, _only(request), context):
-                yield one
-
-        async def pass_all(requests: AsyncIterator[bytes], context: Context) -> AsyncIterator[bytes]:
-            async for one in self._passed_on(name, requests, context):
-                yield one
-
-        if method is not None:
-            return grpc.unary_stream_rpc_method_handler(pass_one)
-        return grpc.stream_stream_rpc_method_handler(pass_all)
-
-    async def _passed_on(self, name: str, requests: AsyncIterator[bytes], context: Context) -> AsyncIterator[bytes]:
-        seen = _Seen(self, self._methods.get(name))
-        call = await self._called(name, requests, context, seen)
+    async def connect(self, pair: _Pair) -> None:
+        """Connect a client to the robot; where that cannot be, the client is let go, as a robot that is away would."""
+        host, port = self._address
+        name = host if self._tls is not None else None
+        loop = asyncio.get_running_loop()
         try:
-            initial = _passed(await call.initial_metadata())
-            first = asyncio.ensure_future(call.read())
-            if initial or not await _fails(first):
-                await context.send_initial_metadata(initial)
-                seen.begun()
-            response = await first
-            while response is not aio.EOF:
-                seen.response(response)
-                yield response
-                response = await call.read()
-        except asyncio.CancelledError:
-            # The client went away, or its deadline passed, or the robot was: which, its own code says.
-            call.cancel()
-            seen.gone()
-            raise
-        except aio.AioRpcError as error:
-            await _ended(call, seen, context, error)
-            return
-        await _ended(call, seen, context, None)
+            async with asyncio.timeout(CONNECT_SECONDS):
+                await loop.create_connection(lambda: pair.robot, host, port, ssl=self._tls, server_hostname=name)
+        except (OSError, TimeoutError):
+            pair.lost(pair.robot)
 
-    async def _called(self, name: str, requests: AsyncIterator[bytes], context: Context, seen: _Seen) -> Any:  # noqa: ANN401
-        """The call to the robot.
+    def renamed(self) -> Renamed | None:
+        """What puts the robot's name into what a client asks; None where that is left alone."""
+        return Renamed(self._upstream.address) if self._tls is not None else None
 
-        A single request goes out in one piece with its end: grpc makes INTERNAL of a refusal that comes while a
-        request of a stream is still being sent. Only of calls that nobody knows it is not known whether more will come.
-        """
-        assert self._channel is not None  # noqa: S101 - it is asked only once it listens
-        options = {
-            "timeout": context.time_remaining(),
-            "metadata": aio.Metadata(*_passed(context.invocation_metadata())),
-        }
-        first = await anext(requests, None)
-        if first is not None:
-            seen.request(first)
-        following = asyncio.ensure_future(anext(requests, None))
-        if first is not None and name not in self._methods:
-            await asyncio.wait([following], timeout=PATIENCE_SECONDS)
-        if first is not None and (name in self._methods or (following.done() and following.result() is None)):
-            return self._channel.unary_stream(name)(first, **options)
-
-        async def all_requests() -> AsyncIterator[bytes]:
-            if first is not None:
-                yield first
-            request = await following
-            while request is not None:
-                yield request
-                request = await anext(requests, None)
-
-        return self._channel.stream_stream(name)(all_requests(), **options)
+    def forget(self, pair: _Pair) -> None:
+        """Both sides are gone."""
+        self._pairs.discard(pair)
+        if not pair.over.done():
+            pair.over.set_result(None)
 
 
-async def _fails(first: asyncio.Future[Any]) -> bool:
-    """Whether a stream is refused instead of having a first message."""
-    await asyncio.wait([first], timeout=REFUSAL_SECONDS)
-    return first.done() and not first.cancelled() and first.exception() is not None
+class _Pair:
+    """A connection of a client and the one to the robot that it became."""
 
-
-async def _only(request: bytes) -> AsyncIterator[bytes]:
-    yield request
-
-
-async def _ended(call: Any, seen: _Seen, context: Context, error: aio.AioRpcError | None) -> None:  # noqa: ANN401
-    code = await call.code() if error is None else error.code()
-    details = (await call.details() if error is None else error.details()) or ""
-    trailing = await call.trailing_metadata() if error is None else error.trailing_metadata()
-    context.set_trailing_metadata(_passed(trailing))
-    seen.ended(code, details)
-    if code is not grpc.StatusCode.OK:
-        with contextlib.suppress(aio.AbortError):
-            await context.abort(code, details)
-
-
-@frozen
-class _Unary:
-    """Passes on the calls of a method that has one answer."""
-
-    proxy: Proxy
-    method: Method
-    ask: Any
-
-    async def answer(self, request: bytes, context: Context) -> bytes:
-        """The robot's answer, or its refusal."""
-        seen = _Seen(self.proxy, self.method)
-        metadata = _passed(context.invocation_metadata())
-        seen.request(request)
-        call = self.ask(request, timeout=context.time_remaining(), metadata=aio.Metadata(*metadata))
-        try:
-            response: bytes = await call
-        except aio.AioRpcError as error:
-            initial = _passed(error.initial_metadata())
-            if initial:
-                await context.send_initial_metadata(initial)
-            await _ended(call, seen, context, error)
-            return b""  # which is not sent: the call has ended
-        seen.response(response)
-        initial = _passed(await call.initial_metadata())
-        if initial:
-            await context.send_initial_metadata(initial)
-        trailing = _passed(await call.trailing_metadata())
-        if trailing:
-            context.set_trailing_metadata(trailing)
-        return response
-
-
-class _Handlers(grpc.GenericRpcHandler):
-    def __init__(self, proxy: Proxy) -> None:
+    def __init__(self, proxy: Proxy, seen: Callable[[End, bytes], None]) -> None:
         self._proxy = proxy
+        self._seen = seen
+        self._there = set(End)
+        self.over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._renamed = proxy.renamed()
+        self._connecting: asyncio.Task[None] | None = None
+        self.client = _Side(self, End.CLIENT)
+        self.robot = _Side(self, End.ROBOT)
 
-    def service(self, handler_call_details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler:
-        """Whatever is called is passed on."""
-        return self._proxy.handler(handler_call_details.method)
-
-
-class _Seen:
-    """What is seen of one call, as lines of a history. A call that is not modelled leaves none."""
-
-    def __init__(self, proxy: Proxy, method: Method | None) -> None:
-        self._proxy = proxy
-        self._method = method
-        self._call = 0
-        self._stream = 0
-        self._over = False
-
-    def request(self, data: bytes) -> None:
-        """The request is on its way."""
-        if self._method is not None and not self._call:
-            self._call = next(self._proxy._calls)  # noqa: SLF001 - a part of the proxy
-            self._note({"call": self._call, "method": self._method.name, "params": self._read(data, request=True)})
-
-    def begun(self) -> None:
-        """A stream has begun."""
-        if self._method is not None and self._method.streams and self._call and not self._stream:
-            self._stream = next(self._proxy._streams)  # noqa: SLF001 - as above
-            self._note({"return": self._call, "result": {"stream": self._stream}})
-
-    def response(self, data: bytes) -> None:
-        """An answer or a message came by."""
-        if self._method is None or not self._call:
-            return
-        if self._method.streams:
-            self.begun()
-            self._note({"stream": self._stream, "message": self._read(data, request=False)})
+    def made(self, side: _Side) -> None:
+        """One side is there: a client waits until the robot is."""
+        if side is self.client:
+            side.transport.pause_reading()
+            self._connecting = asyncio.get_running_loop().create_task(self._proxy.connect(self))
+        elif self.client.transport.is_closing():
+            side.transport.abort()
         else:
-            self._over = True
-            self._note({"return": self._call, "result": self._read(data, request=False)})
+            self.client.transport.resume_reading()
 
-    def ended(self, code: grpc.StatusCode, details: str) -> None:
-        """The robot ended it."""
-        if self._method is None or not self._call or self._over:
-            return
-        self._over = True
-        error = {} if code is grpc.StatusCode.OK else {"error": {"status": code.name, "message": details}}
-        if self._stream:
-            self._note({"stream": self._stream, "closed": True, **error})
-        elif error:
-            self._note({"return": self._call, **error})
+    def came(self, side: _Side, data: bytes) -> None:
+        """Bytes came in on one side."""
+        self._seen(side.end, data)
+        if side is self.client and self._renamed is not None:
+            try:
+                data = self._renamed(data)
+            except ValueError:  # it is no HTTP/2, and no robot would take it
+                self.abort()
+                return
+        if not self.other(side).transport.is_closing():
+            self.other(side).transport.write(data)
 
-    def gone(self) -> None:
-        """The client went away: a stream is given up, a call stays without an answer."""
-        if self._stream and not self._over:
-            self._over = True
-            call = next(self._proxy._calls)  # noqa: SLF001 - as above
-            self._note({"call": call, "method": "cancel", "params": {"stream": self._stream}})
-            self._note({"return": call, "result": {}})
+    def other(self, side: _Side) -> _Side:
+        """The side across."""
+        return self.robot if side is self.client else self.client
 
-    def _read(self, data: bytes, *, request: bool) -> LineContent:
-        assert self._method is not None  # noqa: S101 - the callers have looked
-        return LineContent(self._method.request if request else self._method.response, data)
+    def finished(self, side: _Side) -> None:
+        """One side sends no more: nor does the other get any more."""
+        self._say_gone(side)
+        transport = self.other(side).transport
+        if not self._there:
+            self.close()
+        elif transport.can_write_eof():
+            with contextlib.suppress(OSError):
+                transport.write_eof()
+        else:
+            self._close(self.other(side))
 
-    def _note(self, line: dict[str, JSON]) -> None:
-        self._proxy._note(line)  # noqa: SLF001 - as above
+    def lost(self, side: _Side) -> None:
+        """One side is gone for good: the other one goes as well, once it has what was sent."""
+        self._say_gone(side)
+        side.gone = True
+        if side is self.client and not self.robot.connected and self._connecting is not None:
+            self._connecting.cancel()
+            self._say_gone(self.robot)
+            self.robot.gone = True
+        other = self.other(side)
+        if not other.gone:
+            self._close(other)
+        elif side.gone:
+            self._proxy.forget(self)
+
+    def _say_gone(self, side: _Side) -> None:
+        if side.end in self._there:
+            self._there.discard(side.end)
+            self._seen(side.end, b"")
+
+    @staticmethod
+    def _close(side: _Side) -> None:
+        if side.connected and not side.transport.is_closing():
+            side.transport.close()
+            asyncio.get_running_loop().call_later(FLUSH_SECONDS, side.transport.abort)
+
+    def close(self) -> None:
+        """Let go of both sides."""
+        for side in (self.client, self.robot):
+            self._close(side)
+
+    def abort(self) -> None:
+        """Let go of both sides at once."""
+        for side in (self.client, self.robot):
+            if side.connected:
+                side.transport.abort()
+
+
+class _Side(asyncio.Protocol):
+    """One side of a pair."""
+
+    transport: asyncio.Transport
+
+    def __init__(self, pair: _Pair, end: End) -> None:
+        self._pair = pair
+        self.end = end
+        self.connected = False
+        self.gone = False
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """It is there."""
+        assert isinstance(transport, asyncio.Transport)  # noqa: S101 - so is every one of TCP
+        transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        self.transport = transport
+        self.connected = True
+        self._pair.made(self)
+
+    def data_received(self, data: bytes) -> None:
+        """Bytes came in."""
+        self._pair.came(self, data)
+
+    def eof_received(self) -> bool:
+        """No more will come; True for what can still be sent the other way, which TLS has not."""
+        self._pair.finished(self)
+        return self.transport.can_write_eof()
+
+    def connection_lost(self, _: Exception | None) -> None:
+        """It is gone."""
+        self._pair.lost(self)
+
+    def pause_writing(self) -> None:
+        """It does not read as fast as the other one sends."""
+        with contextlib.suppress(RuntimeError):  # that one is about to go
+            self._pair.other(self).transport.pause_reading()
+
+    def resume_writing(self) -> None:
+        """It reads again."""
+        with contextlib.suppress(RuntimeError):  # as above
+            self._pair.other(self).transport.resume_reading()
+
+
+def _to_robot(target: Target) -> ssl.SSLContext | None:
+    """What the robot's certificate is checked with; None without TLS. Raises OSError for a file that cannot be read."""
+    if not target.certificate:
+        return None
+    context = ssl.create_default_context(cafile=None if target.certificate == "system" else target.certificate)
+    context.set_alpn_protocols(ALPN)
+    return context
+
+
+def _for_clients(security: Security) -> ssl.SSLContext | None:
+    """TLS of the proxy's own port; None without. Raises OSError for files that cannot be read."""
+    if not security.certificate:
+        return None
+    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+    context.load_cert_chain(security.certificate, security.key)
+    context.set_alpn_protocols(ALPN)
+    return context

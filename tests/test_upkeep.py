@@ -51,23 +51,6 @@ COMPLEX = {
     },
     # Commands: an option after the other.
     "cli": {"defaults.defaults", "diagram.diagram", "dispatch.dispatch", "check.check", "conform.conform"},
-    # To be taken apart.
-    "tools.check": {
-        "explain._against_answer",
-        "explain._against_message",
-        "explain._failed_wrongly",
-        "verdict.Verdict.told",
-    },
-    "tools.conform": {
-        "conform.verdict_of",
-        "distinguish._Search._moves",
-        "guide.Guide.proposals",
-        "handshake.handshake",
-        "reach.Reach._possible",
-        "smoke._Smoke.run",
-        "tour._Tour._conversation",
-    },
-    "tools.explore": {"explore.explore"},
 }
 """For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
@@ -12,7 +12,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
-from missionfsm.oracle.explanation import Channel, Explanation, Owed
+from missionfsm.oracle.explanation import Channel, Explanation, Owed, Ready
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.nearest import (
     CODE,
@@ -87,6 +87,16 @@ def _lightest(candidates: Sequence[Candidate]) -> list[Candidate]:
     return [one for one in candidates if one.weight == least]
 
 
+def _problems(candidates: Iterable[Candidate]) -> list[Problem]:
+    """What has to be forgiven."""
+    return [problem for one in candidates for problem in one.problems]
+
+
+def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
+    """The rules of what has to be forgiven."""
+    return (rule for problem in _problems(candidates) for rule in problem.rules)
+
+
 # An answer.
 
 
@@ -94,18 +104,28 @@ def _against_answer(nearest: Nearest, event: Returned) -> Found:
     candidates = list(nearest.answers(event))
     lightest = _lightest(candidates)
     if not lightest or lightest[0].weight < CODE:
-        rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
-        if any(problem.weight >= SHAPE for one in lightest for problem in one.problems) and not _malformed(event):
-            rules = _alternately(rules, _before(nearest))
-        due = (rule for one in candidates if one.allowed and one.weight >= CODE for rule in one.rules)
-        rules = _alternately(rules, list(dict.fromkeys(due)))
-        notes = [problem.says for one in lightest[:1] for problem in one.problems]
-        if len(set(event.names)) < len(event.names):
-            notes.append("each thing has a name of its own, and one is given twice")
-        return candidates, rules or [rule for one in lightest for rule in one.rules], notes
+        return candidates, *_wrong_in_it(nearest, event, candidates, lightest)
     allowed = [one for one in candidates if one.allowed] or candidates
-    rules, notes = _wrong_code(nearest, event, sorted(allowed, key=lambda one: one.weight))
-    return candidates, rules, notes
+    return candidates, *_wrong_code(nearest, event, sorted(allowed, key=lambda one: one.weight))
+
+
+def _wrong_in_it(
+    nearest: Nearest, event: Returned, candidates: Sequence[Candidate], lightest: Sequence[Candidate]
+) -> tuple[Iterable[str], Iterable[str]]:
+    """An answer with a code that may come, and with something wrong in what else it says."""
+    rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
+    if any(problem.weight >= SHAPE for problem in _problems(lightest)) and not _malformed(event):
+        rules = _alternately(rules, _before(nearest))
+    due = [one for one in candidates if one.allowed and one.weight >= CODE]
+    rules = _alternately(rules, list(dict.fromkeys(rule for one in due for rule in one.rules)))
+    notes = [problem.says for problem in _problems(lightest[:1])]
+    if _says_a_name_twice(event):
+        notes.append("each thing has a name of its own, and one is given twice")
+    return rules or itertools.chain.from_iterable(one.rules for one in lightest), notes
+
+
+def _says_a_name_twice(event: Returned) -> bool:
+    return len(set(event.names)) < len(event.names)
 
 
 def _malformed(event: Returned) -> bool:
@@ -152,13 +172,9 @@ def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tupl
     """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
     code, spec = event.answer.code, nearest.spec
     number = nearest.belief.symbol(event)[0][3]
-    done = [
-        (one, call.done)
-        for one in nearest.belief.node.explanations
-        for call in one.calls
-        if call.name == number and call.done is not None
-    ]
-    if not done or len(done) < len(nearest.belief.node.explanations):
+    explanations = nearest.belief.node.explanations
+    done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
+    if not done or len(done) < len(explanations):
         return rules, [f"{code} comes to this call only where a failure was driven, and none was waiting"]
     explanation, answer = done[0]
     shown = [
@@ -170,45 +186,51 @@ def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tupl
     unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
     what = f"{names} is there" if names else "it took effect"
     seen = f": {'; '.join(shown)}" if shown else ""
-    note = f"{code} is documented, but a call that failed has no effect, and {what}{seen}"
-    return unowed or rules, [note]
+    return unowed or rules, [f"{code} is documented, but a call that failed has no effect, and {what}{seen}"]
+
+
+def _took_effect(explanation: Explanation, number: int) -> Ready | None:
+    """What a call is to be answered that has taken effect already; None where it has not."""
+    return next((call.done for call in explanation.calls if call.name == number), None)
 
 
 # A message.
 
 
 def _against_message(nearest: Nearest, event: Received) -> Found:
-    spec, belief = nearest.spec, nearest.belief
-    relations = belief.symbol(event)[0][3]
-    for relation in relations[len(event.marks) :]:
-        wrong = spec.sequence(relation)
-        if isinstance(wrong, Mismatch):
-            return (), [wrong.rule], [wrong.says]
-    for relation, (track, number) in zip(relations, event.marks, strict=False):
-        wrong = spec.sequence(relation)
-        if isinstance(wrong, Mismatch):
-            before = belief.last_mark(event.channel, track)
-            compared = f"{number}" if before is None else f"{number} after {before}"
-            return (), [wrong.rule], [f"{wrong.says}: {compared}"]
+    wrong = _wrong_mark(nearest, event)
+    if wrong is not None:
+        return (), [wrong.rule], [wrong.says]
     candidates = list(nearest.messages(event))
     if not candidates:
-        return (), spec.unopened, [f"{name_words(event.channel)} is not open"]
+        return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _lightest(candidates)
-    rules = list(dict.fromkeys(rule for one in lightest for problem in one.problems for rule in problem.rules))
+    rules = list(dict.fromkeys(_broken(lightest)))
     in_form = not any(SHAPE <= problem.weight < UNOWED for problem in lightest[0].problems)
     if in_form and any(problem.weight >= LEFT_OUT for problem in lightest[0].problems):
         # What is shown of something that has happened may be wrong in how it is shown, or in what has happened.
         rules = _alternately(rules, _before(nearest, lightest[0]))
-    notes = [problem.says for one in lightest for problem in one.problems]
-    due = [one for one in candidates if not one.passing] or candidates
-    notes += _strangers(nearest, event)
+    notes = [problem.says for problem in _problems(lightest)]
     if isinstance(event.content, Malformed):
-        return due, rules, notes[:1]
-    return (
-        candidates,
-        rules or [rule for one in candidates for problem in one.problems for rule in problem.rules],
-        notes,
-    )
+        return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
+    return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
+
+
+def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
+    """What is wrong with the numbers of a message, or else with when it came, whatever it shows."""
+    belief = nearest.belief
+    relations = belief.symbol(event)[0][3]
+    for relation in relations[len(event.marks) :]:
+        wrong = nearest.spec.sequence(relation)
+        if isinstance(wrong, Mismatch):
+            return wrong
+    for relation, (track, number) in zip(relations, event.marks, strict=False):
+        wrong = nearest.spec.sequence(relation)
+        if isinstance(wrong, Mismatch):
+            before = belief.last_mark(event.channel, track)
+            compared = f"{number}" if before is None else f"{number} after {before}"
+            return Mismatch(wrong.rule, f"{wrong.says}: {compared}")
+    return None
 
 
 def _strangers(nearest: Nearest, event: Received) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from attrs import field, frozen
 
@@ -281,22 +281,7 @@ class Verdict:
             verbose: whether readings that are decided, what would decide the others, and rules that came up seldom are
                 told as well.
         """
-        about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
-        counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
-        lines = [f"{self.headline}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")]
-        lines += [f"  {line}" for line in self.rests_on(all_names=verbose)]
-        if self.because:
-            lines.append(f"  because {printable(self.because)}")
-        if self.violation:
-            if self.story:
-                lines += ["", self.story]
-            lines += ["", self.violation.explanation, *self._rule_ids()]
-        lines += [f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times]
-        lines += [f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale]
-        lines += [f"  {printable(note)}" for note in self.notes]
-        if self.flagged:
-            lines += ["", "flagged:", *(f"  {printable(one)}" for one in self.flagged)]
-        lines += self._readings(verbose=verbose)
+        lines = [*self._head(verbose=verbose), *self._findings(), *self._readings(verbose=verbose)]
         if verbose:
             for experiment in self.experiments:
                 lines += ["", str(experiment)]
@@ -310,6 +295,29 @@ class Verdict:
         elif folded := self._folded():
             lines.append(f"-v shows {folded}")
         return "\n".join(lines)
+
+    def _head(self, *, verbose: bool) -> Iterator[str]:
+        """What was judged, what it came to and what that rests on."""
+        about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
+        counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
+        yield f"{self.headline}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")
+        yield from (f"  {line}" for line in self.rests_on(all_names=verbose))
+        if self.because:
+            yield f"  because {printable(self.because)}"
+
+    def _findings(self) -> Iterator[str]:
+        """The violation, what is known of violations, and what departs from the text."""
+        if self.violation:
+            if self.story:
+                yield from ("", self.story)
+            yield from ("", self.violation.explanation, *self._rule_ids())
+        yield from (f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times)
+        yield from (
+            f"  a violation of {rule} was expected and was not met: take it off the list" for rule in self.stale
+        )
+        yield from (f"  {printable(note)}" for note in self.notes)
+        if self.flagged:
+            yield from ("", "flagged:", *(f"  {printable(one)}" for one in self.flagged))
 
     def _rule_ids(self) -> list[str]:
         """The rules that are broken as a list of known violations takes them."""

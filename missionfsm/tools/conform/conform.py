@@ -178,6 +178,21 @@ def _has_found(run: Run) -> bool:
     return run.found is not None or run.ledger.contradiction is not None
 
 
+@frozen
+class _Finding:
+    """What was found, if anything.
+
+    Attributes:
+        followed: of each ambiguity the readings that are left.
+        because: why nothing can be said.
+    """
+
+    outcome: Outcome
+    followed: Mapping[str, tuple[str, ...]]
+    violation: Violation | None = None
+    because: str = ""
+
+
 def verdict_of(
     run: Run, seed: int, known: Baseline | None = None, *, advice: bool = True, asks_again: bool = True
 ) -> Verdict:
@@ -189,38 +204,16 @@ def verdict_of(
         asks_again: whether the implementation is asked again, to make short what was found.
     """
     known, ledger = known or Baseline(), run.ledger
-    advice = advice and not _has_found(run) and not run.enough()
-    outcome, because, violation, followed = Outcome.CONFORMS, "", None, ledger.readings
-    met: Violation | None = None
+    advised = advice and _went_through(run)
     exercised = run.narrowing.exercised()
-    idle = _idle(run, exercised)
-    if idle:
-        outcome, because = Outcome.INCONCLUSIVE, idle
-    elif run.found is not None and run.found.judge.exhausted:
-        outcome, because = Outcome.INCONCLUSIVE, "an event had too many explanations to decide"
-    elif run.found is not None:
-        met = run.found.judge.violation
-        if asks_again:
-            shorten(run)
-        judge = run.found.judge
-        assert judge.violation is not None, "what was found was not explained"  # noqa: S101 - shorten keeps it so
-        outcome, followed = Outcome.VIOLATES, judge.belief.readings
-        violation = judge.violation
-        if len(violation.history) <= LONGEST_SUSPECTED or not run.enough():
-            violation = with_suspects(run.system, violation, run.narrowing.asked_for)
-        violation = beside_others(run, violation, asks_again=asks_again)
-    elif ledger.contradiction is not None:
-        met = ledger.inconsistency()
-        if asks_again:
-            shorten_evidence(run)
-        outcome, violation = Outcome.VIOLATES, ledger.inconsistency()
-    if violation is not None and met is not None:
-        violation = evolve(violation, listed=met.known_by)
+    finding = _finding(run, exercised, asks_again=asks_again)
+    followed, violation = finding.followed, finding.violation
     spec = run.system.spec
     left_out = uncovered(spec, exercised, followed)
     used = (name for name, codes in ledger.answers.items() if codes)
+    went_through = _went_through(run)
     verdict = Verdict(
-        outcome,
+        finding.outcome,
         run.system.name,
         run.partner.info.name,
         seed,
@@ -230,21 +223,57 @@ def verdict_of(
         exercised,
         left_out,
         violation,
-        because,
+        finding.because,
         (*flagged_in_all(spec, followed, ledger.rulings, ledger.departing), *ledger.oddities),
         unchecked(spec, (*used, *run.partner.info.drives)),
         _untested(run, left_out),
         story_of(run.system, violation) if violation else "",
         by_ambiguity(spec.ambiguities, ledger.rulings),
-        tuple(trial.told(run.system) for trial in proposed(run)) if advice else (),
-        rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advice else {},
+        tuple(trial.told(run.system) for trial in proposed(run)) if advised else (),
+        rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advised else {},
         known={rule: times for rule, times in known.met.items() if times},
         notes=tuple(ledger.notes),
-        advised=advice,
-        reach=run.reach.reached() if run.reach is not None and not _has_found(run) and not run.enough() else None,
+        advised=advised,
+        reach=run.reach.reached() if run.reach is not None and went_through else None,
     )
     # A search that was stopped says nothing of what it did not come to.
     return verdict if run.enough() else held_against(verdict, known.stale)
+
+
+def _went_through(run: Run) -> bool:
+    """Whether a run neither found anything nor was stopped."""
+    return not _has_found(run) and not run.enough()
+
+
+def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Finding:
+    ledger = run.ledger
+    followed, idle = ledger.readings, _idle(run, exercised)
+    if idle:
+        return _Finding(Outcome.INCONCLUSIVE, followed, because=idle)
+    if run.found is not None and run.found.judge.exhausted:
+        return _Finding(Outcome.INCONCLUSIVE, followed, because="an event had too many explanations to decide")
+    if run.found is not None:
+        met = run.found.judge.violation
+        if asks_again:
+            shorten(run)
+        judge = run.found.judge
+        assert judge.violation is not None, "what was found was not explained"  # noqa: S101 - shorten keeps it so
+        violation = judge.violation
+        if len(violation.history) <= LONGEST_SUSPECTED or not run.enough():
+            violation = with_suspects(run.system, violation, run.narrowing.asked_for)
+        violation = beside_others(run, violation, asks_again=asks_again)
+        return _Finding(Outcome.VIOLATES, judge.belief.readings, _listed(violation, met))
+    if ledger.contradiction is not None:
+        met = ledger.inconsistency()
+        if asks_again:
+            shorten_evidence(run)
+        return _Finding(Outcome.VIOLATES, followed, _listed(ledger.inconsistency(), met))
+    return _Finding(Outcome.CONFORMS, followed)
+
+
+def _listed(violation: Violation | None, met: Violation | None) -> Violation | None:
+    """The violation, with the rules by which what was met first is known, before it was made short."""
+    return violation if violation is None or met is None else evolve(violation, listed=met.known_by)
 
 
 def _untested(run: Run, left_out: Iterable[str]) -> Untested:

@@ -222,24 +222,35 @@ class _Search:
 
     def _moves(self, node: _Node) -> Iterator[_Move]:
         """What is worth trying: everything where such a situation is met first, else what brings things on."""
-        guide, world = self.lab.guide, node.world
-        situation = (world, *(self.system.spec.abstraction.situation(one.state) for one in node.here))
+        situation = (node.world, *(self.system.spec.abstraction.situation(one.state) for one in node.here))
         everything = situation not in self._thorough
         self._thorough.add(situation)
-        serial = len(node.actions) + 1
-        plain = self.lab.plain[world]
+        yield from self._calls(node, everything=everything)
+        yield from self._drives(node)
+        yield from self._templates(node, everything=everything)
+
+    def _calls(self, node: _Node, *, everything: bool) -> Iterator[_Move]:
+        """Calls without stand-ins, about every name that is known."""
+        serial, plain = len(node.actions) + 1, self.lab.plain[node.world]
         texts: Naming = [((name,), given) for name, given in node.given.items() if isinstance(name, str)]
         wrong: Naming = [((WRONG_NAME,), WRONG_NAME)] if everything else []
-        for call in itertools.chain.from_iterable(guide.calls[world].values()):
+        for call in itertools.chain.from_iterable(self.lab.guide.calls[node.world].values()):
             if everything or id(call.prompt) in plain:
                 for name, given in [*texts, *wrong] if call.named else _NAMELESS:
                     action = Action(serial, call.prompt.method, call.prompt.params, given)
                     yield _Move(call.request, name, action, driven=False, plain=id(call.prompt) in plain)
-        for drive, event in itertools.chain.from_iterable(guide.events[world].values()):
-            if any(self.system.spec.drives[event.name].waits(one.state) for one in node.here):
-                continue
-            yield _Move(event, (), Action(serial, "drive", drive), driven=True, plain=id(drive) in plain)
-        for template in itertools.chain.from_iterable(guide.templates[world].values()):
+
+    def _drives(self, node: _Node) -> Iterator[_Move]:
+        """Events without stand-ins, but for those of which one waits already."""
+        serial, plain = len(node.actions) + 1, self.lab.plain[node.world]
+        for drive, event in itertools.chain.from_iterable(self.lab.guide.events[node.world].values()):
+            if not any(self.system.spec.drives[event.name].waits(one.state) for one in node.here):
+                yield _Move(event, (), Action(serial, "drive", drive), driven=True, plain=id(drive) in plain)
+
+    def _templates(self, node: _Node, *, everything: bool) -> Iterator[_Move]:
+        """Calls and events with stand-ins, with what may be put there."""
+        serial, plain = len(node.actions) + 1, self.lab.plain[node.world]
+        for template in itertools.chain.from_iterable(self.lab.guide.templates[node.world].values()):
             if everything or id(template.params) in plain:
                 for names, picks in self._fillings(node, template):
                     action = Action(serial, template.method, template.params, None, picks)

@@ -37,6 +37,12 @@ MAX_PROPOSALS = 120
 """How many proposals are enough in any case."""
 
 
+Named = tuple[int | None, NameRef | str | None]
+"""A name that a call may be about, with its position among those of the state; None for what has none."""
+
+_NAMELESS: list[Named] = [(None, None)]
+
+
 @frozen
 class Proposal:
     """An action that a guide proposes, and the edge that it would walk."""
@@ -136,26 +142,14 @@ class Guide:
         belief = conversation.judge.belief
         here = rested(conversation.judge.automaton.moves, belief.node.explanations[0])
         shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
-        known = {name: given for given, name in conversation.given.items()}
-        wrong = self.alphabets[world].wrong_names[:1]
-        nameless: list[tuple[int | None, NameRef | str | None]] = [(None, None)]
-        names: list[tuple[int | None, NameRef | str | None]] = [(None, one) for one in wrong]
-        for position, number in enumerate(here.names):
-            seen = belief.name(number)
-            if seen in known:
-                names.append((position, known[seen]))
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
-        absent, waiting = conversation.partner.absent, self._waiting(conversation)
+        left_out = self._waiting(conversation).union(conversation.partner.absent)
+        names = self._names(conversation, here, self.alphabets[world].wrong_names[:1])
         for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
-            if label in absent or label in waiting:
+            if label in left_out:
                 continue
-            for call in self.calls[world].get(label, ()):
-                for where, name in names if call.named else nameless:
-                    refs = (where,) if call.named else ()
-                    edge = self._edge(conversation, here, shape, call.request, refs)
-                    if edge:
-                        found.append(Proposal(call.prompt.method, call.prompt.params, name, *edge, phase))
+            found += self._called(conversation, here, shape, names, self.calls[world].get(label, ()))
             for drive, event in self.events[world].get(label, ()):
                 edge = self._drive_edge(here, shape, event)
                 found.append(Proposal("drive", drive, None, *edge, phase))
@@ -170,6 +164,28 @@ class Guide:
         else:
             found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
         return found
+
+    def _names(self, conversation: Conversation, here: Explanation, wrong: Iterable[str]) -> list[Named]:
+        """What a call may be about: names of nothing, and those that were given, each with its position."""
+        known = {name: given for given, name in conversation.given.items()}
+        seen = ((at, conversation.judge.belief.name(number)) for at, number in enumerate(here.names))
+        return [*((None, one) for one in wrong), *((at, known[name]) for at, name in seen if name in known)]
+
+    def _called(
+        self,
+        conversation: Conversation,
+        here: Explanation,
+        shape: Hashable,
+        names: list[Named],
+        calls: Iterable[Call],
+    ) -> Iterator[Proposal]:
+        """Proposals from calls, about each of some names where they are about any."""
+        phase = self.abstraction.phase(here.state)
+        for call in calls:
+            for where, name in names if call.named else _NAMELESS:
+                edge = self._edge(conversation, here, shape, call.request, (where,) if call.named else ())
+                if edge:
+                    yield Proposal(call.prompt.method, call.prompt.params, name, *edge, phase)
 
     def _filled(
         self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[Template]

@@ -55,21 +55,11 @@ def handshake(system: System, subject: Subject) -> AdapterInfo:
         raise SubjectError(message)
     version = about.get("version")
     drives, methods = _names(result, "drives"), _names(result, "methods")
-    world = _declared(result, "worlds", "fixed")
-    if world and "world" not in result:
-        message = 'the adapter answered initialize with "worlds": "fixed" and without the world that it has'
-        raise SubjectError(message)
-    if world:
-        try:
-            system.codec.world(result["world"])
-        except UnreadableError as error:
-            message = f"the adapter answered initialize with a world that cannot be read: {error}"
-            raise SubjectError(message) from None
     return AdapterInfo(
         about["name"] + (f" {version}" if isinstance(version, str) else ""),
         tuple(one for one in drives or () if one in system.spec.drives),
         None if methods is None else tuple(one for one in system.codec.methods if one in methods),
-        result["world"] if world else None,
+        _fixed_world(system, result) if _declared(result, "worlds", "fixed") else None,
         _declared(result, "reset", "soft"),
         _declared(result, "requests", "binary"),
         (
@@ -77,6 +67,19 @@ def handshake(system: System, subject: Subject) -> AdapterInfo:
             *_unknown("method", methods, system.codec.methods),
         ),
     )
+
+
+def _fixed_world(system: System, result: dict[str, Any]) -> JSON:
+    """The one world that an adapter has."""
+    if "world" not in result:
+        message = 'the adapter answered initialize with "worlds": "fixed" and without the world that it has'
+        raise SubjectError(message)
+    try:
+        system.codec.world(result["world"])
+    except UnreadableError as error:
+        message = f"the adapter answered initialize with a world that cannot be read: {error}"
+        raise SubjectError(message) from None
+    return result["world"]
 
 
 def _names(result: dict[str, Any], member: str) -> list[str] | None:

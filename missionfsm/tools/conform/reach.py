@@ -6,7 +6,7 @@ situation × kind that comes up in some conversation is to be met `OFTEN` times.
 
 from __future__ import annotations
 
-import functools
+import itertools
 import random
 from collections.abc import Hashable, Iterator
 from typing import Any
@@ -17,7 +17,7 @@ from missionfsm.kernel.alphabet import ANY_NAME
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.matrix import Matrix, Open
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident
+from missionfsm.kernel.terms import Incident, Request
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.actions import CANCEL, Action, Bindings, NameRef, filled
@@ -153,32 +153,39 @@ class Reach:
     def _possible(
         self, conversation: Conversation, here: Explanation, world: int, situation: str
     ) -> Iterator[Candidate]:
+        """Everything that could be done now in a cell that was met too seldom."""
+        streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
+        cancels = ((situation, CANCEL.method),)
+        yield from self._calls(conversation, here, world, situation)
+        yield from self._events(conversation, here, world, situation)
+        if streams and self._lack(cancels):
+            yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cancels)
+
+    def _calls(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
         absent = conversation.partner.absent
         belief, given = conversation.judge.belief, {name: one for one, name in conversation.given.items()}
-        names = [
-            (position, given[belief.name(number)])
-            for position, number in enumerate(here.names)
-            if belief.name(number) in given
-        ]
-        columns = functools.partial(self.matrix.columns, here.state, opened(here))
+        known = ((position, given.get(belief.name(number))) for position, number in enumerate(here.names))
+        names = [(position, name) for position, name in known if name is not None]
         for method, calls in self.guide.calls[world].items():
             for call in calls if method not in absent else ():
                 for where, name in names if call.named else ((None, None),):
-                    kinds = columns(call.request, (where,) if call.named else ())
-                    cells = tuple((situation, kind) for kind in kinds)
+                    cells = self._cells(here, situation, call.request, (where,) if call.named else ())
                     if self._lack(cells):
                         yield Candidate(method, call.prompt.params, name, (), cells)
+
+    def _events(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
         explanations = conversation.judge.belief.node.explanations
-        for event, drive in ((event, drive) for some in self.guide.events[world].values() for drive, event in some):
-            cells = tuple((situation, kind) for kind in columns(event, ()))
-            does = self.system.spec.drives[event.name]
-            if self._lack(cells) and not any(does.waits(one.state) for one in explanations):
+        for drive, event in itertools.chain.from_iterable(self.guide.events[world].values()):
+            cells = self._cells(here, situation, event, ())
+            waits = self.system.spec.drives[event.name].waits
+            if self._lack(cells) and not any(waits(one.state) for one in explanations):
                 yield Candidate("drive", drive, None, (), cells, event)
-        streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
-        if streams:
-            cells = ((situation, CANCEL.method),)
-            if self._lack(cells):
-                yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cells)
+
+    def _cells(
+        self, here: Explanation, situation: str, asked: Request | Incident, refs: tuple[int | None, ...]
+    ) -> tuple[Cell, ...]:
+        """The cells of the matrix that asking for something meets."""
+        return tuple((situation, kind) for kind in self.matrix.columns(here.state, opened(here), asked, refs))
 
     def _lack(self, cells: tuple[Cell, ...]) -> bool:
         return any(self.times.get(cell, 0) < OFTEN for cell in cells)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 
 from attrs import define, field, frozen
 
+from missionfsm.kernel.alphabet import Alphabet
 from missionfsm.kernel.codec import JSON, Malformed, UnreadableError
 from missionfsm.kernel.rules import STATUS_NUMBERS
 from missionfsm.kernel.subject import Exchange, MissingMethodError, Notification, Subject, SubjectError
@@ -118,22 +119,29 @@ class _Smoke:
         self.faults += (f"initialize declares {one}, which is not known" for one in self.info.unknown)
         given = offered(self.system, self.info)
         alphabet = given.alphabet({}, BOUNDS)
-        world = alphabet.worlds[0]
-        if not self._try("reset", lambda: self._empty("reset", {"world": world})):
+        if not self._try("reset", lambda: self._empty("reset", {"world": alphabet.worlds[0]})):
             return
         self._try("settle", lambda: self._empty("settle", {}))
-        for method in given.codec.methods:
-            prompts = (*alphabet.core_inputs, *alphabet.inputs)
-            fitting = (one.params for one in prompts if one.method == method and not is_template(one.params))
-            self._try(method, functools.partial(self._call, world, method, next(fitting, {})))
-        for name in self.info.drives:
-            event = next((one for one in alphabet.drives if one["event"] == name and not is_template(one)), None)
-            if event is not None:
-                self._try(f"drive {name}", functools.partial(self._drive, world, event))
+        self._try_calls(given, alphabet)
+        self._try_drives(self.info, alphabet)
         missing = [one for one in self.system.codec.methods if one not in given.codec.methods]
         self.left += (f"{one} is not there: calls that are left out are not judged" for one in missing)
         drives = [one for one in self.system.spec.drives if one not in self.info.drives]
         self.left += (f"the drive {one} is not there: rules that need it are not tested" for one in drives)
+
+    def _try_calls(self, given: System, alphabet: Alphabet) -> None:
+        """Every call once, with the first params that need no names."""
+        for method in given.codec.methods:
+            prompts = (*alphabet.core_inputs, *alphabet.inputs)
+            fitting = (one.params for one in prompts if one.method == method and not is_template(one.params))
+            self._try(method, functools.partial(self._call, alphabet.worlds[0], method, next(fitting, {})))
+
+    def _try_drives(self, info: AdapterInfo, alphabet: Alphabet) -> None:
+        """Every drive once of which there is an example that needs no names."""
+        for name in info.drives:
+            event = next((one for one in alphabet.drives if one["event"] == name and not is_template(one)), None)
+            if event is not None:
+                self._try(f"drive {name}", functools.partial(self._drive, alphabet.worlds[0], event))
 
     def _try(self, what: str, ask: Callable[[], None]) -> bool:
         """Ask for something of an adapter that runs; whether it was answered as the protocol says."""

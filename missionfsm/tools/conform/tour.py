@@ -167,13 +167,20 @@ class _Tour:
                 return False
             if self.draw.random() < SETTLED and not look(run, world):
                 return False
-            while self.again and self.draw.random() < self.again and not run.over:
-                more = self._once_more(proposal, world)
-                if more is None or run.enough() or next(left, None) is None:
-                    break
-                if not (run.follow(more) and run.settle()):
-                    return False
+            if not self._repeated(proposal, world, left):
+                return False
         return run.settle() and run.gather()
+
+    def _repeated(self, done: Proposal, world: int, left: Iterator[int]) -> bool:
+        """The same again, as often as chance has it: whether everything could be explained."""
+        run = self.run
+        while self.again and self.draw.random() < self.again and not run.over:
+            more = self._once_more(done, world)
+            if more is None or run.enough() or next(left, None) is None:
+                break
+            if not (run.follow(more) and run.settle()):
+                return False
+        return True
 
     def _once_more(self, done: Proposal, world: int) -> Proposal | None:
         """The same drive again, if it leads elsewhere: some of what can go wrong is many goals away."""

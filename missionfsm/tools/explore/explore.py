@@ -280,18 +280,16 @@ def explore(  # noqa: PLR0913 - every one has a default
     labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
     start = spec.initial(system.codec.world(usual))
     found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
-    checked = spec.invariants if invariants is None else invariants
-    broken = next(((one, here) for here in found for one in checked if not one.holds(here)), None)
+    broken = _first_broken(found, spec.invariants if invariants is None else invariants)
     quotient = _quotient(spec, forget_ended=forget_ended)
-    counterexample = _counterexample(spec, labels, found, quotient, *broken) if broken else None
     possible = () if forget_ended and spec.abstraction.forget_ended else spec.possibilities
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
     groups = Counter(map(spec.abstraction.situation, found))
     representatives = {spec.abstraction.situation(here): here for here in found}
-    everything = Labels.of(system, alphabet.inputs, alphabet.drives)
     tally = _Tally(spec)
     for situation, here in representatives.items():
         tally.add(here, labels, groups[situation], assumed)
+    everything = Labels.of(system, alphabet.inputs, alphabet.drives)
     firing = firings(spec, representatives.values(), everything, assumed)
     return Exploration(
         system.name,
@@ -300,12 +298,17 @@ def explore(  # noqa: PLR0913 - every one has a default
         len(groups),
         tally.transitions,
         found.depth,
-        {name: dict(sorted(codes.items())) for name, codes in sorted(tally.by_operation.items())},
-        counterexample,
+        tally.sorted,
+        _counterexample(spec, labels, found, quotient, *broken) if broken else None,
         unmet,
         tuple(rule for rule, (fires, _) in firing.items() if not fires),
         tuple(rule for rule, (_, rests) in firing.items() if not rests),
     )
+
+
+def _first_broken(states: Iterable[State], invariants: tuple[Invariant, ...]) -> tuple[Invariant, State] | None:
+    """An invariant that does not hold in the first state in which one does not."""
+    return next(((one, here) for here in states for one in invariants if not one.holds(here)), None)
 
 
 class _Tally:
@@ -315,6 +318,11 @@ class _Tally:
         self.spec = spec
         self.transitions = 0
         self.by_operation: dict[str, dict[str, int]] = {}
+
+    @property
+    def sorted(self) -> dict[str, dict[str, int]]:
+        """Operation to code to times, by their names."""
+        return {name: dict(sorted(codes.items())) for name, codes in sorted(self.by_operation.items())}
 
     def add(self, here: State, labels: Labels, times: int, assumed: int) -> None:
         for one in steps(self.spec, here, labels):

@@ -388,4 +388,5 @@ def take(
 def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
     moved = step.after is not state and step.after != state
-    return moved or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)
+    renamed = step.names is not None and step.names != tuple(range(len(step.names)))  # another in the place of one
+    return moved or renamed or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)

@@ -179,15 +179,17 @@ def test_a_step_that_assumes_too_much_does_not_happen() -> None:
 
 
 def test_a_step_that_nobody_can_tell_changes_nothing() -> None:
-    """A step into the very same state that shows nothing leaves no trace; one that shows something does."""
-    here = Explanation("state")
+    """A step into the very same state that shows nothing leaves no trace; one that shows or renames something does."""
+    here = Explanation("state", names=(7,))
     steps = [
         Step(here.state),
+        Step(here.state, names=(0,)),
         Step("next"),
+        Step(here.state, names=(1,)),
         Step(here.state, emits=(Emission("news", "v"),)),
         Step(here.state, closes=("n",)),
     ]
-    assert [changes(here.state, step) for step in steps] == [False, True, True, True]
+    assert [changes(here.state, step) for step in steps] == [False, False, True, True, True, True]
 
 
 CALLS = st.lists(st.tuples(st.sampled_from(["ask", "tell"]), st.sampled_from([(), (0,)])), max_size=6)

@@ -31,13 +31,17 @@ def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...]:
 
 
 def exercised(belief: Belief) -> tuple[str, ...]:
-    """Ids of the rules that were exercised since things settled last, the latest first, but for those of messages."""
+    """Ids of the rules that were exercised since things settled last, the latest first.
+
+    Those of messages are left out, and those of refusals: a refusal changes nothing that could be shown.
+    """
+    known = belief.spec.rules_by_id
     rules: dict[str, None] = {}
     for (kind, *_), exercises in belief.exercised_last:
         if kind is Settled:
             break
         if kind is not Received:
-            rules.update(dict.fromkeys(exercises))
+            rules.update(dict.fromkeys(one for one in exercises if one not in known or known[one].code is None))
     return tuple(rules)
 
 

@@ -7,12 +7,11 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
-from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
-from missionfsm.oracle.explanation import Channel, Explanation, Owed, Ready
+from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.nearest import (
     CODE,
@@ -27,6 +26,7 @@ from missionfsm.tools.check.nearest import (
 )
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
+from missionfsm.tools.check.wrongcode import wrong_code
 
 MAX_ALTERNATIVES = 8
 """How many alternatives a person is shown."""
@@ -105,8 +105,7 @@ def _against_answer(nearest: Nearest, event: Returned) -> Found:
     lightest = _lightest(candidates)
     if not lightest or lightest[0].weight < CODE:
         return candidates, *_wrong_in_it(nearest, event, candidates, lightest)
-    allowed = [one for one in candidates if one.allowed] or candidates
-    return candidates, *_wrong_code(nearest, event, sorted(allowed, key=lambda one: one.weight))
+    return candidates, *wrong_code(nearest, event, [one for one in candidates if one.allowed] or candidates)
 
 
 def _wrong_in_it(
@@ -142,56 +141,6 @@ def _accused(problem: Problem, candidate: Candidate) -> list[str]:
     if not problem.since:
         return [*(problem.rules or candidate.rules)]
     return _alternately([*candidate.rules, *problem.rules], problem.since)
-
-
-def _wrong_code(nearest: Nearest, event: Returned, allowed: list[Candidate]) -> tuple[list[str], list[str]]:
-    """None of the allowed answers has the code."""
-    spec, request, code = nearest.spec, nearest.about.request, event.answer.code
-    rules = [rule for one in allowed for rule in one.rules]
-    if code == OK or request is None:
-        return rules, []
-    operation = spec.operations[spec.request_operation(request)]
-    reasons = [rule for rule in operation.refusals if rule.code == code]
-    if code in operation.failures:
-        return _failed_wrongly(nearest, event, rules)
-    if not reasons:
-        return rules, [f"{code} is not documented for {operation.name}"]
-    reasons.sort(key=lambda rule: rule.under is not None)
-    conditions = "; ".join(dict.fromkeys(rule.says for rule in reasons[:ACCUSED]))
-    note = f"{code} needs a reason, and none holds: {conditions}"
-    own = [rule.id for rule in reasons]
-    by_success: dict[bool, list[str]] = {True: [], False: []}
-    for one in allowed:
-        by_success[one.what.startswith(OK)] += one.rules
-    if any(one.what.startswith(OK) for one in allowed):  # what may be done is refused without a reason
-        return _alternately(own, by_success[False], by_success[True]), [note]
-    return _alternately(by_success[False], own), [note]  # what has to be refused is refused wrongly
-
-
-def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
-    """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
-    code, spec = event.answer.code, nearest.spec
-    number = nearest.belief.symbol(event)[0][3]
-    explanations = nearest.belief.node.explanations
-    done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
-    if not done or len(done) < len(explanations):
-        return rules, [f"{code} comes to this call only where a failure was driven, and none was waiting"]
-    explanation, answer = done[0]
-    shown = [
-        f"{name_words(nearest.belief.name(channel.name))} showed {described(spec, channel.last.view)}"
-        for channel in explanation.channels
-        if channel.last is not None and channel.name >= 0
-    ]
-    names = ", ".join(name_words(known) for one in answer.names if (known := nearest.belief.name(one)) is not None)
-    unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
-    what = f"{names} is there" if names else "it took effect"
-    seen = f": {'; '.join(shown)}" if shown else ""
-    return unowed or rules, [f"{code} is documented, but a call that failed has no effect, and {what}{seen}"]
-
-
-def _took_effect(explanation: Explanation, number: int) -> Ready | None:
-    """What a call is to be answered that has taken effect already; None where it has not."""
-    return next((call.done for call in explanation.calls if call.name == number), None)
 
 
 # A message.

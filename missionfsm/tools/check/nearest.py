@@ -99,6 +99,7 @@ class Candidate:
         passing: whether it is a message that need not come.
         unseen: ids of the rules of what has happened unseen before it would have come.
         owed: the channel and what it owes, where it is a message that is due.
+        unusual: how many readings it assumes that are not those of the reference, though those could be followed.
     """
 
     what: str
@@ -109,6 +110,7 @@ class Candidate:
     passing: bool = False
     unseen: tuple[str, ...] = ()
     owed: tuple[Channel, Owed] | None = None
+    unusual: int = 0
 
     @property
     def weight(self) -> int:
@@ -171,14 +173,15 @@ class Nearest:
         """Every answer that the call could have had, or could have had under readings that were ruled out."""
         number = self.belief.symbol(event)[0][3]
         given = self.belief.symbol(event)[0][2]
-        for here in self.reachable(besides=number):
+        for sighting in self.ways(besides=number):
+            here = sighting.explanation
             call = next((one for one in here.calls if one.name == number), None)
             if call is None:
                 continue
             ready = (*call.ready, call.done) if call.done else call.ready
             for one in ready:
                 problems = self._answered(here, event, given, one.answer, one.names, one.assumes)
-                yield self._candidate(here, one.answer, one.names, one.rules, one.assumes, problems)
+                yield self._candidate(sighting, one.answer, one.names, one.rules, one.assumes, problems)
             if call.done:
                 continue
             refs = self.moves.refs(here, call.args)
@@ -186,20 +189,25 @@ class Nearest:
                 if step.answer is not None:
                     names = tuple(here.names[ref] if ref < len(here.names) else GONE - 1 for ref in step.refs)
                     problems = self._answered(here, event, given, step.answer, names, step.assumes)
-                    yield self._candidate(here, step.answer, names, step.rules, step.assumes, problems)
+                    yield self._candidate(sighting, step.answer, names, step.rules, step.assumes, problems)
 
     def _candidate(  # noqa: PLR0913 - what a candidate is made of
         self,
-        here: Explanation,
+        sighting: Successor,
         answer: Answer,
         names: Names,
         rules: tuple[str, ...],
         assumes: tuple[Assumption, ...],
         problems: list[Problem],
     ) -> Candidate:
+        here = sighting.explanation
         what = answer_words(answer, tuple(map(self._known, names)))
         allowed = bool(meet(here.assumed, assumes))
-        return Candidate(what, rules, tuple(map(str, assumes)), tuple(problems), allowed)
+        unusual = sum(
+            one.of.default not in one.letters and one.of.default in one.of.possible(here.assumed) for one in assumes
+        )
+        shown = tuple(map(str, assumes))
+        return Candidate(what, rules, shown, tuple(problems), allowed, unseen=sighting.rules, unusual=unusual)
 
     def _answered(  # noqa: PLR0913 - what is compared
         self,

@@ -1,0 +1,114 @@
+"""An answer with a code that nothing allows: which rules it breaks, the nearest first.
+
+Two things can be wrong: what should have been answered is not, and what was answered has no reason. What should have
+been answered is what needs least to have happened unseen and the fewest readings that are not usual. Of the rows of the
+Errors table with the code that came none holds, so that one is named only where it held for this request a while ago,
+as for whoever looks at a state that is no more, or where nothing but a row of that code can be what is wrong: the call
+should have taken effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from missionfsm.kernel.history import Returned
+from missionfsm.kernel.rules import OK, Rule
+from missionfsm.oracle.explanation import Explanation, Ready
+from missionfsm.tools.check.nearest import Candidate, Nearest
+from missionfsm.tools.check.phrases import described, name_words
+
+MAX_LOOKED_AT = 20
+"""In how many explanations of each event it is looked whether a row held."""
+
+CONDITIONS = 3
+"""How many conditions that do not hold a person is told."""
+
+
+def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) -> tuple[list[str], list[str]]:
+    """Ids of the rules that are broken and why, in words; none of the candidates has the code of the answer."""
+    spec, request, code = nearest.spec, nearest.about.request, event.answer.code
+    due = sorted(allowed, key=_likely)
+    refused = _once_each(rule for one in due if not _succeeds(one) for rule in one.rules)
+    done = list(dict.fromkeys(rule for one in due if _succeeds(one) for rule in one.rules))
+    wanted = done if not refused or _succeeds(due[0]) else refused
+    if code == OK or request is None:
+        return refused or wanted, []
+    operation = spec.operations[spec.request_operation(request)]
+    if code in operation.failures:
+        return _failed_wrongly(nearest, event, wanted)
+    reasons = [rule for rule in operation.refusals if rule.code == code]
+    if not reasons:
+        return wanted, [f"{code} is not documented for {operation.name}"]
+    held = _held_last(nearest, event, reasons)
+    reasons = [*held, *sorted(reasons, key=lambda rule: rule.under is not None)]
+    conditions = "; ".join(list(dict.fromkeys(rule.says for rule in reasons))[:CONDITIONS])
+    note = f"{code} needs a reason, and none holds: {conditions}"
+    if wanted is done:  # what may be done is refused without a reason
+        return [reasons[0].id, *done], [note]
+    return [*refused, *(rule.id for rule in held[:1])], [note]  # what has to be refused is refused wrongly
+
+
+def _succeeds(candidate: Candidate) -> bool:
+    return candidate.what.startswith(OK)
+
+
+def _likely(candidate: Candidate) -> tuple[int, int, int]:
+    return len(candidate.unseen), candidate.unusual, candidate.weight
+
+
+def _once_each(rules: Iterable[str]) -> list[str]:
+    """Ids of refusals, of those that differ in their code alone only the first."""
+    first: dict[tuple[str, str], str] = {}
+    for rule in rules:
+        place, _, condition = rule.rpartition("/")
+        first.setdefault((place.rpartition("/")[0], condition), rule)
+    return list(first.values())
+
+
+def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> list[Rule]:
+    """Those rows whose condition held for this request when one of them did last, as far as it is remembered.
+
+    A request with names is not looked at: what they stood for then is not known any more.
+    """
+    belief, moves, request = nearest.belief, nearest.moves, nearest.about.request
+    number = belief.symbol(event)[0][3]
+    if any(call.args for here in belief.node.explanations for call in here.calls if call.name == number):
+        return []
+    ids = {rule.id for rule in reasons}
+    for _, node in belief.walked:
+        held = {
+            rule
+            for here in node.explanations[:MAX_LOOKED_AT]
+            for step in moves.outcomes(here.state, request, ())
+            if step.answer is not None and step.answer.code == event.answer.code
+            for rule in step.rules
+        }
+        if held & ids:
+            return [rule for rule in reasons if rule.id in held]
+    return []
+
+
+def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
+    """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
+    code, spec = event.answer.code, nearest.spec
+    number = nearest.belief.symbol(event)[0][3]
+    explanations = nearest.belief.node.explanations
+    done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
+    if not done or len(done) < len(explanations):
+        return rules, [f"{code} comes to this call only where a failure was driven, and none was waiting"]
+    explanation, answer = done[0]
+    shown = [
+        f"{name_words(nearest.belief.name(channel.name))} showed {described(spec, channel.last.view)}"
+        for channel in explanation.channels
+        if channel.last is not None and channel.name >= 0
+    ]
+    names = ", ".join(name_words(known) for one in answer.names if (known := nearest.belief.name(one)) is not None)
+    unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
+    what = f"{names} is there" if names else "it took effect"
+    seen = f": {'; '.join(shown)}" if shown else ""
+    return unowed or rules, [f"{code} is documented, but a call that failed has no effect, and {what}{seen}"]
+
+
+def _took_effect(explanation: Explanation, number: int) -> Ready | None:
+    """What a call is to be answered that has taken effect already; None where it has not."""
+    return next((call.done for call in explanation.calls if call.name == number), None)

@@ -1,0 +1,79 @@
+"""Which rules are said to be broken by an answer with a code that nothing allows: no more than are needed."""
+
+from __future__ import annotations
+
+import pytest
+
+from missionfsm.kernel.codec import JSON
+from missionfsm.oracle.transcript import head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import check
+
+FIRST = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}}
+DRIVEN = {**FIRST, "drives": ["goalReached", "missionSucceeded", "missionFailed", "world", "fault"]}
+SETTLED = {"settled": True}
+SUCCEEDED = {"drive": {"event": "missionSucceeded"}}
+
+
+def call(number: int, method: str, params: JSON, **answer: JSON) -> list[JSON]:
+    """The lines of a call and its answer."""
+    return [{"call": number, "method": method, "params": params}, {"return": number, **answer}]
+
+
+def navigate(destination: str = "table-1") -> JSON:
+    return {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": destination}}}}}
+
+
+def refused(status: str) -> JSON:
+    return {"status": status, "message": ""}
+
+
+def accused(lines: list[JSON], first: JSON = DRIVEN) -> list[str]:
+    """What a violation names, without the name of the system."""
+    violation = check(system("bear.mission"), head(first), lines).violation
+    assert violation is not None
+    return [one.id.partition("/")[2] for one in violation.rules]
+
+
+BUSY = [*call(1, "CreateMission", navigate(), result={"missionId": "m1"}), SETTLED]
+ENDED = [*BUSY, SUCCEEDED, SETTLED]
+NO_FIRST = "CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued"
+CREATED = "CreateMission/the-answer-names-the-new-mission"
+
+
+@pytest.mark.parametrize("status", ["INVALID_ARGUMENT", "NOT_FOUND", "PERMISSION_DENIED"])
+@pytest.mark.parametrize("first", [FIRST, DRIVEN], ids=["as recorded", "driven"])
+def test_a_busy_robot_that_gives_another_reason_breaks_the_row_of_its_state(status: str, first: JSON) -> None:
+    """The row that holds and is not given is what is broken, also where the mission may have ended unseen."""
+    lines = [*BUSY, *call(2, "CreateMission", navigate(), error=refused(status))]
+    assert accused(lines, first) == [NO_FIRST]
+
+
+def test_a_busy_robot_that_does_it_all_the_same_breaks_that_row() -> None:
+    """What is done although it has to be refused breaks the refusal alone."""
+    assert accused([*BUSY, *call(2, "CreateMission", navigate(), result={"missionId": "m2"})]) == [NO_FIRST]
+
+
+def test_a_row_that_held_a_while_ago_is_the_first() -> None:
+    """An idle robot that says it is busy: the row that held before, then what should have been done."""
+    lines = [*ENDED, *call(2, "CreateMission", navigate(), error=refused("FAILED_PRECONDITION"))]
+    assert accused(lines) == [NO_FIRST, CREATED]
+
+
+def test_of_rows_that_differ_in_their_code_the_usual_one_is_named() -> None:
+    """An unknown id may be refused in three ways; that it is not refused breaks one row, that of the usual reading."""
+    command = {"missionCommand": {"missionId": "x", "command": "COMMAND_CANCEL"}}
+    lines = [*BUSY, *call(2, "UpdateMission", command, result={})]
+    assert accused(lines) == ["UpdateMission/INVALID_ARGUMENT/the-mission-is-not-listed-and-another-is-active"]
+
+
+def test_a_refusal_is_due_before_what_only_a_departure_allows() -> None:
+    """A destination that is not on the map is refused by its own row, although a reading that is unusual accepts it."""
+    lines = call(1, "CreateMission", navigate("nowhere"), error=refused("NOT_FOUND"))
+    assert accused(lines) == ["CreateMission/INVALID_ARGUMENT/a-destination-is-not-on-the-map"]
+
+
+def test_a_refusal_of_what_should_be_done_breaks_a_row_with_its_code() -> None:
+    """An idle robot that refuses: a row with that code, and what should have been done."""
+    rules = accused(call(1, "CreateMission", navigate(), error=refused("INVALID_ARGUMENT")))
+    assert ([rule.split("/")[1] for rule in rules[:1]], rules[1:]) == (["INVALID_ARGUMENT"], [CREATED])

@@ -354,7 +354,7 @@ SAMPLED = {"bear.mission": 150, "bear.status": 150, "isaac.server": 16, "isaac.r
 """Of how many mutants of a system one is looked at where not all are."""
 MANY = {"bear.mission": 60, "bear.status": 60, "isaac.server": 9, "isaac.robot": 2}
 """The same for a run that takes its time."""
-RIGHT = 0.6
+RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.robot": 0.6}
 """What part of many violations names the very rule, at least; of the others nobody has said yet why they do not."""
 
 
@@ -374,7 +374,7 @@ def test_most_violations_name_the_rule_that_is_broken(name: str) -> None:
     found = list(accusations(systems.system(name), every=MANY[name], conversations=8))
     assert [str(one) for one in found if len(one.violation.rules) > ACCUSED] == []
     wrong = [str(one) for one in found if not one.is_right(systems.system(name))]
-    assert len(wrong) <= (1 - RIGHT) * len(found), wrong
+    assert len(wrong) <= (1 - RIGHT[name]) * len(found), wrong
 
 
 SPECS = Path(__file__).parent.parent / "specs"

@@ -27,6 +27,7 @@ class Focus:
         answer: the answer, where a request was answered.
         topics: of the channels that may be those of a message or of an end.
         calls: the requests in flight, which may take effect before it, each with the positions of its names.
+        aside: whether it leaves the state as it is, and is about no channel that a call in flight may have opened.
     """
 
     kind: str
@@ -35,3 +36,4 @@ class Focus:
     answer: Answer | None = None
     topics: tuple[Hashable, ...] = ()
     calls: tuple[tuple[Hashable, Refs], ...] = ()
+    aside: bool = False

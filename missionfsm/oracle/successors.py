@@ -325,7 +325,26 @@ class Successors:
 
         Calls take effect, except the one with the name `besides`; the system and its surroundings act by themselves,
         as far as what is observed next can tell where `focus` says what that is.
+
+        Calls that only open channels take effect once something else may: what is shown on other channels tells
+        nothing of them, and they open with the same state later. So many that wait do not multiply.
         """
+        waiting = [
+            (at, call) for at, call in enumerate(explanation.calls) if call.done is None and call.name != besides
+        ]
+        opening = [at for at, call in waiting if self.only_opens(explanation, call)]
+        nothing = True
+        for one in self._others(explanation, [at for at, _ in waiting if at not in opening], besides, focus):
+            nothing = False
+            yield one
+        if opening and not (nothing and focus is not None and focus(explanation).aside):
+            for position in opening:
+                yield from self._take_effect(explanation, position, besides)
+
+    def _others(
+        self, explanation: Explanation, calls: Iterable[int], besides: int | None, focus: FocusOf | None
+    ) -> Iterator[Successor]:
+        """What an explanation can become without a call that only opens a channel; `calls` are the other ones."""
         for step in self._silent(explanation, focus):
             yield from self._sight(explanation, step, besides)
         for position, (request, args, _) in enumerate(explanation.lost):
@@ -334,9 +353,19 @@ class Successors:
                     if not step.opens:
                         rest = where.but(lost=without_lost(explanation.lost, position))
                         yield from self._sight(rest, step, besides)
-        for position, call in enumerate(explanation.calls):
-            if call.done is None and call.name != besides:
-                yield from self._take_effect(explanation, position, besides)
+        for position in calls:
+            yield from self._take_effect(explanation, position, besides)
+
+    def only_opens(self, explanation: Explanation, call: InFlight) -> bool:
+        """Whether all that a call may do is to open channels, which leaves the state and other channels alone."""
+        if call.args:
+            return False
+        state = explanation.state
+        effects = self.effects(state, call.request, ())
+        return bool(effects) and all(
+            step.opens and step.after is state and not (step.emits or step.closes or step.clears or step.withdraws)
+            for step in effects
+        )
 
     def _may_go_on(self, explanation: Explanation) -> bool:
         """Whether the subscribers, if there are any, are near enough to the state for more to be imagined.

@@ -547,7 +547,8 @@ class TransitionFunction:
 
         def about(here: Explanation) -> Focus:
             topics = tuple(one.topic for one in here.channels if one.name == name or one.name < GONE)
-            return Focus(kind, topics=topics, calls=self._in_flight(here))
+            opened = any(one.name == name for one in here.channels)
+            return Focus(kind, topics=topics, calls=self._in_flight(here), aside=opened)
 
         return about
 
@@ -557,7 +558,8 @@ class TransitionFunction:
         def about(here: Explanation) -> Focus:
             asked = next(one for one in here.calls if one.name == call)
             refs = self.moves.refs(here, asked.args)
-            return Focus(RETURNED, asked.request, refs, answer, calls=self._in_flight(here, besides=call))
+            aside = self.moves.only_opens(here, asked)
+            return Focus(RETURNED, asked.request, refs, answer, calls=self._in_flight(here, besides=call), aside=aside)
 
         return about
 

@@ -8,7 +8,7 @@ from missionfsm.app.asked import judged_system
 from missionfsm.kernel.codec import JSON
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.judge import Judge, check
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -114,3 +114,19 @@ def test_the_first_message_may_be_wrong_while_all_subscribe() -> None:
     found = verdict(lines)
     assert found.violation is not None
     assert found.violation.at == at + 2
+
+
+def test_subscriptions_in_flight_do_not_multiply() -> None:
+    """Of twelve that are under way at once the answers and the first messages are looked at one after the other."""
+    spent = {}
+    for clients in (6, 12):
+        log = Recording(1)
+        log.round([("SubscribeMissionStatus", {})] * clients)
+        judge = Judge(judged_system("bear.mission", strict=False), Head("bear.mission", {}, frozenset()), waits=False)
+        costs = []
+        for line in log.lines:
+            judge.feed(line)
+            costs.append(judge.automaton.moves.spent)
+        assert judge.right
+        spent[clients] = max(costs)
+    assert spent[12] < 3 * spent[6]

@@ -33,24 +33,8 @@ COMPLEX = {
         "transition.TransitionFunction._received",
         "transition._pairings",
     },
-    # Readers of what others wrote: a case for each thing that may be wrong with it.
-    "adapters": {"grpc.descriptors._fill", "stdio.Child._answer"},
-    # What a mission server may do next: a case for each reading.
-    "isaac.runtime": {"server.MissionServerCore._name"},
-    "isaac.server": {
-        "dispatch._choices",
-        "dispatch.dispatches_to",
-        "independence.concerned",
-        "independence.parts",
-        "lifecycle._cancellation",
-        "lifecycle.lost",
-        "lifecycle.strikes",
-        "spec._unowed",
-        "time._next",
-        "time.calmed",
-    },
-    # Commands: an option after the other.
-    "cli": {"defaults.defaults", "diagram.diagram", "dispatch.dispatch", "check.check", "conform.conform"},
+    # Parsers of the command line: an option after the other.
+    "cli": {"conform.conform", "dispatch.dispatch"},
 }
 """For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""
 

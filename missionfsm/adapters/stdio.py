@@ -198,7 +198,10 @@ class Child:
             if "result" not in message:
                 raise self._failed(f"answered {method} without a result or an error: {brief(message)}")
             return Exchange(message["result"], None, before, after)
-        error = message["error"]
+        return Exchange(None, self._error(message["error"], method), before, after)
+
+    def _error(self, error: JSON, method: str) -> dict[str, str]:
+        """An error as gRPC has it, whose code says what its status does."""
         code = error.get("code") if isinstance(error, dict) else None
         if isinstance(code, bool) or not isinstance(code, int):
             raise self._failed(f"answered {method} with an error without a code: {brief(error)}")
@@ -214,7 +217,7 @@ class Child:
         if not isinstance(status, str) or status == "OK" or STATUS_NUMBERS.get(status) != code:
             raise self._failed(f"answered {method} with error {code}, status {brief(status)}: not a gRPC error")
         said = error.get("message", "")
-        return Exchange(None, {"status": status, "message": said if isinstance(said, str) else ""}, before, after)
+        return {"status": status, "message": said if isinstance(said, str) else ""}
 
     def _notification(self, message: dict[str, Any]) -> Notification:
         method, params = message.get("method"), message.get("params")

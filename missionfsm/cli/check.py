@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import frozen
+from attrs import define, field, frozen
 
 from missionfsm.adapters.historyfile import STDIN
 from missionfsm.adapters.outputs import STDOUT
@@ -43,6 +43,8 @@ from missionfsm.tools.check.verdict import Verdict
 
 if TYPE_CHECKING:
     from missionfsm.app.many import Judged
+    from missionfsm.cli.summary import Told
+    from missionfsm.tools.check.baseline import Baseline
 
 Reached = tuple[str, str | None, Verdict]
 """A file, a robot if it names one, and the verdict."""
@@ -99,7 +101,7 @@ def check(  # noqa: PLR0913 - options of the command
     """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
     from missionfsm.app.many import histories  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.summary import Told  # noqa: PLC0415
-    from missionfsm.tools.check.baseline import Baseline, excused  # noqa: PLC0415
+    from missionfsm.tools.check.baseline import Baseline  # noqa: PLC0415
 
     readings = choice(reading)
     how = {
@@ -116,41 +118,70 @@ def check(  # noqa: PLR0913 - options of the command
         found = histories(files)
         reports.refuse_impossible((*found, expect_violations))
     many = found != list(dict.fromkeys(files))
-    sums_up = (many or len(found) > MANY) if summary is None else summary
-    told = Told(None if STDOUT not in (json, parquet) else STDOUT)
-    reached: list[Reached] = []
-    seconds: list[float] = []
-    troubles = Troubles()
-
-    def tell(line: str) -> None:
-        with troubles.kept():
-            say_shown(line, json=json)
-
+    telling = _Telling(known, many or len(found) > MANY if summary is None else summary, summary is None, json, verbose)
     with one_line_errors(), Bar("files", len(found)) as bar:
-        live = None if sums_up else tell
+        live = None if telling.sums_up else telling.say
         for one in _judged(found, readings, jobs=jobs, dask=dask, progress=bar.more, tell=live, **how):
-            with troubles.kept():
-                for line in () if sums_up else one.said:
-                    say_shown(line, json=json)
-                if summary is None and len(one.verdicts) > MANY:  # too many to be read one by one
-                    sums_up = True
-                for robot, judged in one.verdicts:
-                    reached.append((readable(one.path), robot, excused(judged, known)))
-                    seconds.append(one.seconds)
-                    if not sums_up:
-                        say_verdict(_headed(*reached[-1], verbose=verbose), json=json)
-                if one.trouble:  # one that cannot be read keeps none of the others from being judged
-                    raise UnreadableError(one.trouble)
-    if sums_up:
-        with troubles.kept():
-            told.say(reached)
-    stale = () if troubles else known.stale  # they may be met in what cannot be read
-    with troubles.kept():
-        for rule in stale:
-            say_shown(f"a violation of {rule} was expected and was not met: take it off the list", json=json)
+            telling.add(one)
+    telling.end(Told(None if STDOUT not in (json, parquet) else STDOUT))
+    reached, troubles = telling.reached, telling.troubles
     if reached:
-        reports.write(reached, seconds, stale, troubles, many=many)
-    troubles.end(DONE if not stale and all(verdict.conforms for _, _, verdict in reached) else FAILED)
+        reports.write(reached, telling.seconds, telling.stale, troubles, many=many)
+    conform = not telling.stale and all(verdict.conforms for _, _, verdict in reached)
+    troubles.end(DONE if conform else FAILED)
+
+
+@define(eq=False)
+class _Telling:
+    """What has been judged so far, each told as it comes, or all summed up in the end.
+
+    Attributes:
+        sums_up: whether all is summed up; where `may_sum_up`, also from the first file on that has too many robots.
+        seconds: how long the file of each verdict took.
+    """
+
+    known: Baseline
+    sums_up: bool
+    may_sum_up: bool
+    json: str | None
+    verbose: bool
+    reached: list[Reached] = field(factory=list)
+    seconds: list[float] = field(factory=list)
+    troubles: Troubles = field(factory=Troubles)
+
+    @property
+    def stale(self) -> tuple[str, ...]:
+        """Rules whose violation was expected and was not met; none where it may be met in what cannot be read."""
+        return () if self.troubles else self.known.stale
+
+    def say(self, line: str) -> None:
+        """Tell a line; what goes wrong with that is kept."""
+        with self.troubles.kept():
+            say_shown(line, json=self.json)
+
+    def add(self, one: Judged) -> None:
+        """A file has been judged; one that cannot be read keeps none of the others from it."""
+        from missionfsm.tools.check.baseline import excused  # noqa: PLC0415 - commands load what they need
+
+        with self.troubles.kept():
+            for line in () if self.sums_up else one.said:
+                say_shown(line, json=self.json)
+            self.sums_up = self.sums_up or (self.may_sum_up and len(one.verdicts) > MANY)
+            for robot, judged in one.verdicts:
+                self.reached.append((readable(one.path), robot, excused(judged, self.known)))
+                self.seconds.append(one.seconds)
+                if not self.sums_up:
+                    say_verdict(_headed(*self.reached[-1], verbose=self.verbose), json=self.json)
+            if one.trouble:
+                raise UnreadableError(one.trouble)
+
+    def end(self, told: Told) -> None:
+        """Sum up, and tell what was expected and not met."""
+        if self.sums_up:
+            with self.troubles.kept():
+                told.say(self.reached)
+        for rule in self.stale:
+            self.say(f"a violation of {rule} was expected and was not met: take it off the list")
 
 
 def _judged(

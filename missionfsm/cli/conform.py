@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import math
 import secrets
 import sys
@@ -198,35 +199,20 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     limit = TimeLimit(seconds)
     own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
-    wire = None
-    if grpc is None:
-        options = {
-            "--world": world,
-            "--settle": settle,
-            "--force": force,
-            "--token": token,
-            "--tls": tls,
-            "--metadata": metadata,
-            "--keepalive": keepalive,
-            "--transport": transport,
-            "--begins": begins,
-            "--others": others,
-        }
-        refuse_options(options, "without --grpc")
-    else:
-        wire = Wire(
-            grpc,
-            world=world,
-            settle=settle,
-            force=force,
-            token=token,
-            tls=tls,
-            metadata=metadata or [],
-            keepalive=keepalive,
-            begins=begins or Beginning.FRESH,
-            others=others,
-            strict=transport is Transport.STRICT,
-        )
+    over_grpc = {
+        "world": world,
+        "settle": settle,
+        "force": force,
+        "token": token,
+        "tls": tls,
+        "metadata": metadata,
+        "keepalive": keepalive,
+        "transport": transport,
+        "begins": begins,
+        "others": others,
+    }
+    wire = _wire(grpc, over_grpc)
+    if wire is not None:
         judged = wire.system(system, readings)
         refuse_options(
             {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
@@ -277,16 +263,27 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
         finally:
             child.close()
     troubles = told(verdict, json, verbose=verbose)
-    with troubles.kept():
-        annotate(github, [(None, "", verdict)], json)
-    with troubles.kept():
-        write_report(html, ("", None, verdict))
-    with troubles.kept():
-        write_junit(junit, [(verdict.implementation or system, verdict)])
-    with troubles.kept():
-        write_record(record, judged, verdict)
+    for write in (
+        functools.partial(annotate, github, [(None, "", verdict)], json),
+        functools.partial(write_report, html, ("", None, verdict)),
+        functools.partial(write_junit, junit, [(verdict.implementation or system, verdict)]),
+        functools.partial(write_record, record, judged, verdict),
+    ):
+        with troubles.kept():
+            write()
     status = DONE if verdict.conforms else FAILED
     troubles.end(INTERRUPTED if interruption.asked and verdict.violation is None else status)
+
+
+def _wire(grpc: str | None, options: dict[str, Any]) -> Wire | None:
+    """How a gRPC server is judged; None where none is, which takes the options that say how for bad usage."""
+    if grpc is None:
+        refuse_options({f"--{name}": given for name, given in options.items()}, "without --grpc")
+        return None
+    given = dict(options)
+    strict = given.pop("transport") is Transport.STRICT
+    begins, metadata = given.pop("begins") or Beginning.FRESH, given.pop("metadata") or []
+    return Wire(grpc, begins=begins, metadata=metadata, strict=strict, **given)
 
 
 def _listed(judged: System, option: str, given: list[str] | None) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ one of that command alone. What is said on the command line counts more.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,17 @@ def defaults(commands: TyperGroup, folder: Path) -> dict[str, dict[str, Any]]:
     except (OSError, ValueError) as error:
         raise UnreadableError(f"{path}: {error}") from None
     options = {name: _options(command) for name, command in commands.commands.items()}
+    found = _of_all(table, options, path)
+    for name, known in options.items():
+        for key, value in table.get(name, {}).items():
+            if key not in known:
+                raise UnreadableError(f"{path}: [tool.missionfsm.{name}] has {brief(key)}, which is no option of it")
+            found[name][known[key]] = value
+    return found
+
+
+def _of_all(table: dict[str, Any], options: Mapping[str, Mapping[str, str]], path: Path) -> dict[str, dict[str, Any]]:
+    """What is said for every command that has such an option; the tables of single commands are left out."""
     found: dict[str, dict[str, Any]] = {name: {} for name in options}
     for key, value in table.items():
         having = [name for name, known in options.items() if key in known]
@@ -41,11 +53,6 @@ def defaults(commands: TyperGroup, folder: Path) -> dict[str, dict[str, Any]]:
             raise UnreadableError(f"{path}: [tool.missionfsm] has {brief(key)}, which is no command and no option")
         for name in having:
             found[name][options[name][key]] = value
-    for name, known in options.items():
-        for key, value in table.get(name, {}).items():
-            if key not in known:
-                raise UnreadableError(f"{path}: [tool.missionfsm.{name}] has {brief(key)}, which is no option of it")
-            found[name][known[key]] = value
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -49,21 +49,28 @@ def diagram(  # noqa: PLR0913 - options of the command
 
     if output == "":
         stop("--output: an empty name is no name of a folder", BAD_INPUT)
-    unknown = [one for one in form or () if one not in FORMATS]
-    if unknown:
-        stop(f"--format {unknown[0]}: there are {', '.join(FORMATS)}", BAD_INPUT)
-    forms = tuple(dict.fromkeys(form or (FORMATS if output else ("dot",))))
+    forms = _forms(form or (FORMATS if output else ("dot",)))
     wanted = Wanted(choice(reading), choice(versus), refusals)
-    if missions and (what or reading or versus or refusals):
+    chosen = any((what, reading, versus, refusals))
+    if missions and chosen:
         stop("--missions draws a mission file, which needs no SYSTEM and has no readings and no refusals", BAD_INPUT)
     with one_line_errors():
         shown = (_of_file(missions),) if missions else tuple(_chosen(what or (), wanted))
     _effective(shown, forms, wanted)
     if output:
-        whole = not (what or form or reading or versus or refusals or missions)
-        _write(Path(output), shown, forms, whole=whole)
+        _write(Path(output), shown, forms, whole=not (chosen or form or missions))
     else:
         _print(shown, forms)
+
+
+def _forms(wanted: Iterable[str]) -> tuple[str, ...]:
+    """The formats that are asked for; one that there is not is bad usage."""
+    from missionfsm.tools.draw.gallery import FORMATS  # noqa: PLC0415 - commands load what they need
+
+    for form in wanted:
+        if form not in FORMATS:
+            stop(f"--format {form}: there are {', '.join(FORMATS)}", BAD_INPUT)
+    return tuple(dict.fromkeys(wanted))
 
 
 def _chosen(what: Sequence[str], wanted: Wanted) -> Iterator[Picture]:

@@ -99,11 +99,11 @@ def dispatch(  # noqa: PLR0913 - the options
     if log is None and sys.stdout is not None and sys.stdout.isatty():
         refuse_given(context, {"log_level": "--log-level"}, "on a live table; --log text writes lines")
     readings = PROFILES[profile.value]
+    if (tls_cert is None) is not (tls_key is None):
+        stop("--tls-cert and --tls-key go together", BAD_INPUT)
     try:
         text = read_whole(str(file))
         names = None if token is None else tokens(str(token))
-        if (tls_cert is None) is not (tls_key is None):
-            stop("--tls-cert and --tls-key go together", BAD_INPUT)
         tls = None if tls_cert is None else server_tls(str(tls_cert), str(tls_key))
     except UnreadableError as error:
         stop(str(error), BAD_INPUT)
@@ -123,10 +123,9 @@ def dispatch(  # noqa: PLR0913 - the options
         work.ended_by = signal.SIGINT
     except OSError as error:
         stop(f"cannot listen on {address((host, port))}: {error.strerror or error}", BAD_INPUT)
-    except JournalError as error:
-        stop(f"--journal: {error}", BAD_INPUT)
-    except JournalMismatchError as error:
-        stop(f"--journal: {journal}: {error}", BAD_INPUT)
+    except (JournalError, JournalMismatchError) as error:
+        which = f"{journal}: " if isinstance(error, JournalMismatchError) else ""
+        stop(f"--journal: {which}{error}", BAD_INPUT)
     if work.ended_by is None:
         raise typer.Exit(0 if work.succeeded == len(missions.missions) else 1)
     left = f"{work.unfinished} of {len(missions.missions)} missions had not ended"

@@ -8,7 +8,7 @@ message and enum that stands in no other has a file of its own here.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NewType
 
 from google.protobuf import any_pb2, descriptor_pb2, descriptor_pool, json_format, message_factory, timestamp_pb2
@@ -62,31 +62,32 @@ def _used(name: str) -> Iterator[str]:
 def _fill(proto: descriptor_pb2.DescriptorProto, name: str) -> None:
     """Put the fields of a message into its descriptor, and what stands inside it."""
     proto.name = name.rpartition(".")[2]
-    groups = dict.fromkeys(field.oneof for field in MESSAGES[name] if field.oneof)
-    for group in groups:
-        proto.oneof_decl.add(name=group)
-    order = {group: index for index, group in enumerate(groups)}
-    optional = [field for field in MESSAGES[name] if field.label == "optional"]
-    for field in MESSAGES[name]:
+    fields = MESSAGES[name]
+    oneofs = _oneofs(fields)
+    for oneof in dict.fromkeys(oneofs.values()):
+        proto.oneof_decl.add(name=oneof)
+    order = {oneof: index for index, oneof in enumerate(dict.fromkeys(oneofs.values()))}
+    for field in fields:
         one = proto.field.add(name=field.name, number=field.number)
         one.label = _Proto.LABEL_REPEATED if field.label in ("repeated", "map") else _Proto.LABEL_OPTIONAL
         if field.label == "map":
             one.type, one.type_name = _Proto.TYPE_MESSAGE, f".{PACKAGE}.{name}.{_entry(proto, field)}"
         else:
             _typed(one, field.type)
-        if field.oneof:
-            one.oneof_index = order[field.oneof]
-        if field in optional:
+        if field.name in oneofs:
+            one.oneof_index = order[oneofs[field.name]]
+        if field.label == "optional":
             one.proto3_optional = True
-            one.oneof_index = len(groups) + optional.index(field)
-    for field in optional:
-        proto.oneof_decl.add(name=f"_{field.name}")
-    for inner in MESSAGES:
-        if inner.rpartition(".")[0] == name:
-            _fill(proto.nested_type.add(), inner)
-    for inner in ENUMS:
-        if inner.rpartition(".")[0] == name:
-            _fill_enum(proto.enum_type.add(), inner)
+    for inner in (inner for inner in MESSAGES if inner.rpartition(".")[0] == name):
+        _fill(proto.nested_type.add(), inner)
+    for inner in (inner for inner in ENUMS if inner.rpartition(".")[0] == name):
+        _fill_enum(proto.enum_type.add(), inner)
+
+
+def _oneofs(fields: Sequence[Field]) -> dict[str, str]:
+    """Field to the oneof that it is in: those of the definition first, then one for each field that is optional."""
+    own = {field.name: field.oneof for field in fields if field.oneof}
+    return own | {field.name: f"_{field.name}" for field in fields if field.label == "optional"}
 
 
 def _entry(proto: descriptor_pb2.DescriptorProto, field: Field) -> str:

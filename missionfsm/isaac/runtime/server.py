@@ -323,21 +323,29 @@ class MissionServerCore:
 
     def _name(self, connection: ConnectionRecord, text: str) -> None:
         key = self._scheduler.key(text)
-        if not key:
-            self._ignore(connection, "an empty name is no name")
-            return
         bound = connection.robot
         if bound is not None and bound.key == key:
             return  # said again, as robots do
-        if connection.displaced and self.profile.ai_16_back == "r":
-            self._ignore(connection, "another connection took its name over")
-            return
-        if bound is not None and self.profile.ai_17 == "a":
-            self._ignore(connection, "it has a name already and cannot take another")
-            return
-        if self._tokens is not None and not _same(self._tokens.get(key), connection.token):
+        refused = self._refused(connection, key)
+        if refused:
+            self._ignore(connection, refused)
+        elif self._tokens is not None and not _same(self._tokens.get(key), connection.token):
             self._close(connection, f"it says the name {shown(text)} without its token")
-            return
+        else:
+            self._claim(connection, text)
+
+    def _refused(self, connection: ConnectionRecord, key: str) -> str:
+        """Why a connection cannot take a name, whoever has it; empty where it can."""
+        if not key:
+            return "an empty name is no name"
+        if connection.displaced and self.profile.ai_16_back == "r":
+            return "another connection took its name over"
+        if connection.robot is not None and self.profile.ai_17 == "a":
+            return "it has a name already and cannot take another"
+        return ""
+
+    def _claim(self, connection: ConnectionRecord, text: str) -> None:
+        """A connection takes a name; where another has it, the profile says what becomes of the two."""
         robot = self._scheduler.robot(text)
         if robot.connection is not None and not robot.connection.open:
             self._unbind(robot.connection)  # dropped, and no pass has come since

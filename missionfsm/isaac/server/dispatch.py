@@ -87,27 +87,39 @@ def dispatches(move: Move, part: Part) -> Moves:
 
 def dispatches_to(move: Move, link: Link) -> Moves:
     """Every way to send a mission on a connection now."""
-    if any(one.robot is None and one.ready for one in move.state.missions):
-        anybody, nobody = split(move, AI_19, "b")
-        if anybody is not None and nobody is not None:
-            yield anybody
-            yield nobody
-            return
+    undecided = _whether_anybody(move)
+    if undecided:
+        yield from undecided
+        return
     choices = list(_choices(move, link))
     # Where it is decided whether anything may be sent, that it may be is decided although nothing is sent yet.
     decides = any(index is None and chosen is not move for index, chosen in choices)
     for index, chosen in choices:
-        if index is None:
-            if chosen is not move:
-                yield chosen
-            continue
-        now, later = split(chosen, AI_39, "a")
-        if now is not None:
-            yield from sends(now, link, index)
-        if later is not None and later.state.letters(AI_39) != chosen.state.letters(AI_39):
-            yield looks(later)
-        elif later is not None and decides and later.state != move.state:
-            yield later
+        if index is not None:
+            now, later = split(chosen, AI_39, "a")
+            if now is not None:
+                yield from sends(now, link, index)
+            if later is not None:
+                yield from _sent_later(later, chosen, decides=decides and later.state != move.state)
+        elif chosen is not move:
+            yield chosen
+
+
+def _whether_anybody(move: Move) -> tuple[Move, ...]:
+    """Both ways to decide whether a mission that names no robot is for any of them; none where that is known."""
+    if any(one.robot is None and one.ready for one in move.state.missions):
+        anybody, nobody = split(move, AI_19, "b")
+        if anybody is not None and nobody is not None:
+            return anybody, nobody
+    return ()
+
+
+def _sent_later(later: Move, chosen: Move, *, decides: bool) -> Moves:
+    """Nothing is sent before the next pass: a move where that has just been decided, or something with it."""
+    if later.state.letters(AI_39) != chosen.state.letters(AI_39):
+        yield looks(later)
+    elif decides:
+        yield later
 
 
 def possible(state: Server, link: Link) -> list[tuple[int, Move]]:
@@ -118,10 +130,7 @@ def possible(state: Server, link: Link) -> list[tuple[int, Move]]:
 def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
     """Missions that may be sent on a connection, each with what that decides; None for deciding to send nothing."""
     missions = move.state.missions
-    own = [index for index, one in enumerate(missions) if one.robot == link.name]
-    if "b" in move.state.letters(AI_19):
-        own = [index for index, one in enumerate(missions) if one.robot in (link.name, None)]
-    queue = [index for index in own if missions[index].status is Status.QUEUED]
+    queue = _queue(move.state, link)
     if not any(missions[index].ready for index in queue):
         return
     taken = busy(move.state, link)
@@ -136,6 +145,12 @@ def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
             yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
     if held is not None:
         yield None, held
+
+
+def _queue(state: Server, link: Link) -> list[int]:
+    """The missions that wait for the robot of a connection, or (AI-19 b) for any."""
+    whose = (link.name, None) if "b" in state.letters(AI_19) else (link.name,)
+    return [index for index, one in enumerate(state.missions) if one.robot in whose and one.status is Status.QUEUED]
 
 
 def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:

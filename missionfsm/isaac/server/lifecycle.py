@@ -43,6 +43,7 @@ from missionfsm.isaac.server.state import (
     Move,
     Status,
 )
+from missionfsm.kernel.readings import Ambiguity
 
 
 def becomes(move: Move, index: int, trigger: str) -> Move:
@@ -87,15 +88,23 @@ def _cancellation(move: Move, index: int) -> Moves:
     yes, no = split(move, AI_03, failures_that_cancel(mission))
     if yes is not None:
         now, later = split(yes, AI_36, "a") if mission.waits else (yes, None)
-        at_once, noticed = (None, None) if now is None else split(now, AI_03_WHEN, "n")
-        if at_once is not None:
-            yield ends(at_once, index, "cancel", rules.CANCELED.id)
-        soon, waits = (None, None) if noticed is None else split(noticed, AI_03_WHEN, "q")
-        if soon is not None:
-            yield _to_be_noticed(soon, index, DOOM)
-        yield from (one for one in (waits, later) if one is not None and one is not move)
+        yield from () if now is None else _doomed(now, move, index)
+        if later is not None and later is not move:
+            yield later
     if no is not None and no is not move:
         yield no
+
+
+def _doomed(move: Move, before: Move, index: int) -> Moves:
+    """A mission is to be cancelled: at once, when a pass notices it, or when it comes to the front of its queue."""
+    at_once, noticed = split(move, AI_03_WHEN, "n")
+    if at_once is not None:
+        yield ends(at_once, index, "cancel", rules.CANCELED.id)
+    soon, waits = (None, None) if noticed is None else split(noticed, AI_03_WHEN, "q")
+    if soon is not None:
+        yield _to_be_noticed(soon, index, DOOM)
+    if waits is not None and waits is not before:
+        yield waits
 
 
 def failures_that_cancel(mission: Mission) -> str:
@@ -107,52 +116,52 @@ def failures_that_cancel(mission: Mission) -> str:
 
 def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
     """Where a clock that is over aborts its mission, and where it means nothing (it runs no more)."""
-    mission = move.state.missions[index]
-    aborting: list[Move] = []
-    meaningless: list[Move] = []
-
-    def ask(here: Move | None, *questions: tuple[object, str]) -> None:
-        """The answers to all questions have to be among the letters; the first that is not makes it meaningless."""
-        for question, letters in questions:
-            if here is None:
-                return
-            here, no = split(here, question, letters)  # type: ignore[arg-type]
-            if no is not None:
-                meaningless.append(no)
-        if here is not None:
-            aborting.append(here)
-
     if clock.kind == DROP:
         return tuple(_noticed(move, index)), ()
     if clock.kind == DOOM:
         return (ends(move, index, "cancel", rules.CANCELED.id),), ()
+    alike: Move | None = move
     unlike: Move | None = None
     if clock.kind != SILENT:
         alike, unlike = split(move, AI_24_WHOLE, "w" if clock.whole else "x")
-        if alike is None:
-            return (), (move,)
-        move = alike
-    if clock.kind == SILENT:
-        ask(move, (AI_31, "a"))
-    elif clock.kind == START:
-        letter = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[clock.since]
-        ask(move, (AI_05, letter), *(((AI_07, "ab"),) if mission.status is Status.STARTED else ()))
-    elif clock.since == "send":
-        by_send, not_by_send = split(move, AI_06, "b")
-        if by_send is not None:
-            aborting.append(by_send)
-        ask(not_by_send, (AI_06, "a"), (AI_07, "c"))
-    elif clock.since == WAITS:
-        ask(move, (AI_06, "d"))
-    elif clock.since == "status":
-        ask(move, (AI_06, "a"), (AI_07, "ab"))
-    else:
-        ask(move, (AI_06, "c"))
-    kind = (clock.kind, clock.since)
+    if alike is None:
+        return (), (move,)
+    aborting, meaningless = _aborting(alike, index, clock)
     return (
-        tuple(one for here in aborting for one in aborted(here, index, clock.kind)),
-        (*(stopped(here, index, kind) for here in meaningless), *(() if unlike is None else (unlike,))),
+        tuple(one for way in aborting for one in aborted(way, index, clock.kind)),
+        (*(stopped(way, index, (clock.kind, clock.since)) for way in meaningless), *filter(None, (unlike,))),
     )
+
+
+def _aborting(move: Move, index: int, clock: Clock) -> tuple[list[Move], list[Move]]:
+    """The moves in which a clock counts, and those in which it does not: the first answer that says so decides."""
+    aborting: list[Move] = []
+    meaningless: list[Move] = []
+    here: Move | None = move
+    if (clock.kind, clock.since) == (RUN, "send"):
+        by_send, here = split(move, AI_06, "b")
+        aborting += () if by_send is None else (by_send,)
+    for question, letters in _counts(move.state.missions[index], clock):
+        here, no = (None, None) if here is None else split(here, question, letters)
+        meaningless += () if no is None else (no,)
+    aborting += () if here is None else (here,)
+    return aborting, meaningless
+
+
+_START_COUNTS_FROM = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}
+"""What the time to start counts from, with the letter of AI-05."""
+
+
+def _counts(mission: Mission, clock: Clock) -> tuple[tuple[Ambiguity, str], ...]:
+    """The questions that make a clock count, each with the letters that do."""
+    if clock.kind == SILENT:
+        return ((AI_31, "a"),)
+    if clock.kind == START:
+        since = (AI_05, _START_COUNTS_FROM[clock.since])
+        return (since, (AI_07, "ab")) if mission.status is Status.STARTED else (since,)
+    if clock.since in ("send", "status"):
+        return (AI_06, "a"), (AI_07, "c" if clock.since == "send" else "ab")
+    return ((AI_06, "d" if clock.since == WAITS else "c"),)
 
 
 def _noticed(move: Move, index: int) -> Moves:
@@ -226,20 +235,29 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
         yield move
         return
     for letter, way in ways(move, AI_15, "c", "a", "b"):
-        here: Move | None = way
-        later: Move | None = None
-        if letter != "a":
-            here, later = split(way, AI_15_WHEN, "n")
-        for index in affected:
-            if later is not None:
-                later = _to_be_noticed(later.mission(index, link=None), index, DROP, still=still)
-            if here is not None and letter == "a":
-                here = here.mission(index, link=None)
-            elif here is not None and letter == "c":
-                here = ends(here.mission(index, link=None), index, "lose")
-            elif here is not None:
-                here = sent_again(here, index)
-        yield from (one for one in (here, later) if one is not None)
+        here, later = (way, None) if letter == "a" else split(way, AI_15_WHEN, "n")
+        if here is not None:
+            yield _lost_at_once(here, letter, affected)
+        if later is not None:
+            yield _lost_later(later, affected, still=still)
+
+
+def _lost_at_once(move: Move, letter: str, affected: list[int]) -> Move:
+    """What becomes of the missions of a connection, by the letter of AI-15."""
+    for index in affected:
+        if letter == "b":
+            move = sent_again(move, index)
+        else:
+            move = move.mission(index, link=None)
+            move = ends(move, index, "lose") if letter == "c" else move
+    return move
+
+
+def _lost_later(move: Move, affected: list[int], *, still: bool) -> Move:
+    """The missions of a connection are on none, and a pass notices it."""
+    for index in affected:
+        move = _to_be_noticed(move.mission(index, link=None), index, DROP, still=still)
+    return move
 
 
 def _to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) -> Move:

@@ -222,7 +222,7 @@ def _quiet(before: Server, move: Move) -> Move:
 
 def _closing(server: Server, at: Hashable) -> tuple[Step, ...]:
     """A connection that said no name is closed, whenever that is (AI-18.unnamed)."""
-    link = next((one for one in server.links if topic(one.slot) == at), None)
+    link = server.link_of_topic(at)
     if link is None or link.name is not None:
         return ()
     _, tired = split(Move(server), AI_18_UNNAMED, "c")
@@ -290,15 +290,18 @@ def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
 
 def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | None, ...]) -> tuple[str, ...]:
     """The rules that a server breaks that sends a mission now: before its upstreams, to another robot, or twice."""
-    link = next((one for one in server.links if topic(one.slot) == at), None)
+    link = server.link_of_topic(at)
     if link is None or not isinstance(content, LineContent) or any(ref is not None for ref in refs):
         return ()
-    alike = [one for one in server.missions if (one.channel, one.config) == (content.channel, content.what)]
-    queued = [one for one in alike if one.status is Status.QUEUED]
+    queued = [one for one in server.missions if one.status is Status.QUEUED and _says(content, one)]
     own = [one for one in queued if link.serves and one.robot == link.name]
-    if any(one.waits or one.doomed for one in own):
-        return (rules.UPSTREAM.id, rules.SENT.id)
-    return (rules.UNNAMED.id,) if queued and not own else ()
+    if not own:
+        return (rules.UNNAMED.id,) if queued else ()
+    return () if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
+
+
+def _says(content: LineContent, mission: Mission) -> bool:
+    return (content.channel, content.what) == (mission.channel, mission.config)
 
 
 _DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), malformed=(rules.ENVELOPE.id,), again=True)

@@ -9,6 +9,7 @@ nothing says when (AI-31 a).
 from __future__ import annotations
 
 import enum
+from collections.abc import Hashable
 from typing import Any
 
 from attrs import evolve
@@ -229,6 +230,10 @@ class Server:
     def link(self, slot: int) -> Link | None:
         """The connection in a slot."""
         return next((one for one in self.links if one.slot == slot), None)
+
+    def link_of_topic(self, at: Hashable) -> Link | None:
+        """The connection that a topic is about."""
+        return next((one for one in self.links if topic(one.slot) == at), None)
 
     def next_pass(self, since: int) -> int:
         """Until when a scheduling pass has come after a moment, both in microseconds, where times are exact."""

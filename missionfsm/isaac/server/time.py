@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import math
+import operator
 from collections.abc import Iterator
 
 from attrs import evolve
@@ -21,7 +22,7 @@ from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, u
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
-from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Move, Server
+from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Mission, Move, Server
 from missionfsm.kernel.values import value
 
 EVER = 10**15
@@ -201,13 +202,22 @@ def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
         for clock in here.move.state.missions[index].ticking:
             if clock.lo <= until:
                 yield from _strike(here, part, index, clock, until)
+    yield from _passes(here, part, until)
+    yield from _unnoticed(here, part, until)
+
+
+def _passes(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+    """A scheduling pass comes to a connection."""
     for slot, first, last in here.looks:
         when = (max(here.low, first), min(_pass(here.move.state, slot, last), until))
-        if when[0] > when[1]:
-            continue
-        rest = tuple(one for one in here.looks if one[0] != slot)
-        for after in _looked(evolve(here.move, at=when), slot, part):
-            yield _here(after, when[0], part, rest)
+        if when[0] <= when[1]:
+            rest = tuple(one for one in here.looks if one[0] != slot)
+            for after in _looked(evolve(here.move, at=when), slot, part):
+                yield _here(after, when[0], part, rest)
+
+
+def _unnoticed(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+    """Something is sent that reaches nobody, since no pass has noticed yet who is there; or a pass notices it."""
     state = here.move.state
     for gone in _in_vain(state, part):
         when = (here.low, max(here.low, min(gone.fresh, until)))
@@ -359,23 +369,24 @@ def calmed(state: Server, only: tuple[Part, ...] | None = None) -> Server:
 
     When a drop is noticed is left open: what follows may look as before.
     """
-    missions = range(len(state.missions)) if only is None else [index for part in only for index in part.missions]
-    late = [
-        index
-        for index in missions
-        if any(clock.lo < 0 and clock.kind != DROP for clock in state.missions[index].clocks)
-        and state.missions[index].status not in ENDED
-    ]
-    slots = None if only is None else {slot for part in only for slot in part.slots}
-    looks = any(link.look is not None and (slots is None or link.slot in slots) for link in state.links)
-    if not late and not looks:
-        return state
-    after = list(state.missions)
-    for index in late:
-        clocks = tuple(evolve(one, lo=0) if one.lo < 0 and one.kind != DROP else one for one in after[index].clocks)
-        after[index] = evolve(after[index], clocks=clocks)
-    links = tuple(
-        evolve(one, look=None) if one.look is not None and (slots is None or one.slot in slots) else one
-        for one in state.links
-    )
-    return evolve(state, missions=tuple(after), links=links)
+    if only is None:
+        only = (Part(tuple(range(len(state.missions))), tuple(link.slot for link in state.links)),)
+    missions, links = list(state.missions), list(state.links)
+    for part in only:
+        for index in part.missions:
+            missions[index] = _none_struck(missions[index])
+        links = [evolve(one, look=None) if one.look is not None and one.slot in part.slots else one for one in links]
+    unchanged = all(map(operator.is_, missions, state.missions)) and all(map(operator.is_, links, state.links))
+    return state if unchanged else evolve(state, missions=tuple(missions), links=tuple(links))
+
+
+def _none_struck(mission: Mission) -> Mission:
+    """The mission of which no clock has struck before now."""
+    if mission.status in ENDED or not any(_may_have_struck(clock) for clock in mission.clocks):
+        return mission
+    clocks = (evolve(clock, lo=0) if _may_have_struck(clock) else clock for clock in mission.clocks)
+    return evolve(mission, clocks=tuple(clocks))
+
+
+def _may_have_struck(clock: Clock) -> bool:
+    return clock.lo < 0 and clock.kind != DROP

@@ -23,7 +23,6 @@ COMPLEX = {
         "belief.Automaton.arrive",
         "belief.Belief.symbol",
         "explanation.take",
-        "line_cache.Texts._remember",
         "lookahead.Lookahead.__init__",
         "lookahead.Lookahead._leading",
         "lookahead.Lookahead._narrowed",

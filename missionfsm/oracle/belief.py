@@ -12,7 +12,6 @@ import copy
 import sys
 from collections import defaultdict, deque
 from collections.abc import Hashable, Iterable, Iterator
-from typing import Any
 
 from attrs import define, field
 
@@ -30,12 +29,14 @@ from missionfsm.kernel.history import (
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.terms import Incident
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle import memory
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.memory import MEMORY
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import BUDGET, Successor, Successors
+from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
 Tally = defaultdict[int, int]
@@ -59,7 +60,7 @@ class Node:
 
     explanations: tuple[Explanation, ...]
     width: int
-    next: dict[Any, Edge] = field(factory=dict, repr=False)
+    next: dict[Symbol, Edge] = field(factory=dict, repr=False)
     bytes: int = field(init=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
@@ -149,7 +150,7 @@ class Automaton:
         self._edges = self.bytes = 0
         self.moves.forget()
 
-    def edge(self, node: Node, symbol: tuple[Any, ...]) -> Edge:
+    def edge(self, node: Node, symbol: Symbol) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
         kind, *what = symbol
         edge = self.arrive(node, self.oracle.step(node.explanations, kind, *what))
@@ -270,7 +271,7 @@ class Belief:
         self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
         self._renumbered: set[tuple[Name, Hashable]] = set()
-        self._walked: deque[tuple[tuple[Any, ...], Node]] = deque(maxlen=MAX_WALKED)
+        self._walked: deque[tuple[Symbol, Node]] = deque(maxlen=MAX_WALKED)
 
     @property
     def spec(self) -> Spec:
@@ -349,7 +350,7 @@ class Belief:
             for channel, event in self._latest.items()
         }
 
-    def foresee(self, event: Event) -> tuple[Any, ...] | None:
+    def foresee(self, event: Event) -> Symbol | None:
         """An event with numbers for names, and the new names numbered for good; None for one that means nothing."""
         if type(event) in (Received, Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
             return None
@@ -379,7 +380,7 @@ class Belief:
         if edge.keep is not None:
             self._rename(edge, edge.keep, [])
 
-    def symbol(self, event: Event) -> tuple[tuple[Any, ...], list[Name]]:
+    def symbol(self, event: Event) -> tuple[Symbol, list[Name]]:
         """The event with numbers for names, as the automaton knows it, and the names that are new."""
         numbers = self._numbers
         new: list[Name] = []
@@ -477,7 +478,7 @@ class Belief:
             self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
         self._marks.pop(channel, None)
 
-    def _start_over(self, event: Any) -> None:  # noqa: ANN401 - a drive's event
+    def _start_over(self, event: Incident) -> None:
         renumbers = self.automaton.spec.drives[event.name].renumbers
         for track in renumbers(event) if renumbers else ():
             self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)
@@ -522,12 +523,12 @@ class Belief:
         return self._marks.get(channel, _NO_MARKS).get(track)
 
     @property
-    def walked(self) -> Iterator[tuple[tuple[Any, ...], Node]]:
+    def walked(self) -> Iterator[tuple[Symbol, Node]]:
         """The last events with numbers for names, each with the node before it, the latest first."""
         yield from reversed(self._walked)
 
     @property
-    def exercised_last(self) -> Iterator[tuple[tuple[Any, ...], tuple[str, ...]]]:
+    def exercised_last(self) -> Iterator[tuple[Symbol, tuple[str, ...]]]:
         """The same events, each with ids of the rules that it exercised."""
         sets = self.automaton.numbers
         for symbol, node in reversed(self._walked):

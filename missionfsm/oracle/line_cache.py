@@ -7,12 +7,12 @@ that number is several times as fast as to read it.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Any
 
 from attrs import evolve
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Called, Driven, Event, Name, Received, Returned, Settled
+from missionfsm.kernel.terms import Content, Request
 from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 from missionfsm.oracle.transcript import Transcript
 
@@ -45,7 +45,7 @@ class Texts:
         self._skim = transcript.codec.skim
         self._pending = transcript.pending
         self._begins, self._sends, self._answers_to = transcript.begins, transcript.sends, transcript.answers
-        self._calls: dict[bytes, tuple[str, Any]] = {}
+        self._calls: dict[bytes, tuple[str, Request]] = {}
         self._answers: dict[tuple[str | None, bytes], Answer] = {}
         self._others: dict[bytes, tuple[Event, ...]] = {}
         self._contents: dict[bytes, Hashable] = {}
@@ -134,16 +134,10 @@ class Texts:
         return events
 
     def _remember(self, text: bytes, line: JSON, event: Event, method: str | None) -> None:
-        remembered: tuple[dict[Any, Any], ...] = (self._calls, self._answers, self._others, self._contents)
         if self._room.overflows(ENTRY + TEXT * len(text)):
-            for known in remembered:
-                known.clear()
+            self._forget()
         if type(event) is Called:
-            rest = _rest(text, _CALL, line["call"])
-            if rest and event.names:
-                self._called.add(None, rest, event.names, (line["method"], event.request))
-            elif rest:
-                self._calls[rest] = line["method"], event.request
+            self._remember_call(_rest(text, _CALL, line["call"]), line["method"], event)
         elif type(event) is Returned and method is not None:
             rest = _rest(text, _RETURN, line["return"])
             if rest and event.names:
@@ -154,6 +148,18 @@ class Texts:
             self._others[text] = (event,)
         elif type(event) is Received and text == self._write(line):
             self._remember_message(text, event)
+
+    def _remember_call(self, rest: bytes, method: str, event: Called) -> None:
+        if rest and event.names:
+            self._called.add(None, rest, event.names, (method, event.request))
+        elif rest:
+            self._calls[rest] = method, event.request
+
+    def _forget(self) -> None:
+        self._calls.clear()
+        self._answers.clear()
+        self._others.clear()
+        self._contents.clear()
 
     def _remember_message(self, text: bytes, event: Received) -> None:
         """Remember what a message shows that is written as nearly all are: in such a text nothing comes twice."""
@@ -170,10 +176,10 @@ class _Named:
     """What texts say that have one name in them: what comes before it, what comes after it, and what that says."""
 
     def __init__(self) -> None:
-        self._said: dict[tuple[str | None, bytes, bytes], Any] = {}
+        self._said: dict[tuple[str | None, bytes, bytes], Content] = {}
         self._lengths: tuple[int, ...] = ()
 
-    def find(self, method: str | None, rest: bytes) -> tuple[Any, tuple[Name, ...]]:
+    def find(self, method: str | None, rest: bytes) -> tuple[Content, tuple[Name, ...]]:
         """What a text says, and its name; None for one that is not known."""
         for length in self._lengths:
             end = rest.find(b'"', length)
@@ -183,7 +189,7 @@ class _Named:
                 return (said, (name,)) if _is_plain(name) else (None, _NOBODY)
         return None, _NOBODY
 
-    def add(self, method: str | None, rest: bytes, names: tuple[Name, ...], said: Any) -> None:  # noqa: ANN401
+    def add(self, method: str | None, rest: bytes, names: tuple[Name, ...], said: Content) -> None:
         """Remember what a text says, if it has one name and that is written as it is, once."""
         name = names[0]
         if len(names) > 1 or not isinstance(name, str) or not _is_plain(name) or b"\\" in rest:

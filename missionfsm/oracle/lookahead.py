@@ -11,7 +11,6 @@ from __future__ import annotations
 import bisect
 import operator
 from collections.abc import Collection, Hashable, Mapping, Sequence
-from typing import Any
 
 from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
@@ -22,6 +21,7 @@ from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
+from missionfsm.oracle.symbols import Symbol
 
 NEXT = 64
 """How many of the messages that a stream shows next are compared with what it owes."""
@@ -29,7 +29,6 @@ NEXT = 64
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
 
-Symbol = tuple[Any, ...]
 """An event with numbers for names, as the belief automaton knows it: its class and its fields."""
 
 
@@ -79,8 +78,8 @@ class Lookahead:
         self._settled: list[int] = []
         self._latest = latest
         self._room = Room(MEMORY // STEPS)
-        self._passed: dict[Any, Narrowed | None] = {}
-        self._shows: dict[Any, bool] = {}
+        self._passed: dict[Hashable, Narrowed | None] = {}
+        self._shows: dict[Hashable, bool] = {}
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
         called: dict[int, tuple[int, Hashable, Names]] = {}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Hashable, Iterable, Iterator
-from typing import Any
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
@@ -17,7 +16,7 @@ from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Glimpses, Spec
 from missionfsm.kernel.step import Match, Mismatch
-from missionfsm.kernel.terms import View
+from missionfsm.kernel.terms import Content, State, View
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,
@@ -30,6 +29,7 @@ from missionfsm.oracle.explanation import (
     tidy,
 )
 from missionfsm.oracle.successors import Successor, Successors
+from missionfsm.oracle.symbols import Part
 
 WILD = Ready(Answer("*"), (), (), ())
 """The answer of a call that took effect, or was refused, while nothing was known: any that some state allows."""
@@ -76,7 +76,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
     moves: Successors,
     here: Explanation,
     channel: int,
-    content: Any,  # noqa: ANN401 - of any system
+    content: Content,
     names: Names,
     *,
     then: bool = False,
@@ -108,7 +108,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
                 yield Successor(tidy(after.but(assumed=assumed)), match.rules)
 
 
-def _names(spec: Spec, here: Explanation, state: Any, match: Match, names: Names) -> Names:  # noqa: ANN401
+def _names(spec: Spec, here: Explanation, state: State, match: Match, names: Names) -> Names:
     known = {ref: names[at] for ref, at in match.names}
     unseen = fresh(here)
     return tuple(known[ref] if ref in known else next(unseen) for ref in range(spec.names(state)))
@@ -116,7 +116,7 @@ def _names(spec: Spec, here: Explanation, state: Any, match: Match, names: Names
 
 def _standing(  # noqa: PLR0913 - what a message fixes
     here: Explanation,
-    state: Any,  # noqa: ANN401 - of any system
+    state: State,
     names: Names,
     name: int,
     topic: Hashable,
@@ -138,7 +138,7 @@ def _standing(  # noqa: PLR0913 - what a message fixes
     return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
 
 
-def joined(moves: Successors, here: Explanation, channel: int, content: Any) -> tuple[Explanation, bool]:  # noqa: ANN401
+def joined(moves: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:
     """The explanation with a channel that was opened before the log began, and whether its message is no more judged.
 
     Such a channel may show anything first; where nobody can tell what it is to show, it is not followed.
@@ -156,7 +156,7 @@ def unforeseen(
     explanations: Iterable[Explanation],
     assumed: Iterable[Assumption],
     kind: type,
-    *what: Any,  # noqa: ANN401
+    *what: Part,
 ) -> Iterator[Successor]:
     """How somebody whose calls are not in the log, or who called before it began, can have brought an event about.
 
@@ -186,7 +186,7 @@ def unforeseen(
             yield Successor(_lost_sight(moves, here))
 
 
-def _late(here: Explanation, name: int, content: Any) -> Iterator[Successor]:  # noqa: ANN401
+def _late(here: Explanation, name: int, content: Content) -> Iterator[Successor]:
     """The explanation in which a channel that was opened before the log began still shows what was before."""
     channels = (channel for channel in here.channels if channel.name == name)
     if not isinstance(content, Malformed) and any(one.last and one.last.view is ANY for one in channels):

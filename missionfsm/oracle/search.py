@@ -15,10 +15,11 @@ from attrs import define, field
 
 from missionfsm.kernel.history import Called
 from missionfsm.oracle.explanation import Explanation
-from missionfsm.oracle.lookahead import Lookahead, Message, Symbol
+from missionfsm.oracle.lookahead import Lookahead, Message
 from missionfsm.oracle.memory import MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Seen, Successor, Successors
+from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")

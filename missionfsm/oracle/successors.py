@@ -7,13 +7,13 @@ for one explanation at a time; `missionfsm.oracle.transition` puts it together w
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from typing import Any
 
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, by_bit, meet
 from missionfsm.kernel.spec import Failure, Spec
 from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
+from missionfsm.kernel.terms import Refs, Request, State
 from missionfsm.kernel.transport import MADE_BY_CLIENTS, MADE_UP
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
@@ -95,13 +95,13 @@ class Successors:
         self._room = memory // STEPS
         self.bytes = 0
         self.groups = by_bit(spec.ambiguities)
-        self._outcomes: dict[Any, tuple[Step, ...]] = {}
-        self._effects: dict[Any, tuple[Step, ...]] = {}
-        self._idle: dict[Any, tuple[Step, ...]] = {}
-        self._urgent: dict[Any, tuple[Step, ...]] = {}
-        self._unseen: dict[Any, tuple[Step, ...]] = {}
-        self._focused: dict[Any, tuple[Step, ...]] = {}
-        self._matches: dict[Any, tuple[Match, ...] | Mismatch] = {}
+        self._outcomes: dict[Hashable, tuple[Step, ...]] = {}
+        self._effects: dict[Hashable, tuple[Step, ...]] = {}
+        self._idle: dict[Hashable, tuple[Step, ...]] = {}
+        self._urgent: dict[Hashable, tuple[Step, ...]] = {}
+        self._unseen: dict[Hashable, tuple[Step, ...]] = {}
+        self._focused: dict[Hashable, tuple[Step, ...]] = {}
+        self._matches: dict[Hashable, tuple[Match, ...] | Mismatch] = {}
         self.ahead: Lookahead | None = None
         self.live = True
         self.spent = 0
@@ -127,7 +127,7 @@ class Successors:
         ):
             memory.clear()
 
-    def outcomes(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+    def outcomes(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
         """Every answer to a request in a state."""
         key = (state, request, refs)
         found = self._outcomes.get(key)
@@ -137,7 +137,7 @@ class Successors:
             self._outcomes[key] = found
         return found
 
-    def _make_room(self, state: Any, steps: tuple[Step, ...]) -> None:  # noqa: ANN401 - a state of any system
+    def _make_room(self, state: State, steps: tuple[Step, ...]) -> None:
         """Count what is going to be remembered of a state; forget the rest where that becomes too much."""
         others = sum([step.after is not state for step in steps])
         self.bytes += ENTRY + (ENTRY + EACH_NAME * self.spec.names(state)) * others
@@ -148,7 +148,7 @@ class Successors:
         """Those steps that do not contradict what everybody assumes."""
         return tuple(step for step in steps if meet(self.assumed, step.assumes))
 
-    def effects(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+    def effects(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
         """The outcomes of a request in a state that change something."""
         key = (state, request, refs)
         found = self._effects.get(key)
@@ -157,7 +157,7 @@ class Successors:
             found = self._effects[key] = tuple(step for step in steps if changes(state, step))
         return found
 
-    def idle(self, state: Any, request: Hashable, refs: tuple[int | None, ...]) -> tuple[Step, ...]:  # noqa: ANN401
+    def idle(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
         """The outcomes of a request in a state that have an answer and change nothing."""
         key = (state, request, refs)
         found = self._idle.get(key)
@@ -169,7 +169,7 @@ class Successors:
             )
         return found
 
-    def urgent(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+    def urgent(self, state: State) -> tuple[Step, ...]:
         """What must happen before things have settled."""
         found = self._urgent.get(state)
         if found is None:
@@ -178,7 +178,7 @@ class Successors:
             self._urgent[state] = found
         return found
 
-    def unseen(self, state: Any) -> tuple[Step, ...]:  # noqa: ANN401 - a state of any system
+    def unseen(self, state: State) -> tuple[Step, ...]:
         """What may happen at any time although nobody asked for it."""
         found = self._unseen.get(state)
         if found is None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any
 
 from attrs import frozen
 
@@ -27,6 +26,7 @@ from missionfsm.kernel.history import (
 )
 from missionfsm.kernel.ids import IdSet
 from missionfsm.kernel.rules import OK, STATUS_NUMBERS
+from missionfsm.kernel.terms import Request
 from missionfsm.kernel.text import brief
 from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 
@@ -49,7 +49,7 @@ _KEYS: Mapping[str, frozenset[str]] = {
 }
 """What each kind of line may have; one that has more means something that would be passed over."""
 
-_Reader = Callable[[dict[str, Any]], tuple[Event, ...]]
+_Reader = Callable[[dict[str, JSON]], tuple[Event, ...]]
 
 
 @frozen
@@ -89,7 +89,7 @@ def _wrong(says: str) -> UnreadableError:
     return UnreadableError(says)
 
 
-def _known_keys(kind: str, line: dict[str, Any], known: frozenset[str]) -> None:
+def _known_keys(kind: str, line: dict[str, JSON], known: frozenset[str]) -> None:
     if not line.keys() <= known:
         unknown = next(key for key in line if key not in known)
         raise _wrong(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
@@ -141,13 +141,13 @@ class Transcript:
         self._fingerprint = fingerprint
         self._lost = lost
         self._anywhere = anywhere
-        self._open: dict[int, tuple[str, Any]] = {}
-        self.answered: Any = None
+        self._open: dict[int, tuple[str, Request]] = {}
+        self.answered: Request = None
         self._sent = IdSet()
         self._errors: dict[str, Answer] = {}
         self._room = Room(MEMORY // TEXTS)
-        self._requests: dict[Hashable, Any] = {}
-        self._interned: dict[Any, Any] = {}
+        self._requests: dict[Hashable, Request] = {}
+        self._interned: dict[Hashable, Hashable] = {}
         self._contents: dict[Hashable, Hashable] = {}
         self._forms: dict[tuple[str, ...], _Reader] = {}
         self._latest: dict[Name, dict[tuple[Hashable, ...], JSON]] = {}
@@ -168,7 +168,7 @@ class Transcript:
         reader = self._forms.get(form)
         return (reader or self._reader(form, line))(line)
 
-    def _reader(self, form: tuple[str, ...], line: dict[str, Any]) -> _Reader:
+    def _reader(self, form: tuple[str, ...], line: dict[str, JSON]) -> _Reader:
         """What reads lines with these keys."""
         for key in form:
             reader = self._kinds.get(key)
@@ -179,17 +179,17 @@ class Transcript:
         raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
 
     @property
-    def pending(self) -> Mapping[int, tuple[str, Any]]:
+    def pending(self) -> Mapping[int, tuple[str, Request]]:
         """The calls that have no answer yet: their ids, in the order of sending, to the method and the request."""
         return self._open
 
-    def _number(self, line: dict[str, Any], key: str) -> int:
+    def _number(self, line: dict[str, JSON], key: str) -> int:
         number = line[key]
         if type(number) is not int:  # a bool is none
             raise _wrong(f"{key}: {brief(number)} is not a whole number")
         return number
 
-    def _call(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _call(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
         self.begins(number)
         if not isinstance(method, str):
@@ -212,7 +212,7 @@ class Transcript:
         self,
         number: int,
         method: str,
-        request: Any,  # noqa: ANN401 - of any system
+        request: Request,
         names: tuple[Name, ...],
     ) -> tuple[Event, ...]:
         """The event of a call that has begun and whose params are known."""
@@ -226,7 +226,7 @@ class Transcript:
         _, self.answered = self._open.pop(number)
         return (Returned(("call", number), answer, names),)
 
-    def _request(self, method: str, params: JSON) -> tuple[Any, tuple[Any, ...]]:
+    def _request(self, method: str, params: JSON) -> tuple[Request, tuple[Name, ...]]:
         names, rest = self.codec.split(method, params)
         key = (method, self._fingerprint(rest))
         request = self._requests.get(key)
@@ -237,7 +237,7 @@ class Transcript:
             request = self._requests[key] = self._interned.setdefault(request, request)
         return request, names
 
-    def _return(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _return(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         number = self._number(line, "return")
         waiting = self._open.pop(number, None)
         if waiting is None and self._anywhere and self._sent.add(number):
@@ -264,7 +264,7 @@ class Transcript:
             raise _wrong(f"error.status: {brief(status)} is not the name of a gRPC error")
         return status
 
-    def _stream(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _stream(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         stream = ("stream", self._number(line, "stream"))
         if "closed" not in line and "error" not in line:
             if "message" not in line:
@@ -309,7 +309,7 @@ class Transcript:
         content = self._contents[key] = self.codec.content(rest)
         return content
 
-    def _connection(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _connection(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         connection = ("connection", self._number(line, "connection"))
         if ("line" in line) == ("closed" in line):
             raise _wrong(f"connection {connection[1]}: expected either a line or closed")
@@ -319,11 +319,11 @@ class Transcript:
             return (Ended(connection, OK),)
         return self._received(connection, line["line"])
 
-    def _drive(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _drive(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         event, names = self.codec.happened(line["drive"])
         return (Driven(event, names),)
 
-    def _settled(self, line: dict[str, Any]) -> tuple[Event, ...]:
+    def _settled(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         if line["settled"] is not True:
             raise _wrong(f"settled: {brief(line['settled'])} is not true")
         return _SETTLED

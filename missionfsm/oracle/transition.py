@@ -7,8 +7,7 @@ event to all explanations after it. `missionfsm.oracle.belief` walks that automa
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Hashable, Iterable, Iterator
-from typing import Any
+from collections.abc import Hashable, Iterable, Iterator
 
 from attrs import evolve
 
@@ -35,6 +34,7 @@ from missionfsm.oracle.explanation import (
 )
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import FocusOf, Seen, Successor, Successors
+from missionfsm.oracle.symbols import Observer, Part
 
 
 class TransitionFunction:
@@ -51,7 +51,7 @@ class TransitionFunction:
         self.eager = eager and moves.spec.transport
         self._lenient = 0
 
-    def step(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> tuple[Successor, ...]:  # noqa: ANN401
+    def step(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> tuple[Successor, ...]:
         """Every explanation of what was observed before and of this event.
 
         Args:
@@ -82,7 +82,7 @@ class TransitionFunction:
         self,
         explanations: Iterable[Explanation],
         kind: type,
-        *what: Any,  # noqa: ANN401
+        *what: Part,
     ) -> Iterator[Successor]:
         """What explains an event that the system does not explain, one by one; see `step`."""
         return itertools.chain.from_iterable(self._beyond(tuple(explanations), kind, *what))
@@ -91,7 +91,7 @@ class TransitionFunction:
         self,
         explanations: tuple[Explanation, ...],
         kind: type,
-        *what: Any,  # noqa: ANN401
+        *what: Part,
     ) -> Iterator[Iterable[Successor]]:
         """What may have become of things on their way, or a robot that has restarted, or somebody not in the log."""
         if self.spec.transport:
@@ -103,7 +103,7 @@ class TransitionFunction:
             if assumed is not None:
                 yield middle.unforeseen(self.moves, explanations, assumed, kind, *what)
 
-    def is_hopeless(self, kind: type, *what: Any, leniently: bool = False) -> bool:  # noqa: ANN401 - as above
+    def is_hopeless(self, kind: type, *what: Part, leniently: bool = False) -> bool:
         """Whether an event is wrong whatever came before it: then nobody has to look at all of that.
 
         The number of a message goes against those before, or an answer cannot be read.
@@ -123,7 +123,7 @@ class TransitionFunction:
         level: int,
         explanations: Iterable[Explanation],
         kind: type,
-        *what: Any,  # noqa: ANN401
+        *what: Part,
     ) -> Iterator[Successor]:
         """What explains an event with as much of the transport as the level says."""
         found = self.explained(explanations, kind, *what)
@@ -137,9 +137,9 @@ class TransitionFunction:
                 return
             yield one
 
-    def explained(self, explanations: Iterable[Explanation], kind: type, *what: Any) -> Iterator[Successor]:  # noqa: ANN401
+    def explained(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> Iterator[Successor]:
         """The same, one by one: the nearest first, some of them in several ways; without what only a transport does."""
-        observe: Callable[..., Iterator[Successor]] = _OBSERVERS[kind]
+        observe: Observer[Iterator[Successor]] = _OBSERVERS[kind]
         return observe(self, explanations, *what)
 
     def _called(
@@ -525,7 +525,7 @@ class TransitionFunction:
         state = self.spec.calmed(explanation.state)
         return explanation if state is explanation.state else evolve(explanation, state=state)
 
-    def _about(self, kind: type, *what: Any) -> FocusOf:  # noqa: ANN401
+    def _about(self, kind: type, *what: Part) -> FocusOf:
         """What was observed by an event, seen from what explains it; of an answer no part is told more than before."""
         if kind is Driven:
             return self._before_drive(*what)
@@ -642,7 +642,7 @@ def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator
         ]
 
 
-_OBSERVERS: dict[type, Callable[..., Iterator[Successor]]] = {
+_OBSERVERS: dict[type, Observer[Iterator[Successor]]] = {
     Called: TransitionFunction._called,  # noqa: SLF001 - the table belongs to the class
     Returned: TransitionFunction._returned,  # noqa: SLF001
     Received: TransitionFunction._received,  # noqa: SLF001

@@ -11,9 +11,9 @@ import itertools
 from missionfsm.kernel.history import Called, Event, Returned
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation, with_lost
-from missionfsm.oracle.lookahead import Symbol
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
+from missionfsm.oracle.symbols import Symbol
 
 BUDGET, EACH = 100_000, 200
 """How many explanations a window may cost before it is given up, and how many more for each of its events."""

@@ -112,7 +112,8 @@ class _Subscription:
         monitors = (self.status,) if self.status else tuple(self.missions.values())
         robots = self.status.robots if self.status else len(self.missions)
         repeats, redelivered = (sum(getattr(one, name) for one in monitors) for name in ("repeats", "redelivered"))
-        notes = [f"{robots} robots, {repeats} messages that say nothing new, {self.flagged} tolerated oddities"]
+        told = f"{robots} {'robot' if robots == 1 else 'robots'}, {repeats} messages that say nothing new"
+        notes = [f"{told}, {self.flagged} tolerated oddities"]
         concerned = _concerned(spec, self.topic)
         unchecked = [rule for rule in concerned if rule not in checked]
         notes.append(f"not checked, since no bare message can break them: {len(unchecked)} rules")

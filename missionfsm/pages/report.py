@@ -26,6 +26,7 @@ from missionfsm.tools.check.narrate import as_pytest
 from missionfsm.tools.check.verdict import CitedRule, Experiment, Outcome, Side, Verdict
 
 _NUMBER = re.compile(r"\d+")
+_GRAVITY = (Outcome.VIOLATES, Outcome.INCONCLUSIVE, Outcome.CONFORMS)
 _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
 
 
@@ -157,14 +158,20 @@ class Chapter:
         """How many rules belong to a reading that may be followed."""
         return sum(topic.applicable for topic in self.topics)
 
+    @property
+    def violated(self) -> int:
+        """How many are broken."""
+        return sum(topic.violated for topic in self.topics)
+
 
 def report(judged: Sequence[Judged], system: Callable[[str], System], made: str = "") -> str:
-    """The page on some verdicts.
+    """The page on some verdicts, the gravest first.
 
     Args:
         system: a system's name to the system.
         made: when, by which version and by which command the page is made.
     """
+    judged = sorted(judged, key=lambda one: _GRAVITY.index(one.verdict.outcome))
     by_system: dict[str, list[Judged]] = {}
     for one in judged:
         by_system.setdefault(one.verdict.system, []).append(one)
@@ -172,7 +179,7 @@ def report(judged: Sequence[Judged], system: Callable[[str], System], made: str 
     outcomes = [one.verdict.outcome for one in judged]
     return rendered(
         "report.html",
-        outcome=next(one for one in (Outcome.VIOLATES, Outcome.INCONCLUSIVE, Outcome.CONFORMS) if one in outcomes),
+        outcome=next(one for one in _GRAVITY if one in outcomes),
         stories=[_story(system(one.verdict.system), one) for one in judged],
         counts={one: outcomes.count(one) for one in Outcome},
         chapters=chapters,

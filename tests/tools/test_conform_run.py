@@ -36,7 +36,7 @@ def test_the_event_that_ruled_a_reading_out_is_named() -> None:
         *call(2, "SkipGoal", {}, error={"status": "FAILED_PRECONDITION", "message": ""}),
     )
     verdict = check(MISSION, head(HEAD), lines)
-    told = "ClearMissionStatus() was answered OK in []"
+    told = "ClearMissionStatus() was answered OK in [no mission]"
     assert (verdict.readings["AM-33.fresh"], verdict.ruled_out["AM-33.fresh"]) == (("a",), {"b": told, "c": told})
     assert f"  AM-33.fresh = a (not b, c: {told})" in str(verdict).splitlines()
     assert verdict.to_json()["ruled_out"]["AM-33.fresh"] == {"b": told, "c": told}

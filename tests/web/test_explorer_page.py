@@ -248,16 +248,16 @@ def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(
 ) -> None:
     """Shapes are called what the program calls them; one that is next leads on, one that was before leads back."""
     page = open_page(explorers["bear.mission"]).page
-    assert (_shapes(page, "past"), _shapes(page, "here")) == ([], ["[]"])
+    assert (_shapes(page, "past"), _shapes(page, "here")) == ([], ["[no mission]"])
     assert "one of 2 states" in page.locator("#stage .here").inner_text()
     _press(page, "CreateMission", "servi delivery to", "OK")
-    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[]"], ["[WAITING]"])
+    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[no mission]"], ["[WAITING]"])
     page.locator("#stage .next[data-shape='[RUNNING at goal 0]']").click()
     _comes_to(page, "mission-1 running serving table-1 table-2")
-    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[]", "[WAITING]"], ["[RUNNING at goal 0]"])
+    assert (_shapes(page, "past"), _shapes(page, "here")) == (["[no mission]", "[WAITING]"], ["[RUNNING at goal 0]"])
     page.locator("#stage .shape.past").first.click()
     _comes_to(page)
-    assert _shapes(page, "here") == ["[]"]
+    assert _shapes(page, "here") == ["[no mission]"]
 
 
 def test_several_ways_to_a_shape_are_shown_alone(explorers: dict[str, Path], open_page: Opener) -> None:

@@ -108,7 +108,6 @@ def test_its_links_lead_somewhere(violating: Path, open_page: Opener) -> None:
     assert len(targets) > 100
     assert set(targets) <= known
     rule = page.locator(f"[id='{BROKEN}']")
-    page.locator("button[data-folds='close']").first.click()
     assert not rule.is_visible()
     page.locator(".wrong-box a").first.click()
     assert rule.is_visible()
@@ -122,6 +121,7 @@ def test_its_links_lead_somewhere(violating: Path, open_page: Opener) -> None:
 def test_its_map_has_every_clause(violating: Path, open_page: Opener) -> None:
     """Every clause of the specification is on the map once, in its colour, and the legend hides some on demand."""
     page = open_page(violating).page
+    page.locator("nav a[href^='#map']").click()
     page.locator(".map button[data-folds='open']").click()
     numbers = page.locator(".clause .number").all_inner_texts()
     assert sorted(numbers) == sorted(clause.number for clause in clauses(specification_page("bear.mission")))
@@ -172,9 +172,10 @@ def test_it_tells_what_is_followed(conforming: Path, open_page: Opener) -> None:
     assert len(told) > 3
 
 
-def test_what_conforms_fits_two_screens_of_a_phone(conforming: Path, open_page: Opener) -> None:
-    """Readings, rules and the map are folded away, and a link to one of them unfolds it."""
-    page = open_page(conforming, "phone").page
+@pytest.mark.parametrize("which", ["conforming", "violating"])
+def test_it_fits_two_screens_of_a_phone(which: str, open_page: Opener, request: pytest.FixtureRequest) -> None:
+    """What happened is there at once; readings, rules and the map are folded away, and a link to one unfolds it."""
+    page = open_page(request.getfixturevalue(which), "phone").page
     screen, height = page.evaluate("[innerHeight, document.documentElement.scrollHeight]")
     assert height <= 2 * screen
     assert page.locator("details.part[open]").count() == 0
@@ -194,7 +195,7 @@ def test_what_was_sent_is_text(open_page: Opener, tmp_path: Path) -> None:
 
 
 def test_many_histories_share_a_page(open_page: Opener, tmp_path: Path) -> None:
-    """A page on several files has a verdict for each, the gravest first, and one map."""
+    """A page on several files has a verdict for each, the gravest first and unfolded, and one map."""
     good = _history(tmp_path / "good.jsonl", GOOD)
     wrong = _history(tmp_path / "wrong.jsonl", (*GOOD[:2], {"return": 1, "error": {"status": "FAILED_PRECONDITION"}}))
     ended = missionfsm("check", good, wrong, "--html", tmp_path / "page.html")
@@ -202,11 +203,13 @@ def test_many_histories_share_a_page(open_page: Opener, tmp_path: Path) -> None:
     seen = open_page(tmp_path / "page.html", "phone")
     page = seen.page
     assert not seen.overflows()
-    assert page.locator("td .mark").all_inner_texts() == ["conforms", "violates"]
+    assert page.locator("td .mark").all_inner_texts() == ["violates", "conforms"]
     assert page.locator(".verdict strong").first.inner_text() == "violates"
     assert page.locator(".map").count() == 1
-    page.get_by_role("link", name=str(wrong)).click()
-    assert page.locator("#story-2:target .row.wrong").is_visible()
+    assert page.locator("#story-1 .row.wrong").is_visible()
+    assert not page.locator("#story-2 .verdict").is_visible()
+    page.get_by_role("link", name=str(good)).click()
+    assert page.locator("#story-2:target .verdict").is_visible()
 
 
 def test_nothing_half_written(tmp_path: Path) -> None:

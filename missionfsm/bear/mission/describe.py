@@ -14,7 +14,8 @@ def describe(value: object) -> str:
     if isinstance(value, Request):
         return _request(value)
     if isinstance(value, Robot):
-        return _missions(value.listed) + (", halted" if value.halted else "")
+        shown = _missions(value.listed) if value.listed else "[no mission]"
+        return shown + (", halted" if value.halted else "")
     if isinstance(value, Listing):
         active = "none active" if value.active is None else f"{value.active} active"
         return f"{_missions(value.missions)}, {active}"

@@ -117,8 +117,8 @@ class Automaton:
         self.spec = spec
         self.assumed = assumed
         self.memory = memory
-        self.moves = Successors(spec, driven, assumed, budget, memory=memory)
-        self.oracle = TransitionFunction(self.moves, eager=eager)
+        self.successors = Successors(spec, driven, assumed, budget, memory=memory)
+        self.transitions = TransitionFunction(self.successors, eager=eager)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
         self.bytes = 0
@@ -127,7 +127,7 @@ class Automaton:
 
     def start(self, world: object, *, used: bool = False) -> Node:
         """The node in which an instance in this world is that is fresh, or that was used and then cleared."""
-        spec = self.moves.spec
+        spec = self.successors.spec
         state = (spec.used if used and spec.used else spec.initial)(world)
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)
@@ -148,20 +148,20 @@ class Automaton:
             node.next.clear()
         self._nodes.clear()
         self._edges = self.bytes = 0
-        self.moves.forget()
+        self.successors.forget()
 
     def edge(self, node: Node, symbol: Symbol) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
         kind, *what = symbol
-        edge = self.arrive(node, self.oracle.step(node.explanations, kind, *what))
+        edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += memory.ENTRY
         return edge
 
-    def arrive(self, node: Node, sightings: tuple[Successor, ...]) -> Edge:
+    def arrive(self, node: Node, found: tuple[Successor, ...]) -> Edge:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""
-        explanations = tuple(sighting.explanation for sighting in sightings)
+        explanations = tuple(successor.explanation for successor in found)
         new = surviving_names(explanations)
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
         if retired:
@@ -171,7 +171,7 @@ class Automaton:
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)
         in_order = keep == tuple(range(len(keep)))
-        rules = tuple(dict.fromkeys(rule for sighting in sightings for rule in sighting.rules))
+        rules = tuple(dict.fromkeys(rule for successor in found for rule in successor.rules))
         return Edge(
             next_node,
             None if in_order and len(keep) == node.width and not retired else keep,

@@ -45,7 +45,7 @@ def given_up(channel: Channel) -> Channel:
 
 
 def restarted(
-    moves: Successors, spec: Spec, explanations: Iterable[Explanation], relations: tuple[str, ...] = ("first",)
+    successors: Successors, spec: Spec, explanations: Iterable[Explanation], relations: tuple[str, ...] = ("first",)
 ) -> Iterator[Explanation]:
     """The explanations in which the robot has restarted; a channel that goes on shows that first.
 
@@ -57,7 +57,7 @@ def restarted(
     for explanation in explanations:
         assumed = meet(explanation.assumed, (TR_05["b"],))
         step = spec.restarted(explanation.state) if assumed else None
-        taken = step and moves.advance(explanation.but(assumed=assumed), step)
+        taken = step and successors.advance(explanation.but(assumed=assumed), step)
         if taken:
             after = taken[0]
             channels = tuple(Channel(one.name, one.topic, None, one.owed[-1:]) for one in after.channels)

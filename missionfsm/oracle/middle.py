@@ -41,39 +41,43 @@ def is_unknown(explanation: Explanation) -> bool:
     return type(explanation.state) is Unknown
 
 
-def _glimpses(moves: Successors) -> Glimpses | None:
-    return moves.spec.middle.glimpses if moves.spec.middle else None
+def _glimpses(successors: Successors) -> Glimpses | None:
+    return successors.spec.middle.glimpses if successors.spec.middle else None
 
 
 def plausible(
-    moves: Successors, explanation: Explanation, call: InFlight, answer: Answer
+    successors: Successors, explanation: Explanation, call: InFlight, answer: Answer
 ) -> Iterator[tuple[Hashable, ...]]:
     """The topics of the channels that such an answer opens, once for each way in which some state allows it."""
-    glimpses = _glimpses(moves)
+    glimpses = _glimpses(successors)
     state = explanation.state
     if glimpses is not None and not is_unknown(explanation):
         state = Unknown(glimpses.world(state))
     found = dict.fromkeys(
         tuple(one.topic for one in step.opens)
-        for step in moves.outcomes(state, call.request, (None,) * len(call.args))
-        if step.answer is not None and meet(explanation.assumed, step.assumes) and moves.agreements(step.answer, answer)
+        for step in successors.outcomes(state, call.request, (None,) * len(call.args))
+        if step.answer is not None
+        and meet(explanation.assumed, step.assumes)
+        and successors.agreements(step.answer, answer)
     )
     yield from found
 
 
-def answered(moves: Successors, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Successor]:
+def answered(
+    successors: Successors, here: Explanation, position: int, answer: Answer, names: Names
+) -> Iterator[Successor]:
     """The explanations in which a call is answered as some state allows, of which nothing more is known."""
     call = here.calls[position]
     rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
     known = {channel.name for channel in rest.channels}
-    for topics in plausible(moves, here, call, answer):
+    for topics in plausible(successors, here, call, answer):
         opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
         channels = (*rest.channels, *(one for one in opened if one.name not in known))
         yield Successor(tidy(rest.but(channels=channels)))
 
 
 def shown(  # noqa: PLR0913 - a message, and what is known
-    moves: Successors,
+    successors: Successors,
     here: Explanation,
     channel: int,
     content: Content,
@@ -86,7 +90,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
     Args:
         then: whether it has to be one that the state before may have become.
     """
-    spec, glimpses = moves.spec, _glimpses(moves)
+    spec, glimpses = successors.spec, _glimpses(successors)
     if glimpses is None:
         return
     if GONE in names:
@@ -99,7 +103,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
         if isinstance(matches, Mismatch):
             continue
         for match in matches:
-            moves.spend()
+            successors.spend()
             assumed = meet(here.assumed, match.assumes)
             own = _names(spec, here, state, match, names)
             if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
@@ -138,21 +142,21 @@ def _standing(  # noqa: PLR0913 - what a message fixes
     return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
 
 
-def joined(moves: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:
+def joined(successors: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:
     """The explanation with a channel that was opened before the log began, and whether its message is no more judged.
 
     Such a channel may show anything first; where nobody can tell what it is to show, it is not followed.
     """
     if isinstance(content, Malformed) or channel in {one.name for one in here.channels}:
         return here, False
-    glimpses = _glimpses(moves)
+    glimpses = _glimpses(successors)
     if glimpses is None:
         return here, True
     return here.but(channels=(*here.channels, Channel(channel, glimpses.topic(content), None, (_FREE,)))), False
 
 
 def unforeseen(
-    moves: Successors,
+    successors: Successors,
     explanations: Iterable[Explanation],
     assumed: Iterable[Assumption],
     kind: type,
@@ -163,8 +167,8 @@ def unforeseen(
     Args:
         assumed: what is assumed where the numbers of a message compare so with those before.
     """
-    spec = moves.spec
-    if _glimpses(moves) is None:
+    spec = successors.spec
+    if _glimpses(successors) is None:
         return
     acted = LOG_02["b"] if spec.others else LOG_01["b"]
     for one in explanations:
@@ -174,16 +178,16 @@ def unforeseen(
             continue
         if kind is Received:
             content, names, _, channel = what
-            yield from shown(moves, here, channel, content, names, then=True)
+            yield from shown(successors, here, channel, content, names, then=True)
             yield from _late(here, channel, content)
         elif kind is Returned:
             answer, names, call = what
             place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
             if place is not None:
-                for after in answered(moves, here, place, answer, names):
-                    yield Successor(_lost_sight(moves, after.explanation))
+                for after in answered(successors, here, place, answer, names):
+                    yield Successor(_lost_sight(successors, after.explanation))
         elif kind is Driven or (kind is Settled and spec.anywhere):
-            yield Successor(_lost_sight(moves, here))
+            yield Successor(_lost_sight(successors, here))
 
 
 def _late(here: Explanation, name: int, content: Content) -> Iterator[Successor]:
@@ -193,9 +197,9 @@ def _late(here: Explanation, name: int, content: Content) -> Iterator[Successor]
         yield Successor(here)
 
 
-def _lost_sight(moves: Successors, here: Explanation) -> Explanation:
+def _lost_sight(successors: Successors, here: Explanation) -> Explanation:
     """The explanation in which nothing is known of the state any more."""
-    glimpses = _glimpses(moves)
+    glimpses = _glimpses(successors)
     assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
     channels = tuple(Channel(one.name, one.topic, Owed(ANY, ()), (_FREE,)) for one in here.channels)
     calls = tuple(
@@ -206,12 +210,14 @@ def _lost_sight(moves: Successors, here: Explanation) -> Explanation:
     return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
 
 
-def wild(moves: Successors, here: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
+def wild(
+    successors: Successors, here: Explanation, position: int, answer: Answer, names: Names
+) -> Iterator[Explanation]:
     """The explanation in which a call took effect, or was refused, while nothing was known, and is answered so."""
     call = here.calls[position]
     if WILD in call.ready:
         known = {channel.name for channel in here.channels}
-        for topics in itertools.islice(plausible(moves, here, call, answer), 1):
+        for topics in itertools.islice(plausible(successors, here, call, answer), 1):
             if all(name in known for name in names[: len(topics)]):
                 yield here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
 

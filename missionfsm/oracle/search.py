@@ -75,15 +75,15 @@ class Search:
 
     def __init__(  # noqa: PLR0913 - what it is given
         self,
-        oracle: TransitionFunction,
+        transitions: TransitionFunction,
         start: Sequence[Explanation],
         symbols: Sequence[Symbol],
         latest: Mapping[int, Message],
         budget: int,
         memory: int = MEMORY,
     ) -> None:
-        self.oracle = oracle
-        self.moves: Successors = oracle.moves
+        self.transitions = transitions
+        self.successors: Successors = transitions.successors
         self._start = tuple(start)
         self._symbols = symbols
         self._latest = latest
@@ -91,7 +91,7 @@ class Search:
         for one in start:
             requests.update(call.request for call in one.calls)
             requests.update(request for request, *_ in one.lost)
-        self._operations = frozenset(map(oracle.spec.request_operation, requests))
+        self._operations = frozenset(map(transitions.spec.request_operation, requests))
         self._budget = budget
         self._memory = memory
         self._bytes = 0
@@ -109,7 +109,7 @@ class Search:
         """
         last = self.whole and horizon == len(self._symbols)
         self._ahead = Lookahead(
-            self.oracle.spec,
+            self.transitions.spec,
             self._symbols,
             horizon,
             self._latest,
@@ -122,18 +122,18 @@ class Search:
         start = (self._ahead.narrowed(one) for one in self._start)
         self.layers = [Layer(tuple(one for one in start if one))]
         self._tried: list[Seen] = [{} for _ in range(horizon + 1)]
-        self.moves.reset()
+        self.successors.reset()
         return self._spending(self._explain)
 
     def _spending(self, work: Callable[[], T]) -> T:
         """Do some work on the budget of the search."""
-        moves = self.moves
-        budget, moves.budget, moves.ahead = moves.budget, self._budget, self._ahead
-        moves.most = self._budget
+        successors = self.successors
+        budget, successors.budget, successors.ahead = successors.budget, self._budget, self._ahead
+        successors.most = self._budget
         try:
             return work()
         finally:
-            moves.ahead, moves.budget, moves.most = None, budget, budget
+            successors.ahead, successors.budget, successors.most = None, budget, budget
 
     def _enter(self, found: tuple[Successor, ...]) -> None:
         rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
@@ -156,42 +156,42 @@ class Search:
 
     def _next(self, here: Layer, position: int) -> tuple[Successor, ...]:
         """Some more explanations of the next event; none where there are no others."""
-        ahead, tried, moves = self._ahead, self._tried[position + 1], self.moves
+        ahead, tried, successors = self._ahead, self._tried[position + 1], self.successors
         if not here.begun:
             here.begun = True
             kind, *what = self._symbols[position]
-            explains = self.oracle.beyond if position in self.beyond else self.oracle.explained
+            explains = self.transitions.beyond if position in self.beyond else self.transitions.explained
             here.more = explains(here.explanations, kind, *what)
         found: list[Successor] = []
-        begun = moves.spent
+        begun = successors.spent
         try:
             while here.more is not None and not found:
                 for one in here.more:
                     ahead.at = position + 1
                     narrow = ahead.narrowed(one.explanation)
                     ahead.at = position
-                    if narrow and not moves.outdone(tried, narrow):
+                    if narrow and not successors.outdone(tried, narrow):
                         self._remember(narrow)
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
-                        moves.most = min(moves.budget, begun + here.effort)
+                        successors.most = min(successors.budget, begun + here.effort)
                     if len(found) >= self.width:
                         break
                 else:
                     here.more = None
         except ExhaustedError:
-            if not found or moves.spent > moves.budget:
+            if not found or successors.spent > successors.budget:
                 raise
             # It begins anew where these lead nowhere; what was tried is passed over then.
             here.begun, here.effort = False, here.effort * 4
         finally:
-            moves.most = moves.budget
-        return prune(moves, found)
+            successors.most = successors.budget
+        return prune(successors, found)
 
     def _remember(self, explanation: Explanation) -> None:
         """Count an explanation that is going to be remembered. Raises ExhaustedError when it is too much."""
         self._bytes += explanation_bytes(explanation)
         if self._bytes > self._memory:
-            self.moves.spent = self.moves.budget + 1
+            self.successors.spent = self.successors.budget + 1
             raise ExhaustedError
 
     def first_unexplained(self) -> int | None:
@@ -203,8 +203,8 @@ class Search:
             ExhaustedError: it costs more than the budget.
         """
         found = self._first_unexplained()
-        while found is not None and found not in self.beyond and self.oracle.reckons:
-            if self.oracle.is_hopeless(*self._symbols[found], leniently=True):
+        while found is not None and found not in self.beyond and self.transitions.reckons:
+            if self.transitions.is_hopeless(*self._symbols[found], leniently=True):
                 break
             self.beyond.add(found)
             found = self._first_unexplained()
@@ -212,7 +212,7 @@ class Search:
 
     def _first_unexplained(self) -> int | None:
         symbols = ((at, symbol) for at, symbol in enumerate(self._symbols) if at not in self.beyond)
-        hopeless = (at for at, symbol in symbols if self.oracle.is_hopeless(*symbol))
+        hopeless = (at for at, symbol in symbols if self.transitions.is_hopeless(*symbol))
         bad, stride = next(hopeless, len(self._symbols)), 1
         if self.explain(bad):
             return None if bad == len(self._symbols) else bad

@@ -13,64 +13,64 @@ from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, wi
 from missionfsm.oracle.successors import FocusOf, Place, Successor, Successors, place, point
 
 
-def prune(moves: Successors, found: Iterable[Successor], focus: FocusOf | None = None) -> tuple[Successor, ...]:
+def prune(successors: Successors, found: Iterable[Successor], focus: FocusOf | None = None) -> tuple[Successor, ...]:
     """Those among the explanations that the others do not already stand for.
 
     Args:
-        moves: what one of them can silently become.
+        successors: what one of them can silently become.
         found: the explanations.
         focus: what was observed, where what happens elsewhere is left to later observations.
     """
     points: dict[Place, list[Successor]] = {}
-    for sighting in found:
-        here = place(sighting.explanation)
-        points[here] = _widened(moves, points.get(here, []), sighting)
-    kept = _without_dominated([sighting for sightings in points.values() for sighting in sightings])
-    return tuple(kept) if len(kept) <= 1 else tuple(_without_later(moves, kept, focus))
+    for successor in found:
+        here = place(successor.explanation)
+        points[here] = _widened(successors, points.get(here, []), successor)
+    kept = _without_dominated([successor for same in points.values() for successor in same])
+    return tuple(kept) if len(kept) <= 1 else tuple(_without_later(successors, kept, focus))
 
 
-def _widened(moves: Successors, sightings: list[Successor], new: Successor) -> list[Successor]:
+def _widened(successors: Successors, found: list[Successor], new: Successor) -> list[Successor]:
     """Explanations at one point with one more; those that differ in a single question become one."""
-    for position, other in enumerate(sightings):
-        union = merge(other.explanation.assumed, new.explanation.assumed, moves.groups)
+    for position, other in enumerate(found):
+        union = merge(other.explanation.assumed, new.explanation.assumed, successors.groups)
         if union is not None:
             if union == other.explanation.assumed:
-                return sightings
+                return found
             rules = tuple(dict.fromkeys(other.rules + new.rules))
-            rest = [*sightings[:position], *sightings[position + 1 :]]
-            return _widened(moves, rest, Successor(new.explanation.but(assumed=union), rules))
-    return [*sightings, new]
+            rest = [*found[:position], *found[position + 1 :]]
+            return _widened(successors, rest, Successor(new.explanation.but(assumed=union), rules))
+    return [*found, new]
 
 
-def _without_later(moves: Successors, sightings: list[Successor], focus: FocusOf | None) -> Iterator[Successor]:
+def _without_later(successors: Successors, found: list[Successor], focus: FocusOf | None) -> Iterator[Successor]:
     """Those that no other can silently become."""
     reached: dict[Place, int] = {}
-    for sighting in sightings:
-        here = place(sighting.explanation)
-        if here in reached and sighting.explanation.assumed | reached[here] == reached[here]:
+    for successor in found:
+        here = place(successor.explanation)
+        if here in reached and successor.explanation.assumed | reached[here] == reached[here]:
             covered = True
         else:
             covered = False
-            yield sighting
-        base = reached[here] if covered else sighting.explanation.assumed
-        for later in moves.silent(sighting.explanation.but(assumed=base), focus=focus):
+            yield successor
+        base = reached[here] if covered else successor.explanation.assumed
+        for later in successors.silent(successor.explanation.but(assumed=base), focus=focus):
             key = place(later.explanation)
             if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
                 reached[key] = later.explanation.assumed
 
 
-def _without_dominated(sightings: list[Successor]) -> list[Successor]:
+def _without_dominated(found: list[Successor]) -> list[Successor]:
     """Without those that have used up more lost calls than another at the same point, assuming no less."""
-    if not any(sighting.explanation.lost for sighting in sightings):
-        return sightings
+    if not any(successor.explanation.lost for successor in found):
+        return found
     kept: dict[Place, list[tuple[int, Lost, Successor]]] = {}
-    for sighting in sorted(sightings, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
-        lost = sighting.explanation.lost
-        others = kept.setdefault(point(sighting.explanation), [])
-        assumed = sighting.explanation.assumed
+    for successor in sorted(found, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
+        lost = successor.explanation.lost
+        others = kept.setdefault(point(successor.explanation), [])
+        assumed = successor.explanation.assumed
         if not any(assumed | other == other and within(lost, left) for other, left, _ in others):
-            others.append((assumed, lost, sighting))
-    return [sighting for others in kept.values() for _, _, sighting in others]
+            others.append((assumed, lost, successor))
+    return [successor for others in kept.values() for _, _, successor in others]
 
 
 def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:

@@ -346,13 +346,13 @@ class Successors:
     ) -> Iterator[Successor]:
         """What an explanation can become without a call that only opens a channel; `calls` are the other ones."""
         for step in self._silent(explanation, focus):
-            yield from self._sight(explanation, step, besides)
+            yield from self._after(explanation, step, besides)
         for position, (request, args, _) in enumerate(explanation.lost):
             for where, refs in self.addressed(explanation, args):
                 for step in self.effects(where.state, request, refs):
                     if not step.opens:
                         rest = where.but(lost=without_lost(explanation.lost, position))
-                        yield from self._sight(rest, step, besides)
+                        yield from self._after(rest, step, besides)
         for position in calls:
             yield from self._take_effect(explanation, position, besides)
 
@@ -378,7 +378,7 @@ class Successors:
         near = (len(channel.owed) < LAG for channel in explanation.channels)
         return all(near) if self.live else any(near) or not explanation.channels
 
-    def _sight(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Successor]:
+    def _after(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Successor]:
         self.spend(weight(explanation) - 1)
         taken = self.advance(explanation, step, besides=besides)
         if taken:
@@ -440,13 +440,13 @@ class Successors:
         todo = [Successor(start) for start in starts]
         while todo:
             later: list[Successor] = []
-            for sighting in todo:
-                if self.outdone(seen, sighting.explanation):
+            for successor in todo:
+                if self.outdone(seen, successor.explanation):
                     continue
-                yield sighting
+                yield successor
                 later += (
-                    Successor(next_one.explanation, sighting.rules + next_one.rules)
-                    for next_one in self.silent(sighting.explanation, besides, focus)
+                    Successor(next_one.explanation, successor.rules + next_one.rules)
+                    for next_one in self.silent(successor.explanation, besides, focus)
                 )
             todo = later
 

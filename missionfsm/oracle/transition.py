@@ -41,14 +41,14 @@ class TransitionFunction:
     """The transition function of the belief automaton.
 
     Args:
-        moves: what one explanation can become.
+        successors: what one explanation can become.
         eager: whether what only a transport does is thought of at every event, not only where nothing else is left.
     """
 
-    def __init__(self, moves: Successors, *, eager: bool = False) -> None:
-        self.moves = moves
-        self.spec = moves.spec
-        self.eager = eager and moves.spec.transport
+    def __init__(self, successors: Successors, *, eager: bool = False) -> None:
+        self.successors = successors
+        self.spec = successors.spec
+        self.eager = eager and successors.spec.transport
         self._lenient = 0
 
     def step(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> tuple[Successor, ...]:
@@ -62,15 +62,15 @@ class TransitionFunction:
         Raises:
             ExhaustedError: the event costs more than the budget.
         """
-        self.moves.reset()
+        self.successors.reset()
         explanations = tuple(explanations)
         found: Iterable[Successor] = self.explained(explanations, kind, *what)
         if self.eager:
             found = (*found, *self._leniently(1, explanations, kind, *what))
         about = self._about(kind, *what)
-        kept = prune(self.moves, found, about)
+        kept = prune(self.successors, found, about)
         for more in () if kept else self._beyond(explanations, kind, *what):
-            kept = kept or prune(self.moves, more, about)
+            kept = kept or prune(self.successors, more, about)
         return kept
 
     @property
@@ -101,7 +101,7 @@ class TransitionFunction:
             relations = (one for one in what[2] if one != REDELIVERED) if kind is Received else ()
             assumed = self._sequence(relations)
             if assumed is not None:
-                yield middle.unforeseen(self.moves, explanations, assumed, kind, *what)
+                yield middle.unforeseen(self.successors, explanations, assumed, kind, *what)
 
     def is_hopeless(self, kind: type, *what: Part, leniently: bool = False) -> bool:
         """Whether an event is wrong whatever came before it: then nobody has to look at all of that.
@@ -161,7 +161,7 @@ class TransitionFunction:
     ) -> Iterator[Successor]:
         undone = []
         if self._lenient > 1:
-            explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations))
+            explanations = (*explanations, *lenient.restarted(self.successors, self.spec, explanations))
         for explanation in explanations:
             position = _position(explanation, call)
             if position is None:
@@ -169,9 +169,9 @@ class TransitionFunction:
             failed = tuple(self._failed(explanation, position, answer, names))
             yield from (Successor(tidy(one)) for one in failed)
             if middle.is_unknown(explanation):
-                yield from middle.answered(self.moves, explanation, position, answer, names)
+                yield from middle.answered(self.successors, explanation, position, answer, names)
                 continue
-            for one in middle.wild(self.moves, explanation, position, answer, names):
+            for one in middle.wild(self.successors, explanation, position, answer, names):
                 yield Successor(tidy(one))
             if explanation.calls[position].done is None:
                 # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
@@ -181,11 +181,11 @@ class TransitionFunction:
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, answer, names):
                 yield Successor(tidy(after), rules)
-        for sighting in self.moves.closure(undone, besides=call, focus=self._before_answer(call, answer)):
-            position = _position(sighting.explanation, call)
+        for successor in self.successors.closure(undone, besides=call, focus=self._before_answer(call, answer)):
+            position = _position(successor.explanation, call)
             if position is not None:
-                for after, rules in self._answered(sighting.explanation, position, answer, names):
-                    yield Successor(tidy(after), sighting.rules + rules)
+                for after, rules in self._answered(successor.explanation, position, answer, names):
+                    yield Successor(tidy(after), successor.rules + rules)
 
     def _failed(self, explanation: Explanation, position: int, answer: Answer, names: Names) -> Iterator[Explanation]:
         """The explanations in which the call has failed without anybody's doing, which any state allows.
@@ -195,7 +195,7 @@ class TransitionFunction:
         if names or answer.shape is not None:
             return
         one = explanation.calls[position]
-        for failure in self.moves.failures(one, answer.code):
+        for failure in self.successors.failures(one, answer.code):
             if one.done and not failure.open_ended:
                 continue
             assumed = meet(explanation.assumed, failure.assumes)
@@ -211,22 +211,22 @@ class TransitionFunction:
         call = here.calls[position]
         rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
         if call.done:
-            for match in self.moves.agreements(call.done.answer, answer):
+            for match in self.successors.agreements(call.done.answer, answer):
                 assumed = meet(rest.assumed, match.assumes)
                 for bound in self._bound(rest, answer, call.done.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), match.rules
         for ready in call.ready:
-            for match in self.moves.agreements(ready.answer, answer):
+            for match in self.successors.agreements(ready.answer, answer):
                 assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
                 for bound in self._bound(rest, answer, ready.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), ready.rules + match.rules
         if call.done:
             return
-        for where, refs in self.moves.addressed(rest, call.args):
-            for step in self.moves.outcomes(where.state, call.request, refs):
+        for where, refs in self.successors.addressed(rest, call.args):
+            for step in self.successors.outcomes(where.state, call.request, refs):
                 if step.answer is None or len(step.refs) != len(names):
                     continue
-                for match in self.moves.agreements(step.answer, answer):
+                for match in self.successors.agreements(step.answer, answer):
                     yield from self._answered_by(where, step, match, call, answer, names)
 
     def _answered_by(  # noqa: PLR0913 - what an answer is made of
@@ -236,7 +236,7 @@ class TransitionFunction:
         if not assumed:
             return
         lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
-        taken = self.moves.advance(where.but(lost=lost, assumed=assumed), step)
+        taken = self.successors.advance(where.but(lost=lost, assumed=assumed), step)
         if taken:
             for bound in self._bound(taken[0], answer, taken[1], names):
                 yield bound, step.rules + match.rules
@@ -250,7 +250,7 @@ class TransitionFunction:
         if len(own) != len(observed):
             return
         for pairs in _pairings(explanation, own, observed) if answer.unordered else (zip(own, observed, strict=True),):
-            self.moves.spend()
+            self.successors.spend()
             bound = unify(explanation, pairs)
             if bound:
                 yield bound
@@ -270,7 +270,7 @@ class TransitionFunction:
             once = (one for one in explanations if not self._echoed(one, channel))
             yield from lenient.redelivered(explanations if self._lenient else once, channel)
         if self._lenient > 1:
-            explanations = (*explanations, *lenient.restarted(self.moves, self.spec, explanations, relations))
+            explanations = (*explanations, *lenient.restarted(self.successors, self.spec, explanations, relations))
         todo: list[tuple[Successor, Hashable]] = []
         for explanation in explanations:
             echoes = self._echoed(explanation, channel)
@@ -280,10 +280,10 @@ class TransitionFunction:
                 continue
             start = Successor(explanation.but(assumed=assumed))
             if middle.is_unknown(explanation):
-                yield from middle.shown(self.moves, start.explanation, channel, content, names)
+                yield from middle.shown(self.successors, start.explanation, channel, content, names)
                 continue
             if self.spec.anywhere:
-                joined, unjudged = middle.joined(self.moves, start.explanation, channel, content)
+                joined, unjudged = middle.joined(self.successors, start.explanation, channel, content)
                 start = Successor(joined)
                 if unjudged:
                     yield start
@@ -296,14 +296,14 @@ class TransitionFunction:
         seen: dict[Hashable, Seen] = {}
         while todo:
             later: list[tuple[Successor, Hashable]] = []
-            for sighting, topic in todo:
-                if self.moves.outdone(seen.setdefault(topic, {}), sighting.explanation):
+            for successor, topic in todo:
+                if self.successors.outdone(seen.setdefault(topic, {}), successor.explanation):
                     continue
-                yield from self._showings(sighting, channel, topic, content, names, echo=False)
-                for skipped, whose in self._passed_over(sighting.explanation, channel, topic):
+                yield from self._showings(successor, channel, topic, content, names, echo=False)
+                for skipped, whose in self._passed_over(successor.explanation, channel, topic):
                     later += (
-                        (Successor(one.explanation, sighting.rules + one.rules), whose)
-                        for one in self.moves.silent(skipped, focus=about)
+                        (Successor(one.explanation, successor.rules + one.rules), whose)
+                        for one in self.successors.silent(skipped, focus=about)
                     )
             todo = later
 
@@ -319,7 +319,7 @@ class TransitionFunction:
 
     def _showings(  # noqa: PLR0913 - what a message is made of
         self,
-        sighting: Successor,
+        successor: Successor,
         name: int,
         topic: Hashable,
         content: Hashable,
@@ -328,12 +328,12 @@ class TransitionFunction:
         echo: bool,
     ) -> Iterator[Successor]:
         """The explanations in which a channel of that name, and of that topic if one is given, shows the message."""
-        known = _channel_names(sighting.explanation)
-        for position, one in enumerate(sighting.explanation.channels):
+        known = _channel_names(successor.explanation)
+        for position, one in enumerate(successor.explanation.channels):
             if topic is not None and one.topic != topic:
                 continue
             if one.name == name or (one.name < GONE and name not in known):
-                yield from self._shown(sighting, position, name, content, names, echo=echo, again=topic is None)
+                yield from self._shown(successor, position, name, content, names, echo=echo, again=topic is None)
 
     def _echoed(self, explanation: Explanation, name: int) -> bool:
         """Whether a channel of that name may send its last message again under its old number."""
@@ -380,14 +380,14 @@ class TransitionFunction:
             return (assumed,)
         if last.looks is None or owed.names:
             return ()
-        matches = self.moves.matches(owed, last.looks)
+        matches = self.successors.matches(owed, last.looks)
         if isinstance(matches, Mismatch):
             return ()
         return tuple(after for match in matches if (after := meet(assumed, match.assumes)))
 
     def _shown(  # noqa: PLR0913 - what a message is made of
         self,
-        sighting: Successor,
+        successor: Successor,
         position: int,
         name: int,
         content: Hashable,
@@ -397,10 +397,10 @@ class TransitionFunction:
         again: bool,
     ) -> Iterator[Successor]:
         """The explanations in which the message shows one of those that the channel owes, or its last one `again`."""
-        here = sighting.explanation
+        here = successor.explanation
         channel = here.channels[position]
         for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo, again=again):
-            matches = self.moves.matches(owed, content)
+            matches = self.successors.matches(owed, content)
             if not assumption or isinstance(matches, Mismatch):
                 continue
             for match in matches:
@@ -414,7 +414,7 @@ class TransitionFunction:
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
                 bound = unify(after, pairs)
                 if bound:
-                    yield Successor(tidy(bound), sighting.rules + match.rules)
+                    yield Successor(tidy(bound), successor.rules + match.rules)
 
     def _passed_over(
         self, explanation: Explanation, name: int, topic: Hashable
@@ -449,8 +449,8 @@ class TransitionFunction:
                 (known if named else unknown).append(explanation)
         if self.spec.closing is not None:
             yield from self._closed((*known, *unknown), name)
-        for sighting in (*map(Successor, known), *self.moves.closure(unknown, focus=self._before(ENDED, name))):
-            here = sighting.explanation
+        for successor in (*map(Successor, known), *self.successors.closure(unknown, focus=self._before(ENDED, name))):
+            here = successor.explanation
             names = dict.fromkeys(channel.name for channel in here.channels)
             for own in (name,) if name in names else [one for one in names if one < GONE]:
                 assumed = here.assumed
@@ -463,7 +463,7 @@ class TransitionFunction:
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
                     ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
-                    yield Successor(tidy(ended), sighting.rules)
+                    yield Successor(tidy(ended), successor.rules)
 
     def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
         """The explanations in which a step has closed the channel of that name, or closes it now.
@@ -471,15 +471,15 @@ class TransitionFunction:
         Where all of them have closed it, its name is carried no more.
         """
         assert self.spec.closing is not None  # noqa: S101 - the caller has looked
-        for sighting in self.moves.closure(explanations, focus=self._before(ENDED, name)):
-            here = sighting.explanation
+        for successor in self.successors.closure(explanations, focus=self._before(ENDED, name)):
+            here = successor.explanation
             if name == GONE or name in here.gone:
-                yield sighting
+                yield successor
             for channel in here.channels:
                 for step in self.spec.closing(here.state, channel.topic) if channel.name == name else ():
-                    taken = self.moves.advance(here, step)
+                    taken = self.successors.advance(here, step)
                     if taken:
-                        yield Successor(tidy(taken[0]), sighting.rules + step.rules)
+                        yield Successor(tidy(taken[0]), successor.rules + step.rules)
 
     def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
         for explanation in explanations:
@@ -492,12 +492,12 @@ class TransitionFunction:
     def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Successor]:
         drive = self.spec.drives[event.name]  # type: ignore[attr-defined]
 
-        for sighting in self.moves.closure(explanations, focus=self._before_drive(event, names)):
-            here = sighting.explanation
+        for successor in self.successors.closure(explanations, focus=self._before_drive(event, names)):
+            here = successor.explanation
             for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
-                taken = self.moves.advance(here, step, names)
+                taken = self.successors.advance(here, step, names)
                 if taken:
-                    yield Successor(tidy(taken[0]), sighting.rules + step.rules)
+                    yield Successor(tidy(taken[0]), successor.rules + step.rules)
 
     def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Successor]:
         loses = self._lenient > 0
@@ -506,19 +506,19 @@ class TransitionFunction:
         todo = [Successor(explanation) for explanation in explanations]
         while todo:
             later: list[Successor] = []
-            for sighting in todo:
-                here = sighting.explanation
+            for successor in todo:
+                here = successor.explanation
                 if middle.is_unknown(here):
-                    yield sighting
+                    yield successor
                     continue
-                if self.moves.outdone(seen, here):
+                if self.successors.outdone(seen, here):
                     continue
-                rests = () if self.moves.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
+                rests = () if self.successors.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
                 for rest in rests:
-                    yield Successor(self._calmed(rest), sighting.rules)
+                    yield Successor(self._calmed(rest), successor.rules)
                 if here.assumed not in (rest.assumed for rest in rests):
-                    silent = self.moves.silent(here, focus=self._before_rest)
-                    later += (Successor(one.explanation, sighting.rules + one.rules) for one in silent)
+                    silent = self.successors.silent(here, focus=self._before_rest)
+                    later += (Successor(one.explanation, successor.rules + one.rules) for one in silent)
             todo = later
 
     def _calmed(self, explanation: Explanation) -> Explanation:
@@ -557,8 +557,8 @@ class TransitionFunction:
 
         def about(here: Explanation) -> Focus:
             asked = next(one for one in here.calls if one.name == call)
-            refs = self.moves.refs(here, asked.args)
-            aside = self.moves.only_opens(here, asked)
+            refs = self.successors.refs(here, asked.args)
+            aside = self.successors.only_opens(here, asked)
             return Focus(RETURNED, asked.request, refs, answer, calls=self._in_flight(here, besides=call), aside=aside)
 
         return about
@@ -566,7 +566,7 @@ class TransitionFunction:
     def _in_flight(self, here: Explanation, besides: int | None = None) -> tuple[tuple[Hashable, Refs], ...]:
         """The calls that may still take effect, with the positions of their names."""
         return tuple(
-            (one.request, self.moves.refs(here, one.args))
+            (one.request, self.successors.refs(here, one.args))
             for one in here.calls
             if one.done is None and one.name != besides
         )

@@ -76,7 +76,7 @@ class Window:
         least, each = (FIRST, MORE) if lost is None else (BUDGET, EACH)
         budget = least + each * len(symbols)
         search = Search(
-            self._belief.automaton.oracle, start, symbols, self._latest, budget, self._belief.automaton.memory
+            self._belief.automaton.transitions, start, symbols, self._latest, budget, self._belief.automaton.memory
         )
         search.whole = lost is not None
         return search

@@ -126,7 +126,7 @@ def test_subscriptions_in_flight_do_not_multiply() -> None:
         costs = []
         for line in log.lines:
             judge.feed(line)
-            costs.append(judge.automaton.moves.spent)
+            costs.append(judge.automaton.successors.spent)
         assert judge.right
         spent[clients] = max(costs)
     assert spent[12] < 3 * spent[6]

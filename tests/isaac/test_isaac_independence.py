@@ -175,11 +175,11 @@ def test_the_full_exploration_is_another_one() -> None:
     spent = {}
     for name, spec in (("focused", SPEC), ("full", FULL.spec)):
         automaton = Automaton(spec, ("connect", "line", "disconnect", "advance"))
-        judge = Judge(attrs.evolve(SERVER, spec=spec), Head("isaac.server", {}, automaton.moves.driven), automaton)
+        judge = Judge(attrs.evolve(SERVER, spec=spec), Head("isaac.server", {}, automaton.successors.driven), automaton)
         assert isinstance(judge.belief, Belief)
         costs = []
         for line in fleet(5).waits(5.5).settles.shows(*["FAILED_TIMEDOUT"] * 5).lines:
             judge.feed(line)
-            costs.append(automaton.moves.spent)
+            costs.append(automaton.successors.spent)
         spent[name] = max(costs)
     assert spent["full"] > 4 * spent["focused"]

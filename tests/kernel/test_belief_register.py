@@ -193,6 +193,6 @@ def test_a_state_is_known_again_by_what_it_is() -> None:
     """What an operation changes in a state does not depend on which of two equal states was asked about first."""
     first, second = int("1000"), int("1000")
     assert first is not second
-    moves, read = Successors(REGISTER), ("read",)
-    steps = moves.outcomes(first, read, ())
-    assert (moves.effects(second, read, ()), moves.idle(second, read, ())) == ((), steps)
+    successors, read = Successors(REGISTER), ("read",)
+    steps = successors.outcomes(first, read, ())
+    assert (successors.effects(second, read, ()), successors.idle(second, read, ())) == ((), steps)

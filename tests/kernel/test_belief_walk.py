@@ -100,7 +100,7 @@ def test_an_automaton_that_starts_over_decides_the_same() -> None:
     roomy, tight = Automaton(SYSTEM.spec), Automaton(SYSTEM.spec, memory=memory)
     expected, found = walk(roomy, 2), walk(tight, 2)
     assert (found, tight.exercised()) == (expected, roomy.exercised())
-    assert tight.bytes + tight.moves.bytes <= memory < roomy.bytes
+    assert tight.bytes + tight.successors.bytes <= memory < roomy.bytes
 
 
 def test_what_is_remembered_takes_about_what_is_counted() -> None:
@@ -115,7 +115,7 @@ def test_what_is_remembered_takes_about_what_is_counted() -> None:
         assert here.observe(Driven(Happening("goalReached")))
     taken, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    counted = automaton.bytes + automaton.moves.bytes
+    counted = automaton.bytes + automaton.successors.bytes
     assert taken / 2 < counted < taken * 2
 
 

@@ -47,16 +47,16 @@ def exercised(belief: Belief) -> tuple[str, ...]:
 
 def _steps(belief: Belief, symbol: tuple[Any, ...], here: Explanation) -> Iterator[Step]:
     """What can have happened at an event, in one explanation of what was before."""
-    moves, spec = belief.automaton.moves, belief.spec
+    successors, spec = belief.automaton.successors, belief.spec
     kind, *what = symbol
     if kind is Driven:
         event, names = what
-        yield from spec.drives[event.name].steps(here.state, event, moves.refs(here, names))
+        yield from spec.drives[event.name].steps(here.state, event, successors.refs(here, names))
     elif kind is Called:
         request, names, *_ = what
-        yield from moves.outcomes(here.state, request, moves.refs(here, names))
+        yield from successors.outcomes(here.state, request, successors.refs(here, names))
     for call in here.calls:
         if call.done is None:
-            yield from moves.outcomes(here.state, call.request, moves.refs(here, call.args))
-    yield from moves.urgent(here.state)
-    yield from moves.unseen(here.state)
+            yield from successors.outcomes(here.state, call.request, successors.refs(here, call.args))
+    yield from successors.urgent(here.state)
+    yield from successors.unseen(here.state)

@@ -222,13 +222,13 @@ def _still_due(nearest: Nearest) -> Found:
     found: list[Candidate] = []
     rules: list[str] = []
     notes: list[str] = []
-    for sighting, due in ways:
+    for successor, due in ways:
         for channel, owed in due if len(due) == least else ():
             where = _called(nearest, channel)
             wanted = described(nearest.spec, owed.view)
             delivery = nearest.spec.delivery(channel.topic)
             shows = f"{where} shows {wanted}"
-            found.append(Candidate(shows, (), (), (), unseen=sighting.rules, owed=(channel, owed)))
+            found.append(Candidate(shows, (), (), (), unseen=successor.rules, owed=(channel, owed)))
             rules += delivery.unowed if channel.last or not delivery.first else delivery.first
             last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
             notes.append(f"{where} did not show {wanted}{last}")

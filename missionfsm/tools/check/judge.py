@@ -86,7 +86,7 @@ class Judge:
             raise UnreadableError(message)
         decided = assumed(system.spec, readings, no_flagged=no_flagged)
         self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else BUDGET)
-        self.automaton.moves.live = not waits
+        self.automaton.successors.live = not waits
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
         world = system.codec.world(head.world)

@@ -148,16 +148,16 @@ class Nearest:
         self.belief = belief
         self.about = about
         self.spec = belief.automaton.spec
-        self.moves = belief.automaton.moves
-        self.moves.reset()
+        self.successors = belief.automaton.successors
+        self.successors.reset()
 
     def reachable(self, besides: int | None = None) -> Iterator[Explanation]:
         """What the explanations can silently become, the nearest first."""
-        return (sighting.explanation for sighting in self.ways(besides))
+        return (successor.explanation for successor in self.ways(besides))
 
     def ways(self, besides: int | None = None) -> Iterator[Successor]:
         """The same with the rules of what has silently happened on the way."""
-        found = self.moves.closure(self.belief.node.explanations, besides)
+        found = self.successors.closure(self.belief.node.explanations, besides)
         try:
             yield from itertools.islice(found, MOST_LOOKED_AT)
         except ExhaustedError:
@@ -165,7 +165,7 @@ class Nearest:
 
     def at_rest(self, here: Explanation) -> bool:
         """Whether nothing that is urgent has still to happen."""
-        return not any(meet(here.assumed, step.assumes) for step in self.moves.urgent(here.state))
+        return not any(meet(here.assumed, step.assumes) for step in self.successors.urgent(here.state))
 
     # Answers.
 
@@ -173,41 +173,41 @@ class Nearest:
         """Every answer that the call could have had, or could have had under readings that were ruled out."""
         number = self.belief.symbol(event)[0][3]
         given = self.belief.symbol(event)[0][2]
-        for sighting in self.ways(besides=number):
-            here = sighting.explanation
+        for successor in self.ways(besides=number):
+            here = successor.explanation
             call = next((one for one in here.calls if one.name == number), None)
             if call is None:
                 continue
             ready = (*call.ready, call.done) if call.done else call.ready
             for one in ready:
                 problems = self._answered(here, event, given, one.answer, one.names, one.assumes)
-                yield self._candidate(sighting, one.answer, one.names, one.rules, one.assumes, problems)
+                yield self._candidate(successor, one.answer, one.names, one.rules, one.assumes, problems)
             if call.done:
                 continue
-            refs = self.moves.refs(here, call.args)
-            for step in self.moves.outcomes(here.state, call.request, refs):
+            refs = self.successors.refs(here, call.args)
+            for step in self.successors.outcomes(here.state, call.request, refs):
                 if step.answer is not None:
                     names = tuple(here.names[ref] if ref < len(here.names) else GONE - 1 for ref in step.refs)
                     problems = self._answered(here, event, given, step.answer, names, step.assumes)
-                    yield self._candidate(sighting, step.answer, names, step.rules, step.assumes, problems)
+                    yield self._candidate(successor, step.answer, names, step.rules, step.assumes, problems)
 
     def _candidate(  # noqa: PLR0913 - what a candidate is made of
         self,
-        sighting: Successor,
+        successor: Successor,
         answer: Answer,
         names: Names,
         rules: tuple[str, ...],
         assumes: tuple[Assumption, ...],
         problems: list[Problem],
     ) -> Candidate:
-        here = sighting.explanation
+        here = successor.explanation
         what = answer_words(answer, tuple(map(self._known, names)))
         allowed = bool(meet(here.assumed, assumes))
         unusual = sum(
             one.of.default not in one.letters and one.of.default in one.of.possible(here.assumed) for one in assumes
         )
         shown = tuple(map(str, assumes))
-        return Candidate(what, rules, shown, tuple(problems), allowed, unseen=sighting.rules, unusual=unusual)
+        return Candidate(what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual)
 
     def _answered(  # noqa: PLR0913 - what is compared
         self,
@@ -221,7 +221,7 @@ class Nearest:
         problems = list(self._readings(here, assumes))
         if answer.code != event.answer.code:
             return [*problems, Problem("", (), CODE)]
-        ways = self.moves.agreements(answer, event.answer)
+        ways = self.successors.agreements(answer, event.answer)
         if not ways:
             return [*problems, self._shape(answer, event.answer)]
         problems += self._readings(here, ways[0].assumes)
@@ -241,8 +241,8 @@ class Nearest:
         """Every message that could have come, and what would have to be so for this one to be one of them."""
         (_, content, given, relations, number), _ = self.belief.symbol(event)
         message = _Message(event, content, given, number)
-        for sighting in self.ways():
-            here = sighting.explanation
+        for successor in self.ways():
+            here = successor.explanation
             before = tuple(self._sequence(here, relations))
             found = (
                 one
@@ -251,7 +251,7 @@ class Nearest:
                 for one in self._shown(here, channel, message, before)
             )
             for one in itertools.chain(found, self._undriven(here, message)):
-                yield evolve(one, unseen=sighting.rules)
+                yield evolve(one, unseen=successor.rules)
 
     def _sequence(self, here: Explanation, relations: Iterable[str]) -> Iterator[Problem]:
         """The readings that the numbers of a message need; where they are wrong, nothing else matters."""
@@ -271,7 +271,7 @@ class Nearest:
             before_it = () if delivery.skips else [one for one in channel.owed[:position] if not one.passing]
             if before_it:
                 says = f"{described(self.spec, before_it[0].view)} has to come before it"
-                other = self.moves.matches(before_it[0], message.content)
+                other = self.successors.matches(before_it[0], message.content)
                 own = (other.rule,) if isinstance(other, Mismatch) else ()
                 problems.append(Problem(says, (*own, *delivery.unowed), LEFT_OUT))
             problems += self._matched(here, channel, owed, message)
@@ -310,7 +310,7 @@ class Nearest:
 
     def _matched(self, here: Explanation, channel: Channel, owed: Owed, message: _Message) -> list[Problem]:
         """What keeps a message from being the showing of what is owed."""
-        ways = self.moves.matches(owed, message.content)
+        ways = self.successors.matches(owed, message.content)
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
             least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
@@ -328,7 +328,7 @@ class Nearest:
     def _undriven(self, here: Explanation, message: _Message) -> Iterator[Candidate]:
         """The message shows what something would lead to that nobody made happen, or a call that failed."""
         for step, says, rules in self._unseen(here):
-            taken = self.moves.advance(here, step)
+            taken = self.successors.advance(here, step)
             if taken is None:
                 continue
             after = taken[0]
@@ -344,14 +344,14 @@ class Nearest:
     def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...]]]:
         """Steps that were not taken, with what they are and the rules that are broken if they were."""
         for drive in self.spec.drives.values():
-            for event in drive.by_itself if drive.name in self.moves.driven else ():
+            for event in drive.by_itself if drive.name in self.successors.driven else ():
                 says = f"{described(self.spec, event)} would have to happen first, and nobody made it happen"
                 yield from ((step, says, drive.impossible) for step in drive.steps(here.state, event, ()))
         for call in reversed(self.about.recent):
             if call.answer.code != OK:
-                refs = self.moves.refs(here, tuple(map(self.belief.number, call.about)))
+                refs = self.successors.refs(here, tuple(map(self.belief.number, call.about)))
                 says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
-                effects = self.moves.effects(here.state, call.request, refs)
+                effects = self.successors.effects(here.state, call.request, refs)
                 yield from ((step, says, ()) for step in effects if step.answer and step.answer.code == OK)
 
     # What has to be forgiven.

@@ -70,7 +70,7 @@ def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> li
 
     A request with names is not looked at: what they stood for then is not known any more.
     """
-    belief, moves, request = nearest.belief, nearest.moves, nearest.about.request
+    belief, successors, request = nearest.belief, nearest.successors, nearest.about.request
     number = belief.symbol(event)[0][3]
     if any(call.args for here in belief.node.explanations for call in here.calls if call.name == number):
         return []
@@ -79,7 +79,7 @@ def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> li
         held = {
             rule
             for here in node.explanations[:MAX_LOOKED_AT]
-            for step in moves.outcomes(here.state, request, ())
+            for step in successors.outcomes(here.state, request, ())
             if step.answer is not None and step.answer.code == event.answer.code
             for rule in step.rules
         }

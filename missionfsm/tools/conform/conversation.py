@@ -244,7 +244,7 @@ class Conversation:
         self.heard.append(line)
         if self.right:
             self.judge.feed(line)
-            if not self.right and self.system.spec.transport and not self.judge.automaton.oracle.eager:
+            if not self.right and self.system.spec.transport and not self.judge.automaton.transitions.eager:
                 self._look_again()
 
     def _look_again(self) -> None:

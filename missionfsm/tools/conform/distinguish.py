@@ -128,9 +128,9 @@ class Lab:
         self.info = info
         self.automaton = automaton
         self.readings = readings
-        spec, moves = guide.system.spec, automaton.moves
+        spec, successors = guide.system.spec, automaton.successors
         # What the spec says is remembered for all references.
-        remembered = evolve(spec, outcomes=moves.outcomes, urgent=moves.urgent, decided=None)
+        remembered = evolve(spec, outcomes=successors.outcomes, urgent=successors.urgent, decided=None)
         self.system = evolve(guide.system, spec=remembered)
         self.choice = {
             one.id: one.default if one.default in readings.get(one.id, (one.default,)) else readings[one.id][0]

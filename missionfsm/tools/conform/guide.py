@@ -140,7 +140,7 @@ class Guide:
             rare: look at all of them, and put first what the rules have said least often in the whole run.
         """
         belief = conversation.judge.belief
-        here = rested(conversation.judge.automaton.moves, belief.node.explanations[0])
+        here = rested(conversation.judge.automaton.successors, belief.node.explanations[0])
         shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
@@ -242,8 +242,10 @@ class Guide:
         size = self.system.spec.size
         key = (here.state if exact else shape, request, self._places(here, refs))
         if key not in self._edges:
-            moves = conversation.judge.automaton.moves
-            steps = [step for step in moves.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)]
+            successors = conversation.judge.automaton.successors
+            steps = [
+                step for step in successors.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)
+            ]
             operation = self.system.spec.request_operation(request)
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
             after = next((step.after for step in steps if step.after is not here.state), here.state)
@@ -298,10 +300,10 @@ def _cancellations(conversation: Conversation, shape: Hashable, phase: Hashable)
         yield Proposal(CANCEL.method, CANCEL.params, None, edge, shape, phase, ((0, ref),))
 
 
-def rested(moves: Successors, here: Explanation) -> Explanation:
+def rested(successors: Successors, here: Explanation) -> Explanation:
     """Where an explanation comes to rest."""
-    while step := next((one for one in moves.urgent(here.state) if meet(here.assumed, one.assumes)), None):
-        taken = moves.advance(here, step)
+    while step := next((one for one in successors.urgent(here.state) if meet(here.assumed, one.assumes)), None):
+        taken = successors.advance(here, step)
         if taken is None:
             break
         here = taken[0]

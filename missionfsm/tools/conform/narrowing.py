@@ -59,7 +59,7 @@ class Narrowing:
             assumed = meet(self.wide.assumed, (one[readings[one.id]] for one in ambiguities if readings.get(one.id)))
             if assumed and assumed != self.current.assumed:
                 self.drop()
-                self.narrow = Automaton(self.wide.spec, self.wide.moves.driven, assumed)
+                self.narrow = Automaton(self.wide.spec, self.wide.successors.driven, assumed)
         return self.current
 
     def drop(self) -> None:

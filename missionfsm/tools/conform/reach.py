@@ -71,11 +71,13 @@ class Reach:
     def situation(self, conversation: Conversation) -> tuple[str | None, Explanation]:
         """The situation in which a conversation stands, as far as that is sure, and how it is explained."""
         judge = conversation.judge
-        moves = judge.automaton.moves
+        successors = judge.automaton.successors
         explanations = judge.belief.node.explanations
-        here = rested(moves, explanations[0])
+        here = rested(successors, explanations[0])
         name = self._situation(here)
-        if len(explanations) > ALIKE or any(self._situation(rested(moves, one)) != name for one in explanations[1:]):
+        if len(explanations) > ALIKE or any(
+            self._situation(rested(successors, one)) != name for one in explanations[1:]
+        ):
             return None, here
         return name, here
 

@@ -62,6 +62,7 @@ class Step:
         emits: what subscribers come to see, in order.
         opens: channels that come into being.
         closes: topics whose channels are gone, with what was still owed to them.
+        drains: topics whose channels are gone; what they owed may be seen until things settle, and need not be.
         clears: topics whose channels owe nothing any more, and offer nothing: what was on its way is lost.
         withdraws: topics whose channels offer nothing any more; what they owe stays.
         rules: ids of the rules that justify it.
@@ -78,6 +79,7 @@ class Step:
     emits: tuple[Emission, ...] = ()
     opens: tuple[Opening, ...] = ()
     closes: tuple[Hashable, ...] = ()
+    drains: tuple[Hashable, ...] = ()
     clears: tuple[Hashable, ...] = ()
     withdraws: tuple[Hashable, ...] = ()
     rules: tuple[str, ...] = ()
@@ -92,6 +94,11 @@ class Step:
         """How many names it adds to so many that the state before it has."""
         referred = (*(self.names or ()), *self.refs, *[opening.ref for opening in self.opens])
         return max(0, max(referred, default=-1) + 1 - names)
+
+    @property
+    def ends(self) -> tuple[Hashable, ...]:
+        """The topics whose channels are gone, whatever becomes of what they owed."""
+        return (*self.closes, *self.drains) if self.drains else self.closes
 
 
 @value

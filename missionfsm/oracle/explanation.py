@@ -13,6 +13,8 @@ import operator
 import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
+from attrs import evolve
+
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.step import Emission, Step
@@ -78,6 +80,9 @@ class Channel:
     last: Owed | None = None
     owed: tuple[Owed, ...] = ()
 
+
+DRAINED = "drained"
+"""The topic of a channel that is gone and on which something may still be seen that was on its way."""
 
 UNNAMED = sys.maxsize
 """Where channels stand whose names nobody has seen."""
@@ -318,6 +323,19 @@ def _relieved(channel: Channel, step: Step) -> Channel:
     return channel
 
 
+def _drained(channel: Channel) -> Channel:
+    """A channel that is gone, with what was on its way."""
+    owed = tuple(evolve(one, passing=True, optional=False, stays=False) for one in channel.owed)
+    return Channel(channel.name, DRAINED, channel.last, owed)
+
+
+def undrained(explanation: Explanation, *names: int) -> Explanation:
+    """The explanation where nothing is on its way any more on channels that are gone: on any, or on those so named."""
+    channels = explanation.channels
+    left = tuple(one for one in channels if one.topic != DRAINED or (names and one.name not in names))
+    return explanation if len(left) == len(channels) else explanation.but(channels=left)
+
+
 def take(
     explanation: Explanation,
     step: Step,
@@ -351,9 +369,13 @@ def take(
         if lapsed:
             gone = outlived(explanation, lapsed)
     channels = explanation.channels
-    if step.closes:
-        gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.closes and one.name > GONE)}))
-        channels = tuple(channel for channel in channels if channel.topic not in step.closes)
+    if step.ends:
+        gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.ends and one.name > GONE)}))
+        channels = tuple(
+            _drained(one) if one.topic in step.drains else one
+            for one in channels
+            if one.topic not in step.closes and (one.owed or one.topic not in step.drains)
+        )
     if step.clears or step.withdraws:
         channels = tuple(_relieved(channel, step) for channel in channels)
     if step.emits:
@@ -389,4 +411,4 @@ def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
     moved = step.after is not state and step.after != state
     renamed = step.names is not None and step.names != tuple(range(len(step.names)))  # another in the place of one
-    return moved or renamed or bool(step.emits or step.opens or step.closes or step.clears or step.withdraws)
+    return moved or renamed or bool(step.emits or step.opens or step.ends or step.clears or step.withdraws)

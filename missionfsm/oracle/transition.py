@@ -29,6 +29,7 @@ from missionfsm.oracle.explanation import (
     mentioned,
     outlived,
     tidy,
+    undrained,
     unify,
     with_lost,
 )
@@ -474,12 +475,12 @@ class TransitionFunction:
         for successor in self.successors.closure(explanations, focus=self._before(ENDED, name)):
             here = successor.explanation
             if name == GONE or name in here.gone:
-                yield successor
+                yield Successor(undrained(here, name), successor.rules)
             for channel in here.channels:
                 for step in self.spec.closing(here.state, channel.topic) if channel.name == name else ():
                     taken = self.successors.advance(here, step)
                     if taken:
-                        yield Successor(tidy(taken[0]), successor.rules + step.rules)
+                        yield Successor(tidy(undrained(taken[0], name)), successor.rules + step.rules)
 
     def _cancelled(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
         for explanation in explanations:
@@ -589,7 +590,7 @@ class TransitionFunction:
                 for position, channel in enumerate(explanation.channels)
             )
             for assumed in ways:
-                yield tidy(explanation.but(assumed=assumed, channels=channels))
+                yield tidy(undrained(explanation.but(assumed=assumed, channels=channels)))
 
     def _told(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
         """What is assumed where the subscriber knows all that a channel owes, since it saw that last.

@@ -173,7 +173,7 @@ class Graph:
         """The number of the effect of a step, and the kinds of the names after it."""
         opens = tuple((opening.topic, opening.ref, opening.kind) for opening in step.opens)
         seen = (step.names, step.refs, opens, step.kinds, step.rules, step.assumes, step.answer, step.label)
-        sent = (step.closes, step.emits) if self._sends else ()
+        sent = (step.ends, step.emits) if self._sends else ()
         key = (tried.method, tried.doing.refs, tried.doing.brings, kinds, seen, sent)
         if key not in self._known:
             effect, after = self._made(tried, step, kinds)
@@ -202,7 +202,7 @@ class Graph:
             self._assumptions.number(step.assumes),
             step.label,
             tuple((self._topics.number(one.topic), one.ref) for one in step.opens if self._sends),
-            tuple(map(self._topics.number, step.closes)),
+            tuple(map(self._topics.number, step.ends)),
             tuple(self._sent(one, step, kind_of) for one in step.emits if self._sends),
         )
         return effect, after

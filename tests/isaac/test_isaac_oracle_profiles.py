@@ -15,6 +15,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import names, system
 from missionfsm.tools.check.narrate import story
+from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.conform.conform import Plan, conform
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -213,14 +214,15 @@ def test_a_name_that_is_said_again_may_do_nothing_and_yet_count_when_the_other_d
     begun = History().drive("connect", connection=1).robot(2).says(1).says(2).submit(1).sends(1, 1).settles
     verdict = begun.reports(1, 1, "success").drive("disconnect", connection=1).submit(2).sends(2, 2).settles.judged()
     assert verdict.conforms, str(verdict)
-    assert (verdict.readings["AI-16"], verdict.readings["AI-16.back"]) == (("n",), ("s",))
+    found = [verdict.readings[name] for name in ("AI-16", "AI-16.back", "AI-16.again")]
+    assert found == [("n",), ("p",), ("t",)]
 
 
 @pytest.mark.parametrize("heir", [1, 2])
 def test_of_several_connections_with_a_name_any_may_be_the_next_robot(heir: int) -> None:
     """Three said the name, and the last of them drops: the newest of the others may be it, or the next to last."""
     begun = History().drive("connect", connection=1).robot(2).says(1).robot(3)
-    known = {"AI-16": "n", "AI-16.back": "s", "AI-39": "a"}
+    known = {"AI-16": "n", "AI-16.back": "p", "AI-39": "a"}
     verdict = begun.drive("disconnect", connection=3).settles.submit(1).sends(heir, 1).settles.judged(readings=known)
     assert verdict.conforms, str(verdict)
 
@@ -230,6 +232,102 @@ def test_a_mission_may_have_timed_out_before_its_robot_is_there() -> None:
     begun = History().submit(1, start_timeout=0).settles.robot(1).settles
     verdict = begun.judged(readings={"AI-05": "b", "AI-39": "a"})
     assert verdict.conforms, str(verdict)
+
+
+def test_a_mission_may_be_cancelled_once_it_heads_an_idle_robots_queue() -> None:
+    """At once, without a pass: while the robot is busy its doomed missions wait; they go before the next is sent."""
+    begun = History().submit(1).submit(2, upstream=[1]).submit(3).robot(1).sends(1, 1).settles
+    begun = begun.reports(1, 1, "failure").sends(1, 3).settles.submit(4, upstream=[1]).settles
+    begun = begun.shows("FAILED", "FAILED_UPSTREAM", "STARTED", "QUEUED").waits(2).settles
+    begun = begun.shows("FAILED", "FAILED_UPSTREAM", "STARTED", "QUEUED").reports(1, 3, "success").settles
+    verdict = begun.shows("FAILED", "FAILED_UPSTREAM", "SUCCESS", "FAILED_UPSTREAM").judged()
+    assert (verdict.conforms, verdict.readings["AI-03.when"]) == (True, ("h",)), str(verdict)
+    assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-03.when=h"]
+
+
+@pytest.mark.parametrize(("again", "served"), [("t", 2), ("u", 1)])
+def test_what_a_name_that_is_said_again_does_is_a_question_of_its_own(again: str, served: int) -> None:
+    """Under every reading of what follows a drop, saying it again does nothing, or what it did at first."""
+    for back in "pqr":
+        known = {"AI-16": "n", "AI-16.back": back, "AI-16.again": again, "AI-39": "a"}
+        begun = History().robot(1).robot(2).says(1).submit(1)
+        assert begun.sends(served, 1).settles.judged(readings=known).conforms, back
+        other = History().robot(1).robot(2).says(1).submit(1).sends(3 - served, 1).judged(readings=known)
+        assert other.outcome is Outcome.VIOLATES, back
+
+
+def _aborted(status: str | None = None, *, named: int = 1) -> History:
+    """A mission of two was aborted; the robot may have said since how the first ended, or something like it."""
+    begun = History().submit(1, start_timeout=1).submit(2, config={"a": 1}).robot(1).sends(1, 1).settles
+    begun = begun.waits(1.5).settles.shows("FAILED_TIMEDOUT", "QUEUED")
+    return begun if status is None else begun.reports(1, named, status)
+
+
+def test_a_robot_may_be_busy_with_an_aborted_mission_until_it_says_how_that_ended() -> None:
+    """It is sent nothing after the abort, and the next once it has reported FAILURE of the old one: this is flagged."""
+    verdict = _aborted("failure").sends(1, 2, '{"a":1}').settles.shows("FAILED_TIMEDOUT", "STARTED").judged()
+    assert (verdict.outcome, verdict.readings["AI-08"]) == (Outcome.CONFORMS, ("d",))
+    assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-08=d"]
+
+
+@pytest.mark.parametrize("freed", ["success", "failure", "drop"])
+def test_a_robot_that_said_how_its_aborted_mission_ended_is_sent_the_next(freed: str) -> None:
+    """Nothing but RUNNING keeps it busy: after a final status, or after it has come back, the next mission is due."""
+    known = {"AI-08": "d", "AI-10": "a", "AI-39": "a"}
+    begun = _aborted().drive("disconnect", connection=1).robot(2) if freed == "drop" else _aborted(freed)
+    assert begun.settles.judged(readings=known).outcome is Outcome.VIOLATES
+    still = _aborted("running").settles
+    assert still.judged(readings=known).conforms
+    assert still.judged(readings={**known, "AI-08": "a"}).outcome is Outcome.VIOLATES
+
+
+def test_a_line_may_be_seen_after_the_drop_that_it_was_sent_before() -> None:
+    """The mission was sent, and is shown only when everything settles; after that nothing comes on the connection."""
+    begun = History().submit(1).robot(1).drive("disconnect", connection=1)
+    assert begun.sends(1, 1).settles.shows("FAILED_DISCONNECTED").judged().conforms
+    late = History().submit(1).robot(1).drive("disconnect", connection=1).settles.sends(1, 1)
+    late = late.judged(readings={"AI-39": "a"})
+    assert late.outcome is Outcome.VIOLATES
+    unseen = History().submit(1).robot(1).drive("disconnect", connection=1).settles.shows("FAILED_DISCONNECTED")
+    assert unseen.judged().conforms
+
+
+def test_after_the_server_has_ended_a_connection_nothing_is_seen_on_it() -> None:
+    """A mission may be seen after the line that cannot be read and before the end, and not after the end."""
+    begun = History().submit(1).robot(1).drive("line", connection=1, line="{")
+    assert begun.sends(1, 1).closes(1).settles.judged().conforms
+    late = History().submit(1).robot(1).drive("line", connection=1, line="{").closes(1).sends(1, 1)
+    assert late.judged().outcome is Outcome.VIOLATES
+
+
+def test_what_a_mission_is_called_that_waits_for_its_robot_or_for_an_acknowledgement() -> None:
+    """CREATED while its robot is not there, QUEUED until it is acknowledged: both are taken, the second is flagged."""
+    begun = History().submit(1).settles.shows("CREATED").robot(1).sends(1, 1).settles.shows("QUEUED")
+    verdict = begun.reports(1, 1, "running").settles.shows("RUNNING").judged()
+    found = [verdict.readings[name] for name in ("AI-04.robot", "AI-04.sent")]
+    assert (verdict.conforms, found) == (True, [("r",), ("t",)]), str(verdict)
+    assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-04.sent=t"]
+    back = History().submit(1).robot(1).submit(2).sends(1, 1).settles.shows("STARTED", "CREATED").judged()
+    assert back.outcome is Outcome.VIOLATES
+
+
+def test_what_a_drop_does_may_depend_on_whether_the_mission_was_acknowledged() -> None:
+    """What was only sent is queued again, what was acknowledged has failed: two questions, and neither is flagged."""
+    begun = History().submit(1).submit(2).robot(1).sends(1, 1).drive("disconnect", connection=1).settles
+    begun = begun.shows("QUEUED", "QUEUED").robot(2).sends(2, 1).reports(2, 1, "running").settles
+    begun = begun.drive("disconnect", connection=2).settles.shows("FAILED_DISCONNECTED", "QUEUED")
+    verdict = begun.judged()
+    found = [verdict.readings[name] for name in ("AI-15.sent", "AI-15")]
+    assert (verdict.conforms, found, verdict.flagged) == (True, [("b",), ("c",)], ()), str(verdict)
+
+
+def test_the_connection_that_another_took_over_from_may_be_closed() -> None:
+    """What was sent on it is lost then, as if it had dropped, and what is queued goes to the other."""
+    begun = History().submit(1).submit(2).robot(1).sends(1, 1).settles.robot(2).closes(1).sends(2, 2).settles
+    verdict = begun.shows("FAILED_DISCONNECTED", "STARTED").judged()
+    assert (verdict.conforms, verdict.readings["AI-16.older"]) == (True, ("w",)), str(verdict)
+    kept = History().robot(1).robot(2).closes(1).judged(readings={"AI-16.older": "v"})
+    assert kept.outcome is Outcome.VIOLATES
 
 
 def test_profiles_of_systems() -> None:

@@ -166,6 +166,7 @@ class World:
             optional = passing or emission.optional or emission.only is not None
             return (Message(emission.view, about, optional, emission.stays),)
 
+        assert not step.drains, "no toy has connections"
         streams = [one for one in here.streams if one.topic not in step.closes]
         for emission in step.emits:
             streams = [

@@ -16,6 +16,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity, choose
 from missionfsm.kernel.step import Emission, Opening, Step
 from missionfsm.oracle.explanation import (
+    DRAINED,
     GONE,
     Channel,
     Explanation,
@@ -30,6 +31,7 @@ from missionfsm.oracle.explanation import (
     rename,
     take,
     tidy,
+    undrained,
     unify,
     with_lost,
     within,
@@ -168,6 +170,17 @@ def test_a_step_closes_channels() -> None:
     before = Explanation("state", channels=(Channel(1, "news", owed=(Owed("v", ()),)), Channel(2, "weather")))
     after = take(before, Step("next", closes=("news",)), (), passing=False, concerns=operator.eq)
     assert after == (Explanation("next", channels=(Channel(2, "weather"),), gone=(1,)), ())
+
+
+def test_what_is_on_its_way_on_a_drained_channel_may_be_seen_until_things_settle() -> None:
+    """The channels of a topic that a step drains are gone, and so are their names; what they owe need not come."""
+    channels = (Channel(1, "news", owed=(Owed("v", ()),)), Channel(2, "news"), Channel(3, "weather"))
+    step = Step("next", drains=("news",))
+    after = take(Explanation("state", channels=channels), step, (), passing=False, concerns=operator.eq)
+    draining = Channel(1, DRAINED, owed=(Owed("v", (), passing=True),))
+    assert after == (Explanation("next", channels=(draining, Channel(3, "weather")), gone=(1, 2)), ())
+    assert undrained(after[0]) == Explanation("next", channels=(Channel(3, "weather"),), gone=(1, 2))
+    assert (undrained(after[0], 1), undrained(after[0], 2)) == (undrained(after[0]), after[0])
 
 
 def test_a_step_that_assumes_too_much_does_not_happen() -> None:

@@ -22,9 +22,10 @@ def _of_robot(server: Server, robot: str | None) -> object:
     ready = min(2, sum(one.ready for one in queued))
     waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
     doomed = any(one.doomed for one in queued)
+    lingers = any(one.lingers for one in own)
     ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
     links = tuple(one.serves for one in server.links if one.name == robot)
-    return under_way, ready, waiting, doomed, ended, links
+    return under_way, ready, waiting, doomed, lingers, ended, links
 
 
 def idle_shape(server: Server) -> object:
@@ -44,9 +45,11 @@ def extent(server: Server) -> int:
 
 
 def outline(server: Server) -> Server:
-    """The server with all readings open again, clocks that may strike at any time, and no status kept for a name."""
+    """The server with all readings open again, clocks that may strike at any time, and nothing kept for later."""
     missions = tuple(
-        evolve(one, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks)) if one.clocks else one
+        evolve(one, lingers=False, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
+        if one.clocks or one.lingers
+        else one
         for one in server.missions
     )
     links = tuple(evolve(one, early=(), held=(0, 0)) if one.early or one.held[1] else one for one in server.links)

@@ -15,7 +15,9 @@ from missionfsm.isaac.server.readings import (
     AI_10,
     AI_14_STATUS,
     AI_16,
+    AI_16_AGAIN,
     AI_16_BACK,
+    AI_16_OLDER,
     AI_16_UNDER_WAY,
     AI_17,
     AI_18_EARLY,
@@ -70,7 +72,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
     if not gone.serves or not heirs:
         yield move
         return
-    at_once, later = split(move, AI_16_BACK, "ps")  # q and r: not before it says it again, or never
+    at_once, later = split(move, AI_16_BACK, "p")  # q and r: not before it says it again, or never
     if at_once is not None:
         for heir in reversed(heirs):  # nobody says which of several, the newest or the one that said it last
             yield from _served(at_once, heir)
@@ -146,14 +148,15 @@ def _named(move: Move, link: Link, key: str) -> Moves:
     elif link.name is None:
         yield from _claims(move, link, key)
     elif link.name == key:
-        again, never = split(move, AI_16_BACK, "pq")
+        there = move.state.serving(key) is not None
+        again, never = split(move, AI_16_AGAIN, "u") if there else split(move, AI_16_BACK, "pq")
         if again is not None:
             yield from _claims(again, link, key)
         if never is not None:
             yield never
     else:
         # It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q).
-        keeps, without = split(move, AI_16_BACK, "prs")
+        keeps, without = split(move, AI_16_BACK, "pr")
         if without is not None:
             yield from _claims(without, link, key)
         if keeps is not None:
@@ -187,8 +190,18 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
 
 
 def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False) -> Moves:
+    kept_open, closing = split(move, AI_16_OLDER, "v")
+    if closing is not None:
+        for after in closed(closing, holder):
+            yield from _served(after, link)
+    if kept_open is not None:
+        yield from _displaces(kept_open, link, holder, unnoticed=unnoticed)
+
+
+def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Moves:
+    """A connection becomes the robot in the place of another, which is kept."""
     displaced = move.link(holder.slot, serves=False)
-    under_way = any(one.status in UNDER_WAY and one.link == holder.slot for one in move.state.missions)
+    under_way = any((one.status in UNDER_WAY or one.lingers) and one.link == holder.slot for one in move.state.missions)
     kept = any(one.status in UNDER_WAY and one.link is None and one.robot == holder.name for one in move.state.missions)
     if not under_way and not kept:
         yield from _served(displaced, link)
@@ -270,10 +283,22 @@ def _believed(move: Move, slot: int, report: Report) -> Moves:
         way, _ = split(move, AI_10, letters)
         if way is None:
             continue
-        if not meant:
-            yield _nothing(way)
+        after = [] if meant else [_nothing(way)]
         for index in meant:
-            yield from _on_channel(way, index, report)
+            after += _on_channel(way, index, report)
+        for one in after:
+            yield from _heard_out(one, link, report)
+
+
+def _heard_out(move: Move, link: Link, report: Report) -> Moves:
+    """AI-08 d: how a mission ended that was aborted may be told in words that are about none, or about another."""
+    yield move
+    missions = move.state.missions
+    lingering = [index for index, one in enumerate(missions) if one.lingers and one.robot == link.name]
+    if lingering and report.status != "running":
+        for index in lingering:
+            move = move.mission(index, lingers=False)
+        yield move
 
 
 def _current(state: Server, link: Link, report: Report) -> tuple[int, ...]:
@@ -330,6 +355,8 @@ def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:
     """A status of a mission that has ended, or that is queued again."""
     final = {"success": Status.SUCCESS, "failure": Status.FAILED}.get(report.status)
     move = move.to(move.state, rules.LATE.id)
+    if final is not None and mission.lingers:
+        move = move.mission(index, lingers=False)
     if final is None or mission.status not in ENDED or mission.status is final:
         yield move
         return

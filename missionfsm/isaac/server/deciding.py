@@ -14,6 +14,7 @@ from missionfsm.isaac.server.readings import (
     AI_05,
     AI_06,
     AI_07,
+    AI_08,
     AI_24_WHOLE,
     AI_31,
     AI_39,
@@ -50,6 +51,9 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
         after = evolve(_in_order(after), slow=0)
     if question.id == AI_39_ORDER.id and "s" not in letters:
         after = _in_order(after)
+    if question.id == AI_08.id and "d" not in letters:
+        missions = tuple(evolve(one, lingers=False) if one.lingers else one for one in after.missions)
+        after = evolve(after, missions=missions)
     if question.id in _ABOUT_CLOCKS:
         after = evolve(after, missions=tuple(_in_time(after, one) for one in after.missions))
     return Move(after, move.sent, move.rules, move.at)

@@ -20,10 +20,11 @@ from missionfsm.isaac.server.readings import (
     AI_03_WHEN,
     AI_05,
     AI_07,
+    AI_08,
     AI_11,
     AI_12,
     AI_13,
-    AI_15,
+    AI_15_SENT,
     AI_16_UNDER_WAY,
     AI_19,
     AI_24_WHOLE,
@@ -47,29 +48,51 @@ from missionfsm.isaac.server.state import (
 
 def lapses(state: Server, link: Link) -> list[Move]:
     """AI-03.when p: what becomes of a doomed mission that a scheduling pass finds first in an idle robot's queue."""
-    if state.letters(AI_03_WHEN) != "p":
-        return []
+    return _lapsed(Move(state), link) if state.letters(AI_03_WHEN) == "p" else []
+
+
+def _lapsing(move: Move, part: Part) -> Moves:
+    """AI-03.when h: a doomed mission is cancelled once it is the first in an idle robot's queue."""
+    if "h" not in move.state.letters(AI_03_WHEN):
+        return
+    for link in move.state.links:
+        if link.serves and link.slot in part.slots and (lapsed := _lapsed(move, link)):
+            _, passes = split(move, AI_03_WHEN, "h")
+            yield from (here for one in lapsed if (here := split(one, AI_03_WHEN, "h")[0]) is not None)
+            if passes is not None:
+                yield passes
+            return
+
+
+def _lapsed(move: Move, link: Link) -> list[Move]:
+    state = move.state
     own = [index for index, one in enumerate(state.missions) if one.robot == link.name]
     queue = [index for index in own if state.missions[index].status is Status.QUEUED]
     if not queue or not state.missions[queue[0]].doomed or busy(state, link):
         return []
     head = state.missions[queue[0]]
-    move, _ = split(Move(state), AI_03, failures_that_cancel(head))
-    if move is not None and head.waits:
-        move, _ = split(move, AI_36, "a")
-    return [] if move is None else [ends(move, queue[0], "cancel", rules.CANCELED.id)]
+    here, _ = split(move, AI_03, failures_that_cancel(head))
+    if here is not None and head.waits:
+        here, _ = split(here, AI_36, "a")
+    return [] if here is None else [ends(here, queue[0], "cancel", rules.CANCELED.id)]
 
 
 def busy(state: Server, link: Link) -> set[str]:
     """The channels of the missions that keep a connection's robot busy."""
-    apart = state.letters(AI_16_UNDER_WAY) == "m"  # what goes on on an older connection keeps nobody busy
-    return {
-        one.channel
-        for one in state.missions
-        if one.status in UNDER_WAY
-        and one.robot == link.name
-        and not (apart and one.link is not None and one.link != link.slot)
-    }
+    return {one.channel for one in _given(state, link) if one.status in UNDER_WAY}
+
+
+def _lingering(state: Server, link: Link) -> set[str]:
+    """The channels of the missions that were aborted and that a connection's robot may still run (AI-08 d)."""
+    return {one.channel for one in _given(state, link) if one.lingers}
+
+
+def _given(state: Server, link: Link) -> Iterator[Mission]:
+    """The missions of a connection's robot, but for those that were sent elsewhere and keep nobody busy."""
+    apart = state.letters(AI_16_UNDER_WAY) == "m"
+    for one in state.missions:
+        if one.robot == link.name and not (apart and one.link is not None and one.link != link.slot):
+            yield one
 
 
 def dispatches(move: Move, part: Part) -> Moves:
@@ -133,7 +156,17 @@ def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
     queue = _queue(move.state, link)
     if not any(missions[index].ready for index in queue):
         return
-    taken = busy(move.state, link)
+    taken, lingering = busy(move.state, link), _lingering(move.state, link)
+    idle, held = split(move, AI_08, "ac") if lingering else (move, None)
+    if idle is not None:
+        yield from _with_taken(idle, queue, taken)
+    if held is not None:
+        yield from _with_taken(held, queue, taken | lingering)
+
+
+def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple[int | None, Move]]:
+    """What may be sent of a robot's queue while these channels of it are taken."""
+    missions = move.state.missions
     if not taken:
         yield from _from_free(move, queue)
         return
@@ -239,7 +272,7 @@ def sends(move: Move, link: Link, index: int) -> Moves:
 
 def urgent(move: Move, part: Part) -> tuple[Move, ...]:
     """What follows from where things stand in a part of the server, one thing at a time."""
-    due = tuple(cancellations(move, part))
+    due = tuple(cancellations(move, part)) or tuple(_lapsing(move, part))
     return due or tuple(dispatches(move, part))
 
 
@@ -257,7 +290,7 @@ def in_vain(move: Move, gone: Link) -> Moves:
                 continue
             if gone.slot >= 0:
                 unheard = after
-            for letter, way in ways(unheard.mission(index, link=None), AI_15, "c", "a", "b"):
+            for letter, way in ways(unheard.mission(index, link=None), AI_15_SENT, "c", "a", "b"):
                 if letter == "c":
                     yield ends(way, index, "lose")
                 else:

@@ -20,6 +20,7 @@ from missionfsm.isaac.server.readings import (
     AI_07,
     AI_08,
     AI_15,
+    AI_15_SENT,
     AI_15_WHEN,
     AI_24_WHOLE,
     AI_31,
@@ -169,13 +170,13 @@ def _noticed(move: Move, index: int) -> Moves:
     for one in move.state.gone:
         if one.serves and one.name == move.state.missions[index].robot:
             move = forgotten(move, one)
-    for letter, way in ways(move, AI_15, "c", "b"):
+    for letter, way in ways(move, dropped(move.state.missions[index]), "c", "b"):
         here = stopped(way, index, (DROP, "drop"))
         yield ends(here, index, "lose") if letter == "c" else sent_again(here, index)
 
 
 def aborted(move: Move, index: int, kind: str) -> Moves:
-    """A mission is aborted; its robot is not told, or (AI-08 c) loses its connection."""
+    """A mission is aborted; its robot is not told, or (AI-08 c) loses its connection, or (d) is busy with it still."""
     because = {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE}[kind].id
     mission = move.state.missions[index]
     after = ends(move, index, "time out", because)
@@ -185,9 +186,10 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
     if link is None or mission.status not in UNDER_WAY:
         yield after
         return
-    quiet, closing = split(after, AI_08, "a")
+    quiet, closing = split(after, AI_08, "ad")
     if quiet is not None:
-        yield quiet
+        lingers = "d" in quiet.state.letters(AI_08)
+        yield quiet.mission(index, link=link.slot, lingers=True) if lingers else quiet
     if closing is not None:
         yield from closed(closing, link)
 
@@ -230,34 +232,32 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
         for index, mission in enumerate(missions):
             if mission.robot == link.name and mission.status is Status.QUEUED:
                 move = stopped(move, index, (START, "connect"))
+    for index, mission in enumerate(missions):
+        if mission.lingers and _was_on(mission, link):
+            move = move.mission(index, lingers=False)
     affected = [index for index, one in enumerate(missions) if one.status in UNDER_WAY and _was_on(one, link)]
-    if not affected:
-        yield move
-        return
-    for letter, way in ways(move, AI_15, "c", "a", "b"):
-        here, later = (way, None) if letter == "a" else split(way, AI_15_WHEN, "n")
-        if here is not None:
-            yield _lost_at_once(here, letter, affected)
+    moves = [move]
+    for index in affected:
+        moves = [after for one in moves for after in _lost_mission(one, index, still=still)]
+    yield from moves
+
+
+def dropped(mission: Mission) -> Ambiguity:
+    """The question what becomes of a mission under way when the connection drops that it was sent on."""
+    return AI_15_SENT if mission.status is Status.STARTED else AI_15
+
+
+def _lost_mission(move: Move, index: int, *, still: bool) -> Moves:
+    for letter, way in ways(move, dropped(move.state.missions[index]), "c", "a", "b"):
+        here = way.mission(index, link=None)
+        if letter == "a":
+            yield here
+            continue
+        at_once, later = split(here, AI_15_WHEN, "n")
+        if at_once is not None:
+            yield ends(at_once, index, "lose") if letter == "c" else sent_again(at_once, index)
         if later is not None:
-            yield _lost_later(later, affected, still=still)
-
-
-def _lost_at_once(move: Move, letter: str, affected: list[int]) -> Move:
-    """What becomes of the missions of a connection, by the letter of AI-15."""
-    for index in affected:
-        if letter == "b":
-            move = sent_again(move, index)
-        else:
-            move = move.mission(index, link=None)
-            move = ends(move, index, "lose") if letter == "c" else move
-    return move
-
-
-def _lost_later(move: Move, affected: list[int], *, still: bool) -> Move:
-    """The missions of a connection are on none, and a pass notices it."""
-    for index in affected:
-        move = _to_be_noticed(move.mission(index, link=None), index, DROP, still=still)
-    return move
+            yield _to_be_noticed(later, index, DROP, still=still)
 
 
 def _to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) -> Move:

@@ -25,7 +25,7 @@ BENDS = (
 
 
 def _nothing(before: Server, step: Step) -> Step:
-    return evolve(step, after=before, names=None, emits=(), closes=())
+    return evolve(step, after=before, names=None, emits=(), drains=())
 
 
 def _each(change: Callable[[Mission, Mission], Mission]) -> Twist:

@@ -121,7 +121,7 @@ SKETCHES = (
         shows=_shows,
         inputs=(Input("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),),
         drives=(_CONNECT, *_names(_ROBOTS[0]), *_REPORTS, _DROP, _PASS),
-        contrasts=("AI-15=a", "AI-15=b", "AI-05=b"),
+        contrasts=("AI-15.sent=a", "AI-15.sent=b", "AI-05=b"),
     ),
     Sketch(
         "dependency",

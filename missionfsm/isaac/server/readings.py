@@ -44,9 +44,10 @@ AI_03_WHEN = Ambiguity(
         "n": "at once",
         "q": "in the next scheduling pass",
         "p": "in a scheduling pass in which it heads the queue of a robot that is there and idle",
+        "h": "as soon as it heads the queue of a robot that is there and idle",
     },
     default="n",
-    flagged=_flags("p"),
+    flagged=_flags("ph"),
     rule="a-failed-upstream-cancels",
 )
 AI_04 = Ambiguity(
@@ -54,6 +55,20 @@ AI_04 = Ambiguity(
     "What is a submitted mission that waits for upstreams?",
     {"a": "QUEUED", "b": "CREATED"},
     default="a",
+)
+AI_04_ROBOT = Ambiguity(
+    "AI-04.robot",
+    "What is a submitted mission whose robot is not there?",
+    {"q": "QUEUED", "r": "CREATED"},
+    default="q",
+)
+AI_04_SENT = Ambiguity(
+    "AI-04.sent",
+    "What is a mission that was sent and not acknowledged?",
+    {"s": "STARTED", "t": "QUEUED"},
+    default="s",
+    flagged=_flags("t"),
+    rule="every-mission-is-shown-with-its-status",
 )
 AI_05 = Ambiguity(
     "AI-05",
@@ -96,9 +111,14 @@ AI_07 = Ambiguity(
 AI_08 = Ambiguity(
     "AI-08",
     "What does an abort do to the robot?",
-    {"a": "nothing: it goes on until it is preempted", "c": "its connection is closed"},
+    {
+        "a": "nothing: it goes on until it is preempted",
+        "c": "its connection is closed",
+        "d": "nothing, and it is sent no other mission until it has said how that one ended",
+    },
     default="a",
-    flagged=_flags("c"),
+    flagged=_flags("cd"),
+    rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_09 = Ambiguity(
     "AI-09",
@@ -151,7 +171,13 @@ AI_14_STATUS = Ambiguity(
 )
 AI_15 = Ambiguity(
     "AI-15",
-    "What becomes of a mission that was sent when its robot's connection drops?",
+    "What becomes of a mission that was acknowledged when its robot's connection drops?",
+    {"a": "nothing: its timeouts decide", "b": "it is sent again", "c": "it has failed"},
+    default="c",
+)
+AI_15_SENT = Ambiguity(
+    "AI-15.sent",
+    "What becomes of a mission that was sent and not acknowledged when its robot's connection drops?",
     {"a": "nothing: its timeouts decide", "b": "it is sent again", "c": "it has failed"},
     default="c",
 )
@@ -172,6 +198,12 @@ AI_16 = Ambiguity(
     },
     default="a",
 )
+AI_16_OLDER = Ambiguity(
+    "AI-16.older",
+    "Another connection becomes the robot: what of the one that was it?",
+    {"v": "it is kept", "w": "it is closed"},
+    default="v",
+)
 AI_16_UNDER_WAY = Ambiguity(
     "AI-16.under-way",
     "A newer connection becomes the robot: what of the mission that was sent on the older?",
@@ -186,12 +218,17 @@ AI_16_BACK = Ambiguity(
     "AI-16.back",
     "The connection that is the robot drops, and another has said the same name: is that the robot now?",
     {
-        "p": "at once, and so it becomes by saying its name again while the other is there",
+        "p": "at once",
         "q": "when it says its name again",
         "r": "never",
-        "s": "at once; saying its name again does nothing",
     },
     default="q",
+)
+AI_16_AGAIN = Ambiguity(
+    "AI-16.again",
+    "What does a connection do by saying its name again while another with that name is the robot?",
+    {"t": "nothing", "u": "what it would do by saying it for the first time"},
+    default="u",
 )
 AI_17 = Ambiguity(
     "AI-17",
@@ -334,6 +371,8 @@ AMBIGUITIES = (
     AI_03,
     AI_03_WHEN,
     AI_04,
+    AI_04_ROBOT,
+    AI_04_SENT,
     AI_05,
     AI_06,
     AI_07,
@@ -345,10 +384,13 @@ AMBIGUITIES = (
     AI_13,
     AI_14_STATUS,
     AI_15,
+    AI_15_SENT,
     AI_15_WHEN,
     AI_16,
+    AI_16_OLDER,
     AI_16_UNDER_WAY,
     AI_16_BACK,
+    AI_16_AGAIN,
     AI_17,
     AI_18_EARLY,
     AI_18_UNNAMED,

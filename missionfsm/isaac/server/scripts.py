@@ -70,11 +70,16 @@ class _Script:
     def report(
         self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
     ) -> _Script:
+        return self.say(link, mission, status, channel, by=by).wait()
+
+    def say(
+        self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
+    ) -> _Script:
         uuid = {"uuid": pick("uuid", UUID)}
         head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
         payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
         self.lines.append(ScriptStep("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
-        return self.wait()
+        return self
 
     def raw(self, link: int, text: str) -> _Script:
         params = {"event": "line", "connection": pick("connection", LINK), "line": text}
@@ -135,7 +140,9 @@ _SCRIPTS = (
     .submit(B)
     .robot(0, A)
     .report(0, 0, "running")
-    .report(0, 0, "failure")
+    .say(0, 0, "failure")
+    .look()
+    .wait()
     .submit(A, 0)
     .look()
     .wait()

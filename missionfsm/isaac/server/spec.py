@@ -77,7 +77,7 @@ def _step(
         after,
         names=tuple(names),
         emits=emissions(move),
-        closes=tuple(topic(one.slot) for one in before.ends if one.slot not in kept),
+        drains=tuple(topic(one.slot) for one in before.ends if one.slot not in kept),
         rules=tuple(dict.fromkeys(move.rules)),
         assumes=(*assumes, *assumed(before, after)),
     )
@@ -283,7 +283,7 @@ def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
     if not isinstance(seen, tuple) or len(seen) != len(server.missions):
         return ()
     for part in parts(server):
-        if any(not may_be_called(server.missions[index], seen[index]) for index in part.missions):
+        if any(not may_be_called(server, index, seen[index]) for index in part.missions):
             return _silent_in(server, part)
     return ()
 

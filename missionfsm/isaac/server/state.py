@@ -111,6 +111,7 @@ class Mission:
         waits: the upstreams that have not ended, by their index.
         doomed: how upstreams ended that did not succeed.
         fated: the upstreams that are as good as failed, however they end (AI-22.started j).
+        lingers: whether it was aborted and its robot has not said since how it ended (AI-08 d).
         link: the slot of the connection that it was sent on; None before, and where that is gone.
         sent: whether it was sent.
         depends: whether it has upstreams at all.
@@ -130,6 +131,7 @@ class Mission:
     sent: bool = False
     depends: bool = False
     fated: tuple[int, ...] = ()
+    lingers: bool = False
 
     @property
     def ticking(self) -> tuple[Clock, ...]:

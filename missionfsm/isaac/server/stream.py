@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.readings import (
     AI_02,
     AI_04,
+    AI_04_ROBOT,
+    AI_04_SENT,
     AI_25_HEADER,
     AI_28_CONFIG,
 )
@@ -23,42 +24,53 @@ from missionfsm.isaac.server.time import calmed
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Match, Mismatch, Step
 
-_CANCELED = {"a": "canceled", "b": "failed", "c": "canceled"}
-_ABORTED = {"a": "aborted", "b": "failed", "c": "timed out"}
-"""AI-02: how missions are called that were cancelled and that were aborted."""
+_ABORTED = {"c": "timed out", "a": "aborted", "b": "failed"}
+"""AI-02: how missions are called that were aborted; those that were cancelled are so called, or failed (b)."""
+
+Called = tuple[tuple[str, tuple[Assumption, ...]], ...]
 
 
-def _word(mission: Mission, names: str, waiting: str) -> str:
-    """How a mission is shown under AI-02 read as `names` and AI-04 as `waiting`."""
-    if mission.status is Status.CANCELED:
-        return _CANCELED[names]
-    if mission.status is Status.ABORTED:
-        return _ABORTED[names]
-    if mission.status is Status.QUEUED and (mission.waits or mission.doomed):
-        return {"a": "queued", "b": "created"}[waiting]
-    return "lost" if mission.status is Status.LOST else mission.status.value.lower()
+def _called(server: Server, mission: Mission) -> Called:
+    """What a mission may be shown as, each with what that assumes."""
+    status = mission.status
+    if status is Status.STARTED:
+        return ("started", (AI_04_SENT["s"],)), ("queued", (AI_04_SENT["t"],))
+    if status is Status.CANCELED:
+        return ("canceled", (AI_02["a", "c"],)), ("failed", (AI_02["b"],))
+    if status is Status.ABORTED:
+        return tuple((word, (AI_02[letter],)) for letter, word in _ABORTED.items())
+    if status is Status.QUEUED:
+        reasons = []
+        if mission.waits or mission.doomed:
+            reasons.append((AI_04["a"], AI_04["b"]))
+        if server.serving(mission.robot) is None:
+            reasons.append((AI_04_ROBOT["q"], AI_04_ROBOT["r"]))
+        queued = tuple(reason[0] for reason in reasons)
+        return ("queued", queued), *(("created", (reason[1],)) for reason in reasons)
+    return (("lost" if status is Status.LOST else status.value.lower(), ()),)
 
 
 def shown(server: Server) -> Iterator[Step]:
     """The answers to ``statuses``, one for each way in which the readings name what is there."""
-    found: dict[tuple[str, ...], tuple[str, str]] = {}
-    for names, waiting in itertools.product(AI_02.readings, AI_04.readings):
-        shape = tuple(_word(one, names, waiting) for one in server.missions)
-        before = found.get(shape, ("", ""))
-        found[shape] = (before[0] + names * (names not in before[0]), before[1] + waiting * (waiting not in before[1]))
+    found: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {((), UNCONSTRAINED): ()}
+    for mission in server.missions:
+        longer: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {}
+        for (words, assumed), assumes in found.items():
+            for word, more in _called(server, mission):
+                agreed = meet(assumed, more)
+                if agreed:
+                    both = tuple(dict.fromkeys((*assumes, *more)))
+                    longer.setdefault(((*words, word), agreed), both)
+        found = longer
     handles = tuple(2 * index for index in range(len(server.missions)))
     told = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
     quiet = calmed(server)
-    for shape, letters in sorted(found.items(), key=lambda one: AI_02.default not in one[1][0]):
-        assumes = tuple(
-            question[tuple(kept)]
-            for question, kept in zip((AI_02, AI_04), letters, strict=True)
-            if len(kept) < len(question.readings)
-        )
-        yield Step(quiet, answer=Answer(OK, shape), refs=handles, rules=told, assumes=assumes)
+    for (words, _), assumes in found.items():
+        yield Step(quiet, answer=Answer(OK, words), refs=handles, rules=told, assumes=assumes)
 
 
 def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
@@ -120,7 +132,7 @@ def matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] 
     return (Match(assumes, ((0, 0),) if content.named else (), told),)
 
 
-def may_be_called(mission: Mission, word: object) -> bool:
-    """Whether a mission that stands where it stands is called so under some reading."""
-    words = {_word(mission, names, waiting) for names in AI_02.readings for waiting in AI_04.readings}
+def may_be_called(server: Server, index: int, word: object) -> bool:
+    """Whether a mission is called so under some reading as things stand."""
+    words = {one for one, _ in _called(server, server.missions[index])}
     return word in words or ("lost" in words and word in ("failed", "aborted"))

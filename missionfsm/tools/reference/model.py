@@ -214,7 +214,7 @@ class Reference:
         names = here.names if step.names is None else tuple(pool[ref] for ref in step.names)
         lapsed = set(here.names).difference(names) if self.system.spec.recalls else ()
         gone = here.gone.union(lapsed) if lapsed else here.gone
-        left = tuple(one for one in here.channels if one.topic not in step.closes) if step.closes else here.channels
+        left = tuple(one for one in here.channels if one.topic not in step.ends) if step.ends else here.channels
         after = evolve(here, state=step.after, names=names, minted=here.minted + len(made), gone=gone, channels=left)
         sent: list[Sent] = []
         passing = self.urgent(step.after) is not None if step.emits else False

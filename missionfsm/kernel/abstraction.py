@@ -7,6 +7,7 @@ from typing import Protocol
 
 from attrs import frozen
 
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.terms import Code, Incident, Request, State
 
 
@@ -67,6 +68,8 @@ class Abstraction:
             readings, since every step may follow any; None where states remember neither.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
+        indistinct: step that changes the state to one after which nobody can ever tell the difference, the same for all
+            those; None where nothing of a state stays hidden for good.
         shortcut: what makes the steps of the system again, only faster.
     """
 
@@ -79,4 +82,5 @@ class Abstraction:
     extent: Callable[[State], int] | None = None
     outline: Callable[[State], State] | None = None
     forget_ended: Callable[[State], State] | None = None
+    indistinct: Callable[[Step], Step] | None = None
     shortcut: Compiled | None = None

@@ -13,7 +13,7 @@ import operator
 import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
-from attrs import evolve
+from attrs import Factory, evolve, field
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
@@ -26,6 +26,15 @@ Names = tuple[int, ...]
 
 GONE = -1
 """The number of a name that was observed once and that nothing carries any more."""
+
+
+def _lowest_of_owed(owed: Owed) -> int:
+    return min((GONE, *owed.names))
+
+
+def _lowest_of_channel(channel: Channel) -> int:
+    lowest = channel.last.lowest if channel.last else GONE
+    return min([channel.name, lowest, *[one.lowest for one in channel.owed]])
 
 
 @value(cache_hash=True)
@@ -60,6 +69,7 @@ class Owed:
     A `passing` one may be left out, since its state does not last or since nobody has to say it. In the second case,
     where it is `optional`, it may also come once things have settled; one that `stays` may come any number of times.
     `looks` is what one that has come looked like, where the specification wants it to be remembered (`Spec.looks`).
+    `lowest` is the lowest of its names, `GONE` at most: below that where nobody has seen one of them.
     """
 
     view: View
@@ -69,16 +79,21 @@ class Owed:
     optional: bool = False
     stays: bool = False
     looks: Hashable = None
+    lowest: int = field(init=False, eq=False, repr=False, default=Factory(_lowest_of_owed, takes_self=True))
 
 
 @value(cache_hash=True)
 class Channel:
-    """A stream or a connection: its name, its topic, what it showed last and what it owes."""
+    """A stream or a connection: its name, its topic, what it showed last and what it owes.
+
+    `lowest` is the lowest of all names in it, `GONE` at most.
+    """
 
     name: int
     topic: Hashable
     last: Owed | None = None
     owed: tuple[Owed, ...] = ()
+    lowest: int = field(init=False, eq=False, repr=False, default=Factory(_lowest_of_channel, takes_self=True))
 
 
 DRAINED = "drained"
@@ -158,44 +173,67 @@ def mentioned(explanation: Explanation) -> Iterator[int]:
             yield from ready.names
 
 
+def _unseen(explanation: Explanation) -> list[int]:
+    """The names that nobody has seen, in the order of `mentioned`."""
+    found: list[int] = []
+    if explanation.names and min(explanation.names) < GONE:
+        found += (name for name in explanation.names if name < GONE)
+    for channel in explanation.channels:
+        if channel.lowest < GONE:
+            if channel.name < GONE:
+                found.append(channel.name)
+            for owed in (channel.last, *channel.owed):
+                if owed and owed.lowest < GONE:
+                    found += (name for name in owed.names if name < GONE)
+    for _, args, _ in explanation.lost:
+        if args:
+            found += (name for name in args if name < GONE)
+    for call in explanation.calls:
+        names = (call.name, *call.args)
+        if call.done:
+            names += call.done.names
+        for ready in call.ready:
+            names += ready.names
+        found += (name for name in names if name < GONE)
+    return found
+
+
 def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
     """The same explanation with other numbers for its names; those not in `new` stay."""
+    lowest = min(new, default=GONE)
+    unseen_only = max(new, default=GONE) < GONE
+
+    def stays(names: Names) -> bool:
+        return not names or (unseen_only and min(names) >= GONE) or lowest > max(names)
 
     def each(names: Names) -> Names:
-        return tuple(new.get(name, name) for name in names)
+        return names if stays(names) else tuple([new.get(name, name) for name in names])
 
     def ready(one: Ready) -> Ready:
-        return Ready(one.answer, each(one.names), one.assumes, one.rules) if one.names else one
+        return one if stays(one.names) else Ready(one.answer, each(one.names), one.assumes, one.rules)
+
+    def in_flight(one: InFlight) -> InFlight:
+        done = ready(one.done) if one.done else None
+        return InFlight(new.get(one.name, one.name), one.request, each(one.args), tuple(map(ready, one.ready)), done)
 
     def owed(one: Owed) -> Owed:
-        if not one.names:
+        if stays(one.names):
             return one
         return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.looks)
+
+    def channel(one: Channel) -> Channel:
+        if unseen_only and one.lowest == GONE:
+            return one
+        last = owed(one.last) if one.last else None
+        return Channel(new.get(one.name, one.name), one.topic, last, tuple(map(owed, one.owed)))
 
     return Explanation(
         explanation.state,
         each(explanation.names),
         explanation.assumed,
-        tuple(
-            InFlight(
-                new.get(call.name, call.name),
-                call.request,
-                each(call.args),
-                tuple(map(ready, call.ready)),
-                ready(call.done) if call.done else None,
-            )
-            for call in explanation.calls
-        ),
-        tuple((request, each(args), times) for request, args, times in explanation.lost),
-        tuple(
-            Channel(
-                new.get(channel.name, channel.name),
-                channel.topic,
-                owed(channel.last) if channel.last else None,
-                tuple(map(owed, channel.owed)),
-            )
-            for channel in explanation.channels
-        ),
+        tuple(map(in_flight, explanation.calls)),
+        tuple([(request, each(args), times) for request, args, times in explanation.lost]),
+        tuple(map(channel, explanation.channels)),
         tuple(sorted(each(explanation.gone))),
     )
 
@@ -227,16 +265,9 @@ def tidy(explanation: Explanation) -> Explanation:
     """
     if len(explanation.channels) > 1:
         explanation = _in_order(explanation)
-    lowest = GONE
-    for name in mentioned(explanation):
-        if name < lowest:
-            lowest -= 1
-            if name != lowest:
-                break
-    else:
-        return explanation
-    unseen = dict.fromkeys(name for name in mentioned(explanation) if name < GONE)
-    return rename(explanation, {name: GONE - 1 - position for position, name in enumerate(unseen)})
+    unseen = dict.fromkeys(_unseen(explanation))
+    new = {name: GONE - 1 - position for position, name in enumerate(unseen)}
+    return explanation if all(map(operator.eq, new, new.values())) else rename(explanation, new)
 
 
 def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explanation | None:

@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import bisect
 import operator
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
+
+from attrs import define, field
 
 from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
@@ -40,6 +42,31 @@ Narrowed = tuple[Channel, Assumption | None, bool]
 the state now, the channel does not show it."""
 
 
+_Led = tuple[Narrowed | None, Message | None]
+"""A channel that was narrowed, and the message that the state has to come to show, if there is one."""
+
+
+@define(eq=False, slots=True)
+class _Stretch:
+    """What is known of a channel from some moment on.
+
+    Attributes:
+        due: the messages that it shows next, `NEXT` at most.
+        before: what it has shown last, if that is known.
+        nothing: whether nothing of it is known.
+        rests: whether everything settles after the messages.
+        over: whether nothing else is shown after the messages.
+        led: what was found of channels with that name.
+    """
+
+    due: list[Message]
+    before: Message | None
+    nothing: bool = field(kw_only=True)
+    rests: bool = field(kw_only=True)
+    over: bool = field(kw_only=True)
+    led: dict[tuple[Channel, bool, bool], _Led] = field(factory=dict)
+
+
 class Lookahead:
     """What the events of a window say of those before them.
 
@@ -54,6 +81,9 @@ class Lookahead:
 
     Attributes:
         at: how many of them have been observed.
+        consulted: the bits of the ambiguities of which something was assumed since the last event.
+        depends: the bits of those on which it has depended since then what becomes of an explanation: it would have
+            come to the same under other readings of all others.
     """
 
     def __init__(  # noqa: PLR0913 - all but the first four have a default
@@ -73,12 +103,16 @@ class Lookahead:
         self._horizon = horizon
         self._beyond = sorted(beyond)
         self.at = 0
+        self.consulted = self.depends = 0
         self.answers: dict[int, tuple[Answer, Names]] = {}
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
         self._settled: list[int] = []
         self._latest = latest
         self._room = Room(MEMORY // STEPS)
-        self._passed: dict[Hashable, Narrowed | None] = {}
+        self._led: dict[Hashable, bool] = {}
+        self._known: dict[tuple[int, int, int, int], _Stretch] = {}
+        self._stretches: dict[tuple[int, int], _Stretch] = {}
+        self._at_cut, self._found_cut = -1, horizon
         self._shows: dict[Hashable, bool] = {}
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
@@ -122,6 +156,19 @@ class Lookahead:
     def answer(self, call: int) -> tuple[Answer, Names] | None:
         """What a call in flight comes back with, and with which names; None where it is not known."""
         return self.answers.get(call)
+
+    def consult(self, assumed: int, assumptions: Iterable[Assumption]) -> None:
+        """Note what more is assumed of an explanation; what becomes of it depends on what is contradictory."""
+        for one in assumptions:
+            self.consulted |= one.group
+            assumed &= one.keeps
+            if not assumed & one.group:
+                self.depends |= one.group
+                return
+
+    def rely(self) -> None:
+        """Note that something was left out since something else assumes no more."""
+        self.depends |= self.consulted
 
     def lag(self, channel: Channel) -> int:
         """How many messages that last a channel owes besides those that it is known to show."""
@@ -179,7 +226,7 @@ class Lookahead:
 
     def _leads_to_openings(self, explanation: Explanation) -> bool:
         """Whether the state may come to be shown as streams begin that nobody has opened yet."""
-        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        cut = self._cut
         for first, called, call, message in self._openings:
             if first < self.at:
                 continue
@@ -192,73 +239,95 @@ class Lookahead:
 
     def _leads_to_successes(self, explanation: Explanation) -> bool:
         """Whether the next calls that are known to succeed may come to."""
-        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        cut = self._cut
         for call in explanation.calls:
             if call.done is None and not call.ready and self._answered.get(call.name, cut) < cut:
                 answer, names = self.answers[call.name]
                 if answer.code == OK and not self._succeeds(explanation, call.request, call.args, names):
                     return False
         first = bisect.bisect_left(self._sent, self.at)
-        return all(
-            self._answered[call] >= cut or self._succeeds(explanation, request, args, self.answers[call][1])
-            for _, call, request, args in self._successes[first : first + NEXT_CALLS]
-        )
+        key = (explanation.state, explanation.names, first, cut)
+        found = self._led.get(key)
+        if found is None:
+            self._make_room(explanation)
+            found = self._led[key] = all(
+                self._answered[call] >= cut or self._succeeds(explanation, request, args, self.answers[call][1])
+                for _, call, request, args in self._successes[first : first + NEXT_CALLS]
+            )
+        return found
 
     def _succeeds(self, explanation: Explanation, request: Hashable, args: Names, names: Names) -> bool:
         succeeds = self.spec.succeeds
         return succeeds is None or succeeds(explanation.state, explanation.names, request, args, names)
 
-    def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
-        positions, messages = self._messages.get(channel.name, _NO_MESSAGES)
-        cut = next((position for position in self._beyond if position >= self.at), self._horizon)
-        end = min(self._ended.get(channel.name, cut), cut)
+    @property
+    def _cut(self) -> int:
+        """Up to where it is known what comes: to the next event that the system does not explain, or the horizon."""
+        if self._at_cut != self.at:
+            self._at_cut = self.at
+            self._found_cut = next((position for position in self._beyond if position >= self.at), self._horizon)
+        return self._found_cut
+
+    def _stretch(self, channel: int) -> _Stretch:
+        """What is known of a channel with that name from now on."""
+        key = channel, self.at
+        found = self._stretches.get(key)
+        if found is not None:
+            return found
+        positions, messages = self._messages.get(channel, _NO_MESSAGES)
+        cut = self._cut
+        end = min(self._ended.get(channel, cut), cut)
         first, last = bisect.bisect_left(positions, self.at), bisect.bisect_left(positions, end)
         quiet, quieter = bisect.bisect_left(self._settled, self.at), bisect.bisect_left(self._settled, end)
-        if first >= last and quiet >= quieter:
-            # What is owed to a stream that ends is never shown, and nobody minds.
-            over = end < cut or (self._last and cut == self._horizon)
-            silent = Channel(channel.name, channel.topic, channel.last) if over and channel.owed else channel
-            return silent, None, over
-        delivery = self.spec.delivery(channel.topic)
-        allowed = tuple(one and bool(meet(explanation.assumed, (one,))) for one in (delivery.skips, delivery.repeats))
-        key = (channel, explanation.state, explanation.names, explanation.gone, first, quiet, end, allowed)
-        if key not in self._passed:
-            self._make_room(explanation)
-            if quiet < quieter:
-                last = bisect.bisect_left(positions, self._settled[quiet], first)
-            due = messages[first:last]
-            rests = quiet < quieter and len(due) <= NEXT
-            before = messages[first - 1] if first else self._latest.get(channel.name)
-            over = end < cut or (self._last and cut == self._horizon)
-            over = over and len(due) <= NEXT and quiet == quieter
-            self._passed[key] = self._leading(explanation, channel, due[:NEXT], before, rests=rests, over=over)
-        return self._passed[key]
+        over = end < cut or (self._last and cut == self._horizon)
+        nothing = first >= last and quiet >= quieter
+        if quiet < quieter:
+            last = bisect.bisect_left(positions, self._settled[quiet], first)
+        due = messages[first : min(last, first + NEXT)]
+        found = self._stretches[key] = self._known.setdefault(
+            (channel, first, quiet, end),
+            _Stretch(
+                due,
+                messages[first - 1] if first else self._latest.get(channel),
+                nothing=nothing,
+                rests=quiet < quieter and last - first <= NEXT,
+                over=over and (nothing or (last - first <= NEXT and quiet == quieter)),
+            ),
+        )
+        return found
 
-    def _leading(  # noqa: PLR0913 - what is known of a channel
-        self,
-        explanation: Explanation,
-        channel: Channel,
-        messages: Sequence[Message],
-        before: Message | None,
-        *,
-        rests: bool,
-        over: bool,
-    ) -> Narrowed | None:
+    def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
+        stretch = self._stretch(channel.name)
+        if stretch.nothing:
+            # What is owed to a stream that ends is never shown, and nobody minds.
+            silent = stretch.over and channel.owed
+            return Channel(channel.name, channel.topic, channel.last) if silent else channel, None, stretch.over
+        delivery = self.spec.delivery(channel.topic)
+        for one in (delivery.skips, delivery.repeats):
+            self.depends |= one.group if one else 0
+        assumed = explanation.assumed
+        skips = delivery.skips is not None and bool(meet(assumed, (delivery.skips,)))
+        repeats = delivery.repeats is not None and bool(meet(assumed, (delivery.repeats,)))
+        key = channel, skips, repeats
+        found = stretch.led.get(key)
+        if found is None:
+            self._make_room(explanation)
+            found = stretch.led[key] = self._leading(channel, stretch, skips=skips, repeats=repeats)
+        narrowed, shows = found
+        return narrowed if shows is None or self._foresees(explanation, shows) else None
+
+    def _leading(self, channel: Channel, stretch: _Stretch, *, skips: bool, repeats: bool) -> _Led:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
 
         Args:
-            before: what the channel has shown last, if it is known.
-            rests: whether everything settles after the messages.
-            over: whether nothing else is shown after the messages.
+            skips: whether the channel may pass over what it owes.
+            repeats: whether it may show again what it has shown.
         """
-        delivery = self.spec.delivery(channel.topic)
-        owed, last = channel.owed, channel.last
-        repeats = bool(delivery.repeats and meet(explanation.assumed, (delivery.repeats,)))
-        again = repeats or delivery.echoes is not None
-        skips = bool(delivery.skips and meet(explanation.assumed, (delivery.skips,)))
+        owed, last, before = channel.owed, channel.last, stretch.before
+        again = repeats or self.spec.delivery(channel.topic).echoes is not None
         passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
         places = {0}
-        for position, message in enumerate(messages):
+        for position, message in enumerate(stretch.due):
             following: set[int] = set()
             for place in places:
                 for index in range(place, len(owed)):
@@ -270,19 +339,23 @@ class Lookahead:
                 following |= places
             if not following:
                 # What is owed before it has to go unsaid then, and the message to show what is to come.
-                if not all(passable[max(places) :]) or not self._foresees(explanation, message):
-                    return None
-                return (channel, None, False) if position or not owed else self._passed_over(channel)
+                if not all(passable[max(places) :]):
+                    return None, None
+                return ((channel, None, False) if position or not owed else self._passed_over(channel)), message
             places, before = following, message
         shown_by = max(places)
-        if over and shown_by and not owed[shown_by - 1].stays and not self._may_go_unsaid(channel, shown_by - 1):
+        if (
+            stretch.over
+            and shown_by
+            and not owed[shown_by - 1].stays
+            and not self._may_go_unsaid(channel, shown_by - 1)
+        ):
             # The last message shows this one, or one before it. One that comes later would be shown only where this one
             # is skipped, and whoever may skip it may skip those that are dropped as well.
-            return Channel(channel.name, channel.topic, last, owed[:shown_by]), None, True
+            return (Channel(channel.name, channel.topic, last, owed[:shown_by]), None, True), None
         left = [one for one in owed[shown_by:] if not one.passing]
-        if not rests or before is None or not left or self._may_show(left[-1], before):
-            return channel, None, False
-        return (channel, None, False) if self._foresees(explanation, before) else None
+        settles = stretch.rests and before is not None and left and not self._may_show(left[-1], before)
+        return (channel, None, False), before if settles else None
 
     def _may_go_unsaid(self, channel: Channel, index: int) -> bool:
         """Whether a channel may pass over a message that it owes, though it has to show all that can be told."""
@@ -313,8 +386,10 @@ class Lookahead:
     def _make_room(self, explanation: Explanation) -> None:
         """Count what is going to be remembered of an explanation; forget the rest where that becomes too much."""
         if self._room.overflows(explanation_bytes(explanation)):
-            self._passed.clear()
+            self._led.clear()
             self._shows.clear()
+            for stretch in self._known.values():
+                stretch.led.clear()
 
     def _foresees(self, explanation: Explanation, message: Message) -> bool:
         """Whether the state may come to be shown so."""

@@ -8,17 +8,19 @@ effect, the state is the same, and no more is assumed. A `Lookahead` leaves out 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from attrs import define, field
 
-from missionfsm.kernel.history import Called
-from missionfsm.oracle.explanation import Explanation
+from missionfsm.kernel.history import Called, Received
+from missionfsm.kernel.readings import UNCONSTRAINED, choose
+from missionfsm.kernel.transport import REDELIVERED
+from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead, Message
 from missionfsm.oracle.memory import MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
-from missionfsm.oracle.successors import ExhaustedError, Seen, Successor, Successors
+from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, point, weight
 from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
@@ -30,6 +32,23 @@ EFFORT = 300
 """How much of the budget goes into finding more than one explanation of an event at once, the first time."""
 
 
+PUT_OFF = 64
+"""How many explanations under unusual readings are put off at once."""
+
+
+@define(eq=False, slots=True)
+class _Tried:
+    """An explanation that was followed, and leads nowhere.
+
+    Attributes:
+        depends: the bits of the ambiguities on which that depends; all of them while it is not known.
+    """
+
+    assumed: int
+    lost: Lost
+    depends: int = UNCONSTRAINED
+
+
 @define(eq=False)
 class Layer:
     """Some explanations of all events before one, and those after it that were not looked at yet.
@@ -39,6 +58,8 @@ class Layer:
         more: what else explains the event as well; None where that is all.
         begun: whether the event was looked at; once it was too dear to look at all of it, it is looked at anew.
         effort: how much of the budget goes into finding more than one explanation at once.
+        tried: what is remembered of the explanations.
+        depends: the bits of the ambiguities on which it has depended what comes of them.
     """
 
     explanations: tuple[Explanation, ...]
@@ -46,6 +67,8 @@ class Layer:
     more: Iterator[Successor] | None = field(default=None, repr=False)
     begun: bool = False
     effort: int = EFFORT
+    tried: tuple[_Tried, ...] = field(default=(), repr=False)
+    depends: int = 0
 
     @property
     def unfinished(self) -> bool:
@@ -92,6 +115,7 @@ class Search:
             requests.update(call.request for call in one.calls)
             requests.update(request for request, *_ in one.lost)
         self._operations = frozenset(map(transitions.spec.request_operation, requests))
+        self._defaults = choose(transitions.spec.ambiguities)
         self._budget = budget
         self._memory = memory
         self._bytes = 0
@@ -121,7 +145,7 @@ class Search:
         self._bytes = 0
         start = (self._ahead.narrowed(one) for one in self._start)
         self.layers = [Layer(tuple(one for one in start if one))]
-        self._tried: list[Seen] = [{} for _ in range(horizon + 1)]
+        self._tried: list[dict[Place, list[_Tried]]] = [{} for _ in range(horizon + 1)]
         self.successors.reset()
         return self._spending(self._explain)
 
@@ -137,7 +161,15 @@ class Search:
 
     def _enter(self, found: tuple[Successor, ...]) -> None:
         rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
-        self.layers.append(Layer(tuple(one.explanation for one in found), rules))
+        self.layers.append(Layer(tuple(one.explanation for one in found), rules, tried=tuple(self._entering)))
+
+    def _leave(self) -> None:
+        """Go back from explanations that lead nowhere, and remember on which readings that depends."""
+        failed = self.layers.pop()
+        for one in failed.tried:
+            one.depends = failed.depends
+        if self.layers:
+            self.layers[-1].depends |= failed.depends
 
     def _explain(self) -> bool:
         layers = self.layers
@@ -151,7 +183,7 @@ class Search:
                 self._enter(found)
             else:
                 self.reached = max(self.reached, position)
-                layers.pop()
+                self._leave()
         return True
 
     def _next(self, here: Layer, position: int) -> tuple[Successor, ...]:
@@ -161,7 +193,11 @@ class Search:
             here.begun = True
             kind, *what = self._symbols[position]
             explains = self.transitions.beyond if position in self.beyond else self.transitions.explained
-            here.more = explains(here.explanations, kind, *what)
+            here.more = self._usual_first(here.explanations, explains(here.explanations, kind, *what))
+            if self._reckons_at(position):
+                here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
+        ahead.consulted = ahead.depends = 0
+        self._entering: list[_Tried] = []
         found: list[Successor] = []
         begun = successors.spent
         try:
@@ -170,7 +206,7 @@ class Search:
                     ahead.at = position + 1
                     narrow = ahead.narrowed(one.explanation)
                     ahead.at = position
-                    if narrow and not successors.outdone(tried, narrow):
+                    if narrow and not self._outdone(tried, narrow):
                         self._remember(narrow)
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
                         successors.most = min(successors.budget, begun + here.effort)
@@ -185,7 +221,51 @@ class Search:
             here.begun, here.effort = False, here.effort * 4
         finally:
             successors.most = successors.budget
+            here.depends |= ahead.depends
         return prune(successors, found)
+
+    def _usual_first(self, before: Sequence[Explanation], found: Iterable[Successor]) -> Iterator[Successor]:
+        """What was found, but first what every ambiguity may be read in its default way for, as far as before.
+
+        Most implementations read most of them so. What is put off is bounded: the rest of it may be dear to find.
+        """
+        successors, usual = self.successors, 0
+        for explanation in before:
+            usual |= explanation.assumed & self._defaults
+        off: list[Successor] = []
+        begun = successors.spent
+        for one in found:
+            if usual & ~one.explanation.assumed:
+                off.append(one)
+            else:
+                yield one
+                begun = successors.spent
+            if len(off) >= PUT_OFF or (off and successors.spent - begun > EFFORT):
+                yield from off
+                off.clear()
+                begun = successors.spent
+        yield from off
+
+    def _reckons_at(self, position: int) -> bool:
+        """Whether something besides the system itself is asked for an event."""
+        spec, (kind, *what) = self.transitions.spec, self._symbols[position]
+        return position in self.beyond or spec.anywhere or spec.others or (kind is Received and REDELIVERED in what[2])
+
+    def _outdone(self, tried: dict[Place, list[_Tried]], explanation: Explanation) -> bool:
+        """Whether it leads nowhere since another one at the same point does not; notes it otherwise.
+
+        The other one had all the lost calls, and assumed no more of what that depends on.
+        """
+        self.successors.spend(weight(explanation))
+        others = tried.setdefault((self._ahead.state(explanation), *point(explanation)[1:]), [])
+        for one in others:
+            if not explanation.assumed & ~one.assumed & one.depends and within(explanation.lost, one.lost):
+                self._ahead.depends |= one.depends
+                return True
+        entry = _Tried(explanation.assumed, explanation.lost)
+        others.append(entry)
+        self._entering.append(entry)
+        return False
 
     def _remember(self, explanation: Explanation) -> None:
         """Count an explanation that is going to be remembered. Raises ExhaustedError when it is too much."""

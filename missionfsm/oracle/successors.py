@@ -6,11 +6,12 @@ for one explanation at a time; `missionfsm.oracle.transition` puts it together w
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import UNCONSTRAINED, by_bit, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, meet
 from missionfsm.kernel.spec import Failure, Spec
 from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
 from missionfsm.kernel.terms import Refs, Request, State
@@ -132,7 +133,7 @@ class Successors:
         key = (state, request, refs)
         found = self._outcomes.get(key)
         if found is None:
-            found = self._possible(self.spec.outcomes(state, request, refs))
+            found = self._possible(state, self.spec.outcomes(state, request, refs))
             self._make_room(state, found)
             self._outcomes[key] = found
         return found
@@ -144,9 +145,17 @@ class Successors:
         if self.bytes > self._room:
             self.forget()
 
-    def _possible(self, steps: Iterable[Step]) -> tuple[Step, ...]:
-        """Those steps that do not contradict what everybody assumes."""
-        return tuple(step for step in steps if meet(self.assumed, step.assumes))
+    def _possible(self, state: State, steps: Iterable[Step]) -> tuple[Step, ...]:
+        """Those steps that do not contradict what everybody assumes.
+
+        Where the events are recorded, steps that nobody can tell apart become one; whoever chooses what is tried next
+        sees them as they are.
+        """
+        possible = (step for step in steps if meet(self.assumed, step.assumes))
+        indistinct = self.spec.abstraction.indistinct
+        if indistinct is None or self.live:
+            return tuple(possible)
+        return tuple(dict.fromkeys(step if step.after is state else indistinct(step) for step in possible))
 
     def effects(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
         """The outcomes of a request in a state that change something."""
@@ -173,7 +182,7 @@ class Successors:
         """What must happen before things have settled."""
         found = self._urgent.get(state)
         if found is None:
-            found = self._possible(self.spec.urgent(state))
+            found = self._possible(state, self.spec.urgent(state))
             self._make_room(state, found)
             self._urgent[state] = found
         return found
@@ -187,7 +196,7 @@ class Successors:
                 if drive.name not in self.driven:
                     for event in drive.by_itself:
                         steps += drive.steps(state, event, ())
-            found = self._possible(steps)
+            found = self._possible(state, steps)
             self._make_room(state, found)
             self._unseen[state] = found
         return found
@@ -199,7 +208,7 @@ class Successors:
             key = (state, focus(explanation))
             found = self._focused.get(key)
             if found is None:
-                found = self._possible(self.spec.silent_for(*key))
+                found = self._possible(state, self.spec.silent_for(*key))
                 self._make_room(state, found)
                 self._focused[key] = found
             yield from found
@@ -230,6 +239,18 @@ class Successors:
 
     # How one explanation goes on.
 
+    def meet(self, assumed: int, assumptions: Iterable[Assumption]) -> int:
+        """What is assumed once these are assumed as well; 0 when that is contradictory."""
+        assumptions = tuple(assumptions)
+        if self.ahead and assumptions:
+            self.ahead.consult(assumed, assumptions)
+        return meet(assumed, assumptions)
+
+    def rely(self) -> None:
+        """Something is left out since something else assumes no more."""
+        if self.ahead:
+            self.ahead.rely()
+
     def advance(
         self, explanation: Explanation, step: Step, given: Names = (), besides: int | None = None
     ) -> tuple[Explanation, Names] | None:
@@ -239,6 +260,8 @@ class Successors:
         """
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
+        if self.ahead and step.assumes:
+            self.ahead.consult(explanation.assumed, step.assumes)
         passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
         return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)
 
@@ -248,9 +271,14 @@ class Successors:
         calls = []
         for call in explanation.calls:
             if call.done is None and call.name != besides:
-                known = dict.fromkeys(call.ready)
-                known.update(dict.fromkeys(self._idle_answers(explanation, call)))
-                call = InFlight(call.name, call.request, call.args, tuple(known), call.done)  # noqa: PLW2901 - the same call, knowing more
+                known = tuple(dict.fromkeys((*call.ready, *self._idle_answers(explanation, call))))
+                if self.ahead and len(known) > 1:
+                    for one in known:
+                        self.ahead.consult(explanation.assumed, one.assumes)
+                    self.ahead.rely()
+                    known = _without_fussier(known, explanation.assumed)
+                if known != call.ready:
+                    call = InFlight(call.name, call.request, call.args, known, call.done)  # noqa: PLW2901 - the same call, knowing more
             calls.append(call)
         return explanation.but(calls=tuple(calls))
 
@@ -459,6 +487,8 @@ class Successors:
         others = seen.setdefault(key, [])
         for assumed, left in others:
             if explanation.assumed | assumed == assumed and within(explanation.lost, left):
+                if self.ahead and self.ahead.consulted & ~assumed:
+                    self.ahead.rely()
                 return True
         others.append((explanation.assumed, explanation.lost))
         return False
@@ -468,6 +498,18 @@ class Successors:
         self.spent += cost
         if self.spent > self.most:
             raise ExhaustedError
+
+
+def _without_fussier(ready: tuple[Ready, ...], assumed: int) -> tuple[Ready, ...]:
+    """Those answers that no other is as good as, in one order: one that is the same, and assumes no more."""
+    kept: list[tuple[int, Ready]] = []
+    for one in ready:
+        left = meet(assumed, one.assumes)
+        alike = [(other, known) for other, known in kept if (known.answer, known.names) == (one.answer, one.names)]
+        if left and not any(left | other == other for other, _ in alike):
+            fussier = [known for other, known in alike if other | left == left]
+            kept = [*((other, known) for other, known in kept if known not in fussier), (left, one)]
+    return tuple(one for _, one in sorted(kept, key=operator.itemgetter(0)))
 
 
 def weight(explanation: Explanation) -> int:

@@ -14,7 +14,7 @@ from attrs import evolve
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
-from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.step import Match, Mismatch, Step
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.transport import REDELIVERED
@@ -178,6 +178,8 @@ class TransitionFunction:
                 # Where the call may still take effect and nothing is assumed, this stands for all that was answered so.
                 if not any(one.lost != explanation.lost and one.assumed == explanation.assumed for one in failed):
                     undone.append(explanation)
+                else:
+                    self.successors.rely()
                 continue
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, answer, names):
@@ -199,7 +201,7 @@ class TransitionFunction:
         for failure in self.successors.failures(one, answer.code):
             if one.done and not failure.open_ended:
                 continue
-            assumed = meet(explanation.assumed, failure.assumes)
+            assumed = self.successors.meet(explanation.assumed, failure.assumes)
             if assumed:
                 calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
                 late = failure.open_ended and not one.done
@@ -213,12 +215,12 @@ class TransitionFunction:
         rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
         if call.done:
             for match in self.successors.agreements(call.done.answer, answer):
-                assumed = meet(rest.assumed, match.assumes)
+                assumed = self.successors.meet(rest.assumed, match.assumes)
                 for bound in self._bound(rest, answer, call.done.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), match.rules
         for ready in call.ready:
             for match in self.successors.agreements(ready.answer, answer):
-                assumed = meet(rest.assumed, (*ready.assumes, *match.assumes))
+                assumed = self.successors.meet(rest.assumed, (*ready.assumes, *match.assumes))
                 for bound in self._bound(rest, answer, ready.names, names) if assumed else ():
                     yield bound.but(assumed=assumed), ready.rules + match.rules
         if call.done:
@@ -233,7 +235,7 @@ class TransitionFunction:
     def _answered_by(  # noqa: PLR0913 - what an answer is made of
         self, where: Explanation, step: Step, match: Match, call: InFlight, answer: Answer, names: Names
     ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
-        assumed = meet(where.assumed, match.assumes)
+        assumed = self.successors.meet(where.assumed, match.assumes)
         if not assumed:
             return
         lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
@@ -276,7 +278,7 @@ class TransitionFunction:
         for explanation in explanations:
             echoes = self._echoed(explanation, channel)
             sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
-            assumed = 0 if sequence is None else meet(explanation.assumed, sequence)
+            assumed = 0 if sequence is None else self.successors.meet(explanation.assumed, sequence)
             if not assumed:
                 continue
             start = Successor(explanation.but(assumed=assumed))
@@ -348,12 +350,12 @@ class TransitionFunction:
         delivery = self.spec.delivery(channel.topic)
         repeats = delivery.echoes if echo else delivery.repeats
         if channel.last and repeats and again:
-            yield channel.last, channel.owed, meet(assumed, (repeats,))
+            yield channel.last, channel.owed, self.successors.meet(assumed, (repeats,))
         ways: tuple[int, ...] = (assumed,)
         for index, owed in enumerate(() if echo else channel.owed):
             left = channel.owed[index if owed.stays else index + 1 :]
             for way in ways:
-                yield owed, left, meet(way, (owed.only,)) if owed.only else way
+                yield owed, left, self.successors.meet(way, (owed.only,)) if owed.only else way
             ways = tuple(dict.fromkeys(after for way in ways for after in self._past(channel, owed, way)))
             if not ways:
                 return
@@ -364,8 +366,11 @@ class TransitionFunction:
             return (assumed,)
         same = self._unchanged(channel, owed, assumed)
         skips = self._skips(channel)
-        skipped = meet(assumed, (skips,)) if skips else 0
-        return same if assumed in same or not skipped else (*same, skipped)
+        if assumed in same:
+            self.successors.rely()
+            return same
+        skipped = self.successors.meet(assumed, (skips,)) if skips else 0
+        return (*same, skipped) if skipped else same
 
     def _skips(self, channel: Channel) -> Assumption | None:
         """Under what a channel may pass over what it owes; None if never."""
@@ -384,7 +389,7 @@ class TransitionFunction:
         matches = self.successors.matches(owed, last.looks)
         if isinstance(matches, Mismatch):
             return ()
-        return tuple(after for match in matches if (after := meet(assumed, match.assumes)))
+        return tuple(after for match in matches if (after := self.successors.meet(assumed, match.assumes)))
 
     def _shown(  # noqa: PLR0913 - what a message is made of
         self,
@@ -405,7 +410,7 @@ class TransitionFunction:
             if not assumption or isinstance(matches, Mismatch):
                 continue
             for match in matches:
-                agreed = meet(assumption, match.assumes)
+                agreed = self.successors.meet(assumption, match.assumes)
                 if not agreed:
                     continue
                 last = Owed(owed.view, owed.names, looks=self.spec.looks(owed.view, content))
@@ -459,7 +464,7 @@ class TransitionFunction:
                     assumes = self.spec.delivery(topic).ends.get(code)
                     if self.spec.transport and (assumes is None or self._lenient):
                         assumes = lenient.ends(code)
-                    assumed = meet(assumed, assumes) if assumes is not None else 0
+                    assumed = self.successors.meet(assumed, assumes) if assumes is not None else 0
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
@@ -517,7 +522,9 @@ class TransitionFunction:
                 rests = () if self.successors.urgent(here.state) else tuple(self._nothing_owed(here, loses=loses))
                 for rest in rests:
                     yield Successor(self._calmed(rest), successor.rules)
-                if here.assumed not in (rest.assumed for rest in rests):
+                if here.assumed in (rest.assumed for rest in rests):
+                    self.successors.rely()
+                else:
                     silent = self.successors.silent(here, focus=self._before_rest)
                     later += (Successor(one.explanation, successor.rules + one.rules) for one in silent)
             todo = later
@@ -581,7 +588,7 @@ class TransitionFunction:
             if due:
                 told = tuple(dict.fromkeys(after for before in ways for after in self._told(channel, due, before)))
                 if loses and not told and channel.last:
-                    told = tuple(after for before in ways if (after := meet(before, (lenient.LOSES,))))
+                    told = tuple(after for before in ways if (after := self.successors.meet(before, (lenient.LOSES,))))
                     lost.add(position)
                 ways = told
         if ways:
@@ -601,7 +608,9 @@ class TransitionFunction:
         for owed in due:
             ways = tuple(after for before in ways for after in self._unchanged(channel, owed, before))
         skips = self.spec.delivery(channel.topic).skips
-        skipped = meet(assumed, (skips,)) if skips and assumed not in ways else 0
+        if assumed in ways:
+            self.successors.rely()
+        skipped = self.successors.meet(assumed, (skips,)) if skips and assumed not in ways else 0
         return (*ways, *self._unchanged(channel, due[-1], skipped)) if skipped else ways
 
 

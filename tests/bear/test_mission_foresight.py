@@ -22,7 +22,7 @@ from missionfsm.bear.mission.stream import Listing, listing
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.step import Step
+from missionfsm.kernel.step import Emission, Step
 from missionfsm.oracle import window
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
@@ -132,6 +132,23 @@ def test_what_has_ended_only_counts(seed: int) -> None:
     assert forgets is not None
     for (robot, _), _ in lives(random, 25):
         assert goes_on(robot) == goes_on(forgets(robot))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_where_a_mission_has_ended_nobody_can_tell(seed: int) -> None:
+    """Without the goal at which a mission has ended, all goes on in the same ways, and the same messages show it."""
+    random = Random(seed)
+    choice = choose(SPEC.ambiguities, readings_at_random(seed))
+    indistinct = SPEC.abstraction.indistinct
+    assert indistinct is not None
+    for (robot, _), _ in lives(random, 25):
+        done = tuple(evolve(one, goal=random.randrange(-1, len(one.goals) + 1)) for one in robot.done)
+        ended = evolve(robot, done=done)
+        alike = indistinct(Step(ended, emits=(Emission("status", listing(ended)),)))
+        shown = content(listing(ended), choice)
+        assert (alike.after, goes_on(alike.after)) == (indistinct(Step(robot)).after, goes_on(ended))
+        assert indistinct(alike) is alike
+        assert SPEC.matches(alike.emits[0].view, shown) == SPEC.matches(listing(ended), shown)
 
 
 ORDERS = {

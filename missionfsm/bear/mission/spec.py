@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import operator
 from collections.abc import Iterator, Mapping
 
 from attrs import evolve
@@ -43,6 +44,7 @@ from missionfsm.bear.mission.state import (
     apply,
     renumber,
     situation,
+    without_place,
 )
 from missionfsm.bear.mission.stream import (
     ALL_LISTED,
@@ -114,6 +116,23 @@ def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
 def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
     after, names, emits, _ = _edited(robot, edit)
     return Step(after, names=names, emits=emits, assumes=assumes, rules=rules)
+
+
+def _indistinct(step: Step) -> Step:
+    """The step without the goals at which missions have ended."""
+    robot = step.after
+    done = without_place(robot.done)
+    emits = tuple(map(_without_place, step.emits))
+    if done is robot.done and all(map(operator.is_, emits, step.emits)):
+        return step
+    return evolve(step, after=robot if done is robot.done else evolve(robot, done=done), emits=emits)
+
+
+def _without_place(emission: Emission) -> Emission:
+    missions = without_place(emission.view.missions)
+    if missions is emission.view.missions:
+        return emission
+    return evolve(emission, view=evolve(emission.view, missions=missions))
 
 
 WAIVERS = (
@@ -388,6 +407,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
             phase=lambda robot: robot.active and robot.active.state,
             place=target,
             forget_ended=forget_ended,
+            indistinct=_indistinct,
             shortcut=Shortcut,
         ),
         used=lambda world: Robot(world, fresh=False),

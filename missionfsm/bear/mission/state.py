@@ -160,6 +160,13 @@ class World:
     blocked: bool = False
 
 
+def without_place(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
+    """The missions, those that have ended without the goal at which they did: no message has to show it."""
+    if all(one.goal == 0 or one.state not in ENDED for one in missions):
+        return missions
+    return tuple([evolve(one, goal=0) if one.goal and one.state in ENDED else one for one in missions])
+
+
 @value
 class Fault:
     """The next call that would succeed and documents `status` answers with it; `applied`: and takes effect."""

@@ -179,10 +179,11 @@ Assumed = tuple[Assumption, ...]
 
 
 class _WrongError(Exception):
-    """The message cannot show the view."""
+    """The message cannot show the view, or a mission of it."""
 
-    def __init__(self, rule: Rule, says: str) -> None:
-        self.mismatch = Mismatch(rule.id, says)
+    def __init__(self, rule: str, says: str) -> None:
+        super().__init__()
+        self.mismatch = Mismatch(rule, says)
 
 
 def matches(view: Listing, content: Seen | Malformed) -> tuple[Match, ...] | Mismatch:
@@ -213,37 +214,57 @@ def _placeholder(view: Listing, content: Seen) -> Assumed:
     """AM-35, AM-36: an empty list may be shown as one mission in STATE_DEFAULT without an id."""
     only = content.states.missions[0]
     if len(content.states.missions) > 1 or content.named[0] or only.state != State.STATE_DEFAULT or only.goals:
-        raise _WrongError(ALL_LISTED, f"{len(content.states.missions)} missions are listed; the robot has none")
+        raise _WrongError(ALL_LISTED.id, f"{len(content.states.missions)} missions are listed; the robot has none")
     index = content.states.current_mission_index
     if index not in (-1, 0):
-        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected -1 or 0")
+        raise _WrongError(CURRENT.id, f"current_mission_index is {index}, expected -1 or 0")
     if only.current_goal_index not in (-1, 0):
-        raise _WrongError(GOAL_INDEX, f"mission 0 has current_goal_index {only.current_goal_index} and no goals")
+        raise _WrongError(GOAL_INDEX.id, f"mission 0 has current_goal_index {only.current_goal_index} and no goals")
     if any(status for _, status in _given(only)):
-        raise _WrongError(FEEDBACK, "mission 0 waits and has feedback")
+        raise _WrongError(FEEDBACK.id, "mission 0 waits and has feedback")
     return (AM_36["b"] if view.fresh else AM_35["c"],)
 
 
 def _listed(view: Listing, content: Seen) -> Assumed:
     shown = content.states.missions
     if len(shown) != len(view.missions):
-        raise _WrongError(ALL_LISTED, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
+        raise _WrongError(ALL_LISTED.id, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
     if not all(content.named):
-        raise _WrongError(ALL_LISTED, f"mission {content.named.index(False)} has no id")
+        raise _WrongError(ALL_LISTED.id, f"mission {content.named.index(False)} has no id")
     assumes: list[Assumption] = []
     if not view.missions:
         assumes.append(AM_36["a", "c"] if view.fresh else AM_35["a"])
+    pointed = content.states.current_mission_index
     for index, (mission, message) in enumerate(zip(view.missions, shown, strict=True)):
-        where = f"mission {index}"
-        assumes += _state(view, index, message, where, pointed=content.states.current_mission_index == index)
-        _goals(mission, message, where)
-        _goal_index(mission, message, where)
-        assumes += _feedback(view, mission, message, where, bare=content.bare[index])
-        assumes += _type(view, mission, message, where)
+        found = _one_listed(view.family, mission, message, pointed=pointed == index, bare=content.bare[index])
+        if isinstance(found, Mismatch):
+            raise _WrongError(found.rule, f"mission {index} {found.says}")
+        assumes += found
     # The index is judged last: where the states are wrong, it follows them.
     assumes += _current(view, content.states.current_mission_index)
     assumes += _first_start(view)
     return tuple(dict.fromkeys(assumes))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _one_listed(
+    family: Family, mission: Mission, message: MissionState, *, pointed: bool, bare: bool
+) -> Assumed | Mismatch:
+    """What is assumed where a message shows a mission so, or what is wrong with it.
+
+    Lists come again and again with one mission that has changed, so that this is remembered.
+
+    Args:
+        pointed: whether the current mission index is that of the mission.
+        bare: whether its feedback came as a bare enum.
+    """
+    try:
+        assumes = _state(mission, message, pointed=pointed)
+        _goals(mission, message)
+        _goal_index(mission, message)
+        return (*assumes, *_feedback(family, mission, message, bare=bare), *_type(family, mission, message))
+    except _WrongError as wrong:
+        return wrong.mismatch
 
 
 def _first_start(view: Listing) -> Assumed:
@@ -268,19 +289,19 @@ def _current(view: Listing, index: int) -> Assumed:
     allowed = current_index(view)
     if index not in allowed:
         values = " or ".join(str(value) for value in allowed)
-        raise _WrongError(CURRENT, f"current_mission_index is {index}, expected {values}")
+        raise _WrongError(CURRENT.id, f"current_mission_index is {index}, expected {values}")
     return allowed[index]
 
 
-def _state(view: Listing, index: int, message: MissionState, where: str, *, pointed: bool) -> Assumed:
-    state = view.missions[index].state
+def _state(mission: Mission, message: MissionState, *, pointed: bool) -> Assumed:
+    state = mission.state
     if state is not State.STATE_DEFAULT:
         if message.state != state:
-            raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected {state.name}")
+            raise _WrongError(STATE.id, f"is {_name(message.state)}, expected {state.name}")
         return ()
     letters = waiting_as(pointed=pointed).get(message.state)
     if letters is None:
-        raise _WrongError(STATE, f"{where} is {_name(message.state)}, expected STATE_DEFAULT since it waits")
+        raise _WrongError(STATE.id, f"is {_name(message.state)}, expected STATE_DEFAULT since it waits")
     return (AM_08[letters],)
 
 
@@ -325,12 +346,12 @@ def _rounded(goal: Goal) -> Hashable:
     return tuple(float(f"{number:.5g}") for number in numbers)
 
 
-def _goals(mission: Mission, message: MissionState, where: str) -> None:
+def _goals(mission: Mission, message: MissionState) -> None:
     if mission.kind is Kind.RETURN:
         return
     if mission.kind is Kind.CHARGE:
         if len(message.goals) > 1:
-            raise _WrongError(GOALS, f"{where} has {len(message.goals)} goals, expected its own place at most")
+            raise _WrongError(GOALS.id, f"has {len(message.goals)} goals, expected its own place at most")
         return
     wanted = mission.goals
     if RETURN_POINT in wanted and len(message.goals) == len(wanted):
@@ -338,13 +359,13 @@ def _goals(mission: Mission, message: MissionState, where: str) -> None:
             any_one if goal == RETURN_POINT else goal for goal, any_one in zip(wanted, message.goals, strict=True)
         )
     if not _same_goals(wanted, message.goals):
-        raise _WrongError(GOALS, f"{where} has the goals {_told(message.goals)}, expected {_told(wanted)}")
+        raise _WrongError(GOALS.id, f"has the goals {_told(message.goals)}, expected {_told(wanted)}")
 
 
 def has_goals(mission: Mission, message: MissionState) -> bool:
     """Whether a message lists the goals of a mission."""
     try:
-        _goals(mission, message, "")
+        _goals(mission, message)
     except _WrongError:
         return False
     return True
@@ -375,14 +396,14 @@ def _told(goals: tuple[Goal, ...]) -> str:
     return "[" + ", ".join(str(goal) for goal in goals) + "]"
 
 
-def _goal_index(mission: Mission, message: MissionState, where: str) -> None:
+def _goal_index(mission: Mission, message: MissionState) -> None:
     index, last = message.current_goal_index, max(len(message.goals), len(mission.goals))
     active = mission.state in (State.STATE_RUNNING, State.STATE_PAUSED)
     if active and mission.kind not in GOALLESS and mission.goal != NOT_CHOSEN:
         if index != mission.goal:
-            raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, expected {mission.goal}")
+            raise _WrongError(GOAL_INDEX.id, f"has current_goal_index {index}, expected {mission.goal}")
     elif not -1 <= index <= last:
-        raise _WrongError(GOAL_INDEX, f"{where} has current_goal_index {index}, outside of its goals")
+        raise _WrongError(GOAL_INDEX.id, f"has current_goal_index {index}, outside of its goals")
 
 
 MEMBERS: Mapping[Family | None, str] = {
@@ -393,21 +414,21 @@ MEMBERS: Mapping[Family | None, str] = {
 }
 
 
-def _feedback(view: Listing, mission: Mission, message: MissionState, where: str, *, bare: bool) -> Assumed:
+def _feedback(family: Family, mission: Mission, message: MissionState, *, bare: bool) -> Assumed:
     given = _given(message)
     if not given:
         return ()
     name, status = given[0]
     if not isinstance(status, BaseStatus | FamilyStatus):
-        raise _WrongError(FEEDBACK, f"{where} has {name} {status}, which is not documented")
+        raise _WrongError(FEEDBACK.id, f"has {name} {status}, which is not documented")
     if mission.state is State.STATE_DEFAULT and status:
-        raise _WrongError(FEEDBACK, f"{where} waits and has feedback")
+        raise _WrongError(FEEDBACK.id, "waits and has feedback")
     assumes: list[Assumption] = []
-    own, robots = MEMBERS[FAMILY[mission.kind]], MEMBERS[view.family]
+    own, robots = MEMBERS[FAMILY[mission.kind]], MEMBERS[family]
     if mission.kind not in GOALLESS and own != robots and name in (own, robots):
         assumes.append(AM_50_MEMBER["c" if name == own else "d"])
     elif name not in (own, robots):
-        raise _WrongError(FEEDBACK, f"{where} has {name}, expected {own}")
+        raise _WrongError(FEEDBACK.id, f"has {name}, expected {own}")
     if name != "base_feedback":
         assumes.append(AM_50_SHAPE["b" if bare else "a"])
     return tuple(assumes)
@@ -420,24 +441,24 @@ def _given(message: MissionState) -> list[tuple[str, int]]:
     return [(name, member.status) for name, member in members if member is not None]
 
 
-def _type(view: Listing, mission: Mission, message: MissionState, where: str) -> Assumed:
+def _type(family: Family, mission: Mission, message: MissionState) -> Assumed:
     shown = message.mission_type or MissionType()
     if mission.kind in GOALLESS:
         return ()
     if mission.kind in AM_26:
         if shown.base_type is not None or shown.carti_type is not None:
-            raise _WrongError(TYPE, f"{where} has a type of another family")
+            raise _WrongError(TYPE.id, "has a type of another family")
         number = shown.servi_type or ServiType.SERVI_TYPE_UNKNOWN
         documented = isinstance(number, ServiType)
         return (AM_26[mission.kind]["a" if not number else "c" if documented else "b"],)
     expected = TYPES[mission.kind]
     if shown in expected:
-        return (AM_51[part_of(mission.kind)]["a"],) if (mission.kind, view.family) in FAMILY_TYPES else ()
-    if shown == FAMILY_TYPES.get((mission.kind, view.family)):
+        return (AM_51[part_of(mission.kind)]["a"],) if (mission.kind, family) in FAMILY_TYPES else ()
+    if shown == FAMILY_TYPES.get((mission.kind, family)):
         return (AM_51[part_of(mission.kind)]["b"],)
     if mission.kind in (Kind.SERVI_DELIVERY, Kind.SERVI_DELIVERY_PATROL) and shown == MissionType():
         return ()
-    raise _WrongError(TYPE, f"{where} has {_type_name(shown)}, expected {_type_name(expected[0])}")
+    raise _WrongError(TYPE.id, f"has {_type_name(shown)}, expected {_type_name(expected[0])}")
 
 
 def _type_name(shown: MissionType) -> str:
@@ -449,4 +470,9 @@ def _type_name(shown: MissionType) -> str:
 
 def without_ids(states: MissionStates) -> MissionStates:
     """The message with its mission ids taken out."""
-    return evolve(states, missions=tuple(evolve(one, mission_id="") for one in states.missions))
+    return evolve(states, missions=tuple(map(_without_id, states.missions)))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _without_id(mission: MissionState) -> MissionState:
+    return evolve(mission, mission_id="")

@@ -314,7 +314,7 @@ class MissionType:
     carti_type: CartiType | None = member("type")
 
 
-@frozen
+@frozen(cache_hash=True)
 class MissionState:
     """One listed mission."""
 

@@ -320,7 +320,24 @@ def unknown_fields(kind: type, value: object) -> tuple[str, ...]:
             continue
         declared: Any = attribute.type
         inner = _message_of(declared)
-        if inner is not None:
-            items = content if isinstance(content, list) else [content]
-            found += (f"{name}.{path}" for item in items for path in unknown_fields(inner, item))
+        if inner is not None and isinstance(content, list):
+            found += (f"{name}.{path}" for item in content for path in _unknown_of_item(inner, item))
+        elif inner is not None:
+            found += (f"{name}.{path}" for path in unknown_fields(inner, content))
     return tuple(found)
+
+
+_ITEMS: dict[tuple[type, str], tuple[str, ...]] = {}
+"""The unknown fields of items of lists, by their text: lists come again and again with one item more."""
+
+
+def _unknown_of_item(kind: type, item: object) -> tuple[str, ...]:
+    """See `unknown_fields`, whose answers for items of lists are remembered."""
+    key = kind, repr(item)
+    found = _ITEMS.get(key)
+    if found is None:
+        found = unknown_fields(kind, item)
+        if len(_ITEMS) >= MAX_KNOWN:
+            _ITEMS.clear()
+        _ITEMS[key] = found
+    return found

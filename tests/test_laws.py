@@ -84,8 +84,8 @@ class Lab:
         self.spec: Spec = self.system.spec
         self.worlds = self.system.alphabet({}, BOUNDS).worlds
         alphabet = self.system.alphabet(self.worlds[0], BOUNDS)
-        self.plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
-        self.everything = Labels.of(self.system, alphabet.inputs, alphabet.drives)
+        self.plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        self.everything = Labels.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
         self._near: dict[State, list[Step]] = {}
         self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
 
@@ -181,10 +181,10 @@ def test_what_ties_the_calls_of_a_reading_is_written(lab: Lab) -> None:
             calls = taken.step.answer is not None
             name = lab.spec.request_operation(taken.request) if calls else taken.request.name
             for one in taken.step.assumes:
-                about[one.of].add(name)
+                about[one.ambiguity].add(name)
     for rule in lab.spec.all_rules:
-        if rule.under is not None and rule.code is not None:
-            about[rule.under.of].add(rule.id.split("/")[1])
+        if rule.assumes is not None and rule.code is not None:
+            about[rule.assumes.ambiguity].add(rule.id.split("/")[1])
     page = (SPECS / f"{lab.system.name.replace('.', '-')}.md").read_text(encoding="utf-8")
     tied = [text.partition("\n\n")[0] for text in page.split("*Tied:* ")[1:]]
     several = [one.id for one, names in about.items() if len(names) > 1]
@@ -304,7 +304,7 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
     for number, world in enumerate(lab.worlds):
         bounds = Bounds(2 if decided or number == 0 else 1, goals=1, batch=2)
         alphabet = lab.system.alphabet(world, bounds)
-        labels = Labels.of(lab.system, alphabet.core_inputs, alphabet.core_drives)
+        labels = Labels.from_alphabet(lab.system, alphabet.core_inputs, alphabet.core_drives)
         start = lab.start(world)
         fast = reachable(lab.spec, start, labels, bounds.size, assumed)
         assert set(fast) == set(reachable(slow, start, labels, bounds.size, assumed))
@@ -455,8 +455,8 @@ found = system(sys.argv[1])
 bounds = Bounds(1, goals=2, batch=1)
 (world, *_) = found.alphabet({}, bounds).worlds
 alphabet = found.alphabet(world, bounds)
-plain = Labels.of(found, alphabet.core_inputs, alphabet.core_drives)
-everything = Labels.of(found, alphabet.inputs, alphabet.drives)
+plain = Labels.from_alphabet(found, alphabet.core_inputs, alphabet.core_drives)
+everything = Labels.from_alphabet(found, alphabet.inputs, alphabet.drives)
 start = found.spec.initial(found.codec.world(world))
 ledger = hashlib.sha256()
 most = max(1, found.spec.names(start))

@@ -136,7 +136,7 @@ def test_every_ambiguity_concerns_a_clause(page: Page) -> None:
     unsaid = [
         rule.id
         for rule in page.system.spec.all_rules
-        if rule.under and not any(base(rule.under.of.id) in clause.entries for clause in by_clause[rule.id])
+        if rule.assumes and not any(base(rule.assumes.ambiguity.id) in clause.entries for clause in by_clause[rule.id])
     ]
     assert unsaid == []
 

@@ -29,15 +29,15 @@ def the_lamp_is_burnt_out(state: str, _: str) -> bool:
     return state == "burnt out"
 
 
-@rule(FAILED_PRECONDITION, cite=PAGE["Dim", "Errors"], under=DIM_OFF["a"])
+@rule(FAILED_PRECONDITION, cite=PAGE["Dim", "Errors"], assumes=DIM_OFF["a"])
 def the_lamp_is_off(state: str, _: str) -> bool:
     """The lamp is off, and only light can be dimmed (L-01)."""
     return state == "off"
 
 
 OPERATIONS = {
-    "Switch": Operation.of("Switch", NAME, PAGE["Switch"], refusals=[the_lamp_is_burnt_out]),
-    "Dim": Operation.of("Dim", NAME, PAGE["Dim"], refusals=[the_lamp_is_burnt_out, the_lamp_is_off]),
+    "Switch": Operation.with_rules("Switch", NAME, PAGE["Switch"], refusals=[the_lamp_is_burnt_out]),
+    "Dim": Operation.with_rules("Dim", NAME, PAGE["Dim"], refusals=[the_lamp_is_burnt_out, the_lamp_is_off]),
 }
 
 # What happens where nothing refuses.

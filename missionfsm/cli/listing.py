@@ -29,7 +29,7 @@ def rules(system: Which = None, json: AsJson = False) -> None:
     found: list[JSON] = []
     for spec in (one.spec for one in _systems(system)):
         for rule in spec.all_rules:
-            under = str(rule.under) if rule.under else None
+            under = str(rule.assumes) if rule.assumes else None
             found.append({"id": rule.id, "says": rule.says, "cite": str(rule.cite), "code": rule.code, "under": under})
             if not json:
                 say(f"{rule.id}\n    {rule.says} [{rule.cite}]" + (f" under {under}" if under else ""))

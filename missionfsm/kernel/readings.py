@@ -23,20 +23,20 @@ _bits = itertools.count()
 class Assumption:
     """That one ambiguity is read in one of some ways.
 
-    `keeps` has every bit but those of the readings ruled out; `group` has the bits of the whole ambiguity.
+    `kept` has every bit but those of the readings ruled out; `group` has the bits of the whole ambiguity.
     """
 
-    of: Ambiguity
-    keeps: int = field(repr=False)
+    ambiguity: Ambiguity
+    kept: int = field(repr=False)
     group: int = field(repr=False)
 
     @property
     def letters(self) -> tuple[str, ...]:
         """The readings that are left."""
-        return self.of.possible(self.keeps)
+        return self.ambiguity.possible(self.kept)
 
     def __str__(self) -> str:
-        return f"{self.of.id}={'|'.join(self.letters)}"
+        return f"{self.ambiguity.id}={'|'.join(self.letters)}"
 
 
 @frozen(eq=False)
@@ -130,7 +130,7 @@ UNCONSTRAINED = -1
 def meet(assumed: int, assumptions: Iterable[Assumption]) -> int:
     """What is assumed once these are assumed as well; 0 when that is contradictory."""
     for assumption in assumptions:
-        assumed &= assumption.keeps
+        assumed &= assumption.kept
         if not assumed & assumption.group:
             return 0
     return assumed

@@ -107,7 +107,7 @@ class Rule:
         cite: where the sentence stands.
         code: the gRPC status of a refusal; None for a promise.
         holds: the condition of a refusal.
-        under: the reading that makes the condition refuse, or None where no reading matters.
+        assumes: the reading that makes the condition refuse, or None where no reading matters.
         kind: what sort of check a refusal is, where readings rank the sorts (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
     """
@@ -118,7 +118,7 @@ class Rule:
     cite: Citation
     code: str | None = None
     holds: Condition | None = field(default=None, eq=False, repr=False)
-    under: Assumption | None = None
+    assumes: Assumption | None = None
     kind: str = ""
     id: str = ""
 
@@ -126,8 +126,8 @@ class Rule:
         """Whether the condition of a refusal holds."""
         return self.holds is not None and self.holds(state, call)
 
-    def of(self, *place: str) -> Rule:
-        """This rule, registered at a place: ``rule.of("bear.mission", "CreateMission")``."""
+    def registered(self, *place: str) -> Rule:
+        """This rule, registered at a place: ``rule.registered("bear.mission", "CreateMission")``."""
         middle = (*place, self.code) if self.code else place
         return evolve(self, id="/".join((*middle, self.name)))
 
@@ -141,19 +141,21 @@ def _words(function: Condition) -> tuple[str, str, str]:
     return function.__name__.strip("_").replace("_", "-"), says.strip(), " ".join(argues.split())
 
 
-def rule(code: str, *, cite: Citation, under: Assumption | None = None, kind: str = "") -> Callable[[Condition], Rule]:
+def rule(
+    code: str, *, cite: Citation, assumes: Assumption | None = None, kind: str = ""
+) -> Callable[[Condition], Rule]:
     """Make a refusal of a condition: its name is the name, its docstring the message and the argument.
 
     Args:
         code: the gRPC status that the document gives.
         cite: where it stands.
-        under: the reading that makes the condition refuse.
+        assumes: the reading that makes the condition refuse.
         kind: what sort of check it is, for readings that rank the sorts (shape before state, say).
     """
 
     def register(condition: Condition) -> Rule:
         name, says, argues = _words(condition)
-        return Rule(name, says, argues, cite, code, condition, under, kind)
+        return Rule(name, says, argues, cite, code, condition, assumes, kind)
 
     return register
 
@@ -186,7 +188,7 @@ class Operation:
     streaming: bool = False
 
     @classmethod
-    def of(  # noqa: PLR0913 - one line of a table
+    def with_rules(  # noqa: PLR0913 - one line of a table
         cls,
         name: str,
         system: str,
@@ -202,8 +204,8 @@ class Operation:
             name,
             system,
             cite,
-            tuple(rule.of(system, name) for rule in refusals),
-            tuple(rule.of(system, name) for rule in promises),
+            tuple(rule.registered(system, name) for rule in refusals),
+            tuple(rule.registered(system, name) for rule in promises),
             tuple(failures),
             streaming,
         )
@@ -237,12 +239,12 @@ def decide(holding: tuple[Rule, ...], rank: Ranking = unranked) -> tuple[Decisio
     A rule under a reading holds in those cases of its ambiguity alone; the cases are told apart only as far as the
     rules at hand do. Without any rule the one decision is to let the operation take effect.
     """
-    always = tuple(rule for rule in holding if rule.under is None)
+    always = tuple(rule for rule in holding if rule.assumes is None)
     if always and len({rule.code for rule in holding}) == 1:
         return (Decision(always[0].code, always, ()),)
     decisions: list[Decision] = []
-    for case in itertools.product(*_cases([rule.under for rule in holding if rule.under is not None])):
-        active = tuple(rule for rule in holding if rule.under is None or meet(UNCONSTRAINED, (*case, rule.under)))
+    for case in itertools.product(*_cases([rule.assumes for rule in holding if rule.assumes is not None])):
+        active = tuple(rule for rule in holding if rule.assumes is None or meet(UNCONSTRAINED, (*case, rule.assumes)))
         decisions += _decided(active, case, rank) if active else (Decision(None, (), case),)
     return tuple(decisions)
 
@@ -259,7 +261,7 @@ def _cases(assumptions: Iterable[Assumption]) -> list[list[Assumption]]:
     """For every ambiguity its readings, split as far as the assumptions tell them apart."""
     cells: dict[Ambiguity, list[int]] = {}
     for assumption in assumptions:
-        ambiguity, kept = assumption.of, assumption.keeps & assumption.group
+        ambiguity, kept = assumption.ambiguity, assumption.kept & assumption.group
         split = (part for cell in cells.get(ambiguity, [ambiguity.group]) for part in (cell & kept, cell & ~kept))
         cells[ambiguity] = [part for part in split if part]
     return [[ambiguity.where(cell) for cell in parts] for ambiguity, parts in cells.items()]

@@ -161,7 +161,7 @@ class Lookahead:
         """Note what more is assumed of an explanation; what becomes of it depends on what is contradictory."""
         for one in assumptions:
             self.consulted |= one.group
-            assumed &= one.keeps
+            assumed &= one.kept
             if not assumed & one.group:
                 self.depends |= one.group
                 return

@@ -113,7 +113,7 @@ class Graph:
 
     def _told(self, states: list[JSON]) -> JSON:
         spec, bounds = self.spec, self.bounds
-        asked = {assumption.of.id for combined in self._assumptions.values for assumption in combined}
+        asked = {assumption.ambiguity.id for combined in self._assumptions.values for assumption in combined}
         rules = [spec.rules_by_id[rule] for rule in self._rules.values]
         found = {
             "system": spec.system,
@@ -140,7 +140,9 @@ class Graph:
                 if one.id in asked
             ],
             "rules": [{"says": rule.says, "cite": str(rule.cite), "id": rule.id} for rule in rules],
-            "assumes": [[[one.of.id, "".join(one.letters)] for one in some] for some in self._assumptions.values],
+            "assumes": [
+                [[one.ambiguity.id, "".join(one.letters)] for one in some] for some in self._assumptions.values
+            ],
             "groups": [*self._groups()],
             "doings": [
                 [one.kind, one.group, one.words, one.line, one.refs, one.kinds, len(one.brings)]

@@ -99,9 +99,9 @@ class Evidence:
         """How a rule fared."""
         if rule.id in self.violated:
             return Standing.VIOLATED
-        if rule.under is not None:
-            left = self.readings.get(rule.under.of.id)
-            if left is not None and not set(left) & set(rule.under.letters):
+        if rule.assumes is not None:
+            left = self.readings.get(rule.assumes.ambiguity.id)
+            if left is not None and not set(left) & set(rule.assumes.letters):
                 return Standing.OTHERWISE
             if rule.id in self.exercised and left is not None and len(left) > 1:
                 return Standing.AMBIGUOUS
@@ -214,7 +214,7 @@ def rule_line(rule: Rule, evidence: Evidence) -> RuleLine:
         rule.says,
         str(rule.cite),
         rule.code or "",
-        str(rule.under) if rule.under else "",
+        str(rule.assumes) if rule.assumes else "",
         evidence.standing(rule),
         evidence.exercised.get(rule.id, 0),
         evidence.rare.get(rule.id, ""),
@@ -264,7 +264,7 @@ def _words(text: str) -> tuple[str, str]:
 
 
 def _questions(spec: Spec, rules: Iterable[Rule], evidence: Evidence) -> tuple[Question, ...]:
-    concerned = {rule.under.of.id for rule in rules if rule.under}
+    concerned = {rule.assumes.ambiguity.id for rule in rules if rule.assumes}
     return tuple(_question(one, evidence) for one in spec.ambiguities if one.id in concerned)
 
 

@@ -168,7 +168,7 @@ def _rules(
 
 
 def _rule(rule: Rule, named_by: tuple[Clause, ...], ways: int) -> tuple[str, ...]:
-    under = str(rule.under) if rule.under else ""
+    under = str(rule.assumes) if rule.assumes else ""
     numbers = ", ".join(clause.number for clause in named_by)
     tested = f"{ways} way" if ways == 1 else f"{ways} ways"
     return rule.code or "(promise)", f"`{rule.name}`", rule.says, under, numbers, tested

@@ -23,7 +23,7 @@ READINGS = pytest.mark.parametrize("assumed", [DEFAULT, UNCONSTRAINED], ids=["de
 
 def labels(bounds: Bounds, world: object = None) -> Labels:
     alphabet = MISSION.alphabet(world or {}, bounds)
-    return Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    return Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
 
 
 def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
@@ -134,7 +134,7 @@ def test_every_rule_fires_and_rests() -> None:
         start = SPEC.initial(MISSION.codec.world(world))
         found = reachable(SPEC, start, labels(bounds, world), bounds.size)
         situations = {SPEC.abstraction.situation(here): here for here in found}
-        everything = Labels.of(MISSION, alphabet.inputs, alphabet.drives)
+        everything = Labels.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything, settled=fires & rests).items():
             fires |= {rule} if fired else set()
             rests |= {rule} if rested else set()

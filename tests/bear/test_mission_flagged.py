@@ -103,7 +103,7 @@ def test_what_departs_from_the_text_is_flagged(
     followed = {**with_, question: letter}
     verdict = judged(followed, world, script)
     assert (verdict.outcome, [line.partition("=")[0] for line in verdict.flagged]) == (Outcome.CONFORMS, [question])
-    to_the_letter = Run.of(saying(script, world), ReferenceSubject(MISSION, followed), no_flagged=True)
+    to_the_letter = Run.against(saying(script, world), ReferenceSubject(MISSION, followed), no_flagged=True)
     assert not play(to_the_letter)
 
 

@@ -31,7 +31,7 @@ from missionfsm.tools.explore.explore import Labels, bindings, steps
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
 ALPHABET = MISSION.alphabet({}, Bounds(3, goals=2, batch=2))
-LABELS = Labels.of(MISSION, ALPHABET.core_inputs, ALPHABET.core_drives)
+LABELS = Labels.from_alphabet(MISSION, ALPHABET.core_inputs, ALPHABET.core_drives)
 Named = tuple[Any, tuple[int, ...]]
 """A robot, or what is seen of it, with the names of its missions; no two missions ever have the same."""
 

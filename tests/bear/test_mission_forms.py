@@ -65,7 +65,7 @@ def without_unset_commands(method: str, params: JSON) -> JSON:
 )
 def test_every_form_of_a_wrong_request_is_tried(heard: Callable[[str, JSON], JSON], rule: str) -> None:
     """The conversations that are written down find a robot that lets one form pass, and say which rule forbids it."""
-    run = Run.of(MISSION, Lenient(ReferenceSubject(MISSION), heard))
+    run = Run.against(MISSION, Lenient(ReferenceSubject(MISSION), heard))
     assert not play(run)
     assert run.found is not None
     violation = run.found.judge.violation

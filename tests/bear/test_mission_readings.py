@@ -126,6 +126,6 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
 )
 def test_the_written_down_conversations_tell_how_goals_are_chosen(name: str, letter: str) -> None:
     """Which goal a NavigateAuto mission takes, and when, shows only where goals are taken away at the right moment."""
-    run = Run.of(MISSION, ReferenceSubject(MISSION, {name: letter}))
+    run = Run.against(MISSION, ReferenceSubject(MISSION, {name: letter}))
     assert play(run)
     assert run.ledger.readings[name] == (letter,)

@@ -64,7 +64,7 @@ def _recording(exchanges: list[Exchange]) -> Any:
 
 
 def _run(subject: Any, automaton: Automaton) -> Run:
-    return Run.of(MISSION, subject, automaton=automaton)
+    return Run.against(MISSION, subject, automaton=automaton)
 
 
 def _seconds(work: Callable[[], object]) -> float:
@@ -138,7 +138,7 @@ def test_bench_conform_time_to_the_first_violation(benchmark: Any) -> None:
 
     def look(name: str) -> None:
         child = Child([str(NODE), str(SUBJECTS / "bear_mission.mjs"), "--break", name])
-        run = Run.of(MISSION, child)
+        run = Run.against(MISSION, child)
         search(run, Plan(), 1)
         shorten(run)
         if run.found is not None:

@@ -126,7 +126,7 @@ def test_bench_mission_a_step_of_the_model(benchmark: Any) -> None:
 def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int, *, forgetting: bool) -> None:
     """Distinct states a second, every refusal tried in every situation; and with every state read as a value."""
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
     found = benchmark.pedantic(
         reachable, (SPEC, start, labels, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
@@ -143,7 +143,7 @@ def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:
     """Distinct states a second without the shortcut: every outcome of every call as a step with names and messages."""
     bounds = Bounds(2, goals=2, batch=2)
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.of(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.world(WORLD))
     states = list(reachable(SPEC, start, labels, bounds.size, DEFAULT))
 

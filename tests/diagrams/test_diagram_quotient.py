@@ -147,7 +147,7 @@ class Walker:
         self.sketch = sketch
         self.model = Reference(self.system, choice)
         self.random = random.Random(seed)
-        labels = Labels.of(self.system, sketch.inputs, sketch.drives)
+        labels = Labels.from_alphabet(self.system, sketch.inputs, sketch.drives)
         self.tried = [(what, free, True) for what, free in labels.requests]
         self.tried += [(what, free, False) for what, free in labels.events]
 

@@ -26,7 +26,7 @@ needs_node = pytest.mark.skipif(NODE is None, reason="no Node.js to run the inde
 
 def run_of(name: str, subject: Subject, automaton: Automaton | None = None) -> Run:
     """A run against a subject that has not begun."""
-    return Run.of(system(name), subject, automaton=automaton)
+    return Run.against(system(name), subject, automaton=automaton)
 
 
 def explained(run: Run, tours: int, steps: int, seed: int = 1) -> bool:

@@ -96,7 +96,7 @@ class World:
 
     def agrees(self, assumptions: Iterable[Assumption]) -> bool:
         """Whether the choice is among what is assumed."""
-        return all(self.choice[one.of.id] in one.letters for one in assumptions)
+        return all(self.choice[one.ambiguity.id] in one.letters for one in assumptions)
 
     # What can happen unseen.
 

@@ -61,7 +61,7 @@ def test_independent_questions_are_no_cross_product() -> None:
     """Eight half-decided questions are eight assumptions of one explanation."""
     belief, _ = pressed(*((("either", number), "a or b") for number in range(8)))
     assert [one.assumed for one in belief.node.explanations] == [
-        constrain_all([QUESTIONS[number]["a", "b"].keeps for number in range(8)])
+        constrain_all([QUESTIONS[number]["a", "b"].kept for number in range(8)])
     ]
 
 

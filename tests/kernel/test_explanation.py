@@ -188,7 +188,7 @@ def test_a_step_that_assumes_too_much_does_not_happen() -> None:
     under_a = Explanation("state", assumed=choose([ASKED]))
     assert take(under_a, Step("next", assumes=(ASKED["b"],)), (), passing=False, concerns=operator.eq) is None
     taken = take(Explanation("state"), Step("next", assumes=(ASKED["a"],)), (), passing=False, concerns=operator.eq)
-    assert taken == (Explanation("next", assumed=ASKED["a"].keeps), ())
+    assert taken == (Explanation("next", assumed=ASKED["a"].kept), ())
 
 
 def test_a_step_that_nobody_can_tell_changes_nothing() -> None:

@@ -42,7 +42,7 @@ def choices(assumed: int) -> Choices:
 
 def allowed_by(assumption: Assumption) -> Choices:
     """The full choices that agree with one assumption."""
-    at = ALL.index(assumption.of)
+    at = ALL.index(assumption.ambiguity)
     return frozenset(choice for choice in choices(UNCONSTRAINED) if choice[at] in assumption.letters)
 
 

@@ -50,12 +50,12 @@ def ranked(holding: tuple[Rule, ...]) -> tuple[tuple[str, tuple[Assumption, ...]
 
 def holds_under(choice: dict[str, str], assumptions: tuple[Assumption, ...]) -> bool:
     """Whether a full choice of readings agrees with what is assumed."""
-    return all(choice[one.of.id] in one.letters for one in assumptions)
+    return all(choice[one.ambiguity.id] in one.letters for one in assumptions)
 
 
 def evaluated(rules: tuple[Rule, ...], rank: Ranking, choice: dict[str, str]) -> dict[str | None, frozenset[str]]:
     """What the rules allow under one full choice: every code with the names of the rules that justify it."""
-    active = tuple(one for one in rules if one.under is None or holds_under(choice, (one.under,)))
+    active = tuple(one for one in rules if one.assumes is None or holds_under(choice, (one.assumes,)))
     if not active:
         return {None: frozenset()}
     codes = {one.code for one in active}
@@ -73,7 +73,8 @@ def test_decide_allows_what_the_rules_allow_under_every_choice(
 ) -> None:
     """Under every full choice of readings the decisions give the codes that evaluating the rules under it gives."""
     rules = tuple(
-        Rule(f"rule-{number}", "", "", PAGE["Errors"], code, under=under) for number, (code, under) in enumerate(table)
+        Rule(f"rule-{number}", "", "", PAGE["Errors"], code, assumes=under)
+        for number, (code, under) in enumerate(table)
     )
     decisions = decide(rules, rank)
     letters = [[(one.id, letter) for letter in one.readings] for one in ALL]
@@ -90,7 +91,7 @@ def test_decide_allows_what_the_rules_allow_under_every_choice(
 
 def test_decide_tells_readings_apart_only_where_the_rules_do() -> None:
     """Two letters that no rule at hand tells apart stay one case."""
-    only_c = Rule("only-c", "", "", PAGE["Errors"], "BAD", under=SHAPE["c"])
+    only_c = Rule("only-c", "", "", PAGE["Errors"], "BAD", assumes=SHAPE["c"])
     found = [(one.code, [str(assumed) for assumed in one.assumes]) for one in decide((only_c,))]
     assert found == [("BAD", ["D-1=c"]), (None, ["D-1=a|b"])]
 
@@ -98,7 +99,7 @@ def test_decide_tells_readings_apart_only_where_the_rules_do() -> None:
 def test_decide_ignores_readings_that_change_nothing() -> None:
     """Where a rule refuses under every reading, one of the same code under a reading adds no case."""
     always = Rule("always", "", "", PAGE["Errors"], "BAD")
-    under = Rule("under", "", "", PAGE["Errors"], "BAD", under=SHAPE["a"])
+    under = Rule("under", "", "", PAGE["Errors"], "BAD", assumes=SHAPE["a"])
     assert decide((under, always)) == (Decision("BAD", (always,), ()),)
 
 
@@ -107,7 +108,7 @@ def test_decide_without_rules_lets_the_operation_take_effect() -> None:
     assert decide(()) == (Decision(None, (), ()),)
 
 
-@rule("BAD", cite=PAGE["Create", "Errors"], under=SHAPE["a"], kind="shape")
+@rule("BAD", cite=PAGE["Create", "Errors"], assumes=SHAPE["a"], kind="shape")
 def _the_number_is_odd(state: int, call: int) -> bool:
     """The number is odd.
 
@@ -144,7 +145,7 @@ def test_a_rule_without_a_message_is_refused() -> None:
 def test_an_operation_registers_its_rules() -> None:
     """Rules get their ids where they are registered: with the code for a refusal, without for a promise."""
     order = promise("in-order", "Answers come in order.", cite=PAGE["Create"])
-    create = Operation.of("Create", "toy", PAGE["Create"], refusals=[_the_number_is_odd], promises=[order])
+    create = Operation.with_rules("Create", "toy", PAGE["Create"], refusals=[_the_number_is_odd], promises=[order])
     ids = [one.id for one in (*create.refusals, *create.promises)]
     assert ids == ["toy/Create/BAD/the-number-is-odd", "toy/Create/in-order"]
     assert (create.blocking(0, 1), create.blocking(1, 1)) == (create.refusals, ())

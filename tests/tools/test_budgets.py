@@ -126,7 +126,7 @@ class Unsteady:
 @pytest.mark.parametrize("seed", range(2))
 def test_what_is_drawn_does_not_depend_on_answers(seed: int) -> None:
     """Hypothesis draws again what it drew before; an implementation that then answers otherwise does not upset it."""
-    run = Run.of(MISSION, Unsteady(seed))
+    run = Run.against(MISSION, Unsteady(seed))
     draw(run, 120, 20, seed=1)
     assert (run.found, run.ledger.examples >= 120) == (None, True)
 

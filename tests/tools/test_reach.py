@@ -68,7 +68,7 @@ def columns() -> set[str]:
 @pytest.mark.long
 def test_a_run_asks_everything_in_every_situation() -> None:
     """Before anything is toured or drawn every cell is met three times: all that the page lets one ask, everywhere."""
-    run = Run.of(MISSION, ReferenceSubject(MISSION))
+    run = Run.against(MISSION, ReferenceSubject(MISSION))
     assert run.reach is not None
     assert fill(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
@@ -92,7 +92,7 @@ def test_what_was_met_too_seldom_is_told() -> None:
 @pytest.mark.long
 def test_every_subscription_is_watched_while_everything_changes() -> None:
     """Each subscription to one robot, to several and to a location sees each part that it shows change in every way."""
-    run = Run.of(STATUS, ReferenceSubject(STATUS))
+    run = Run.against(STATUS, ReferenceSubject(STATUS))
     assert run.reach is not None
     assert fill(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()

@@ -49,7 +49,9 @@ def _outcomes(state: str, request: tuple[str, ...], _: object) -> tuple[Step, ..
 
 
 def _operation(name: str) -> Operation:
-    return Operation.of(name, "door", PAGE[name], promises=(promise("it-answers", "It answers.", cite=PAGE[name]),))
+    return Operation.with_rules(
+        name, "door", PAGE[name], promises=(promise("it-answers", "It answers.", cite=PAGE[name]),)
+    )
 
 
 DOOR: Spec = evolve(

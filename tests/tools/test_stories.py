@@ -82,7 +82,7 @@ def test_no_story_is_longer_than_the_shortest() -> None:
     told = []
     named = {mutant.name.removeprefix("bear.mission/"): mutant for mutant in mutants(MISSION)}
     for mutant in (named[name] for name in HARMED):
-        run = Run.of(MISSION, mutant.subject(MISSION))
+        run = Run.against(MISSION, mutant.subject(MISSION))
         search(run, Plan(20, 60, 80, 20), 1)
         shorten(run)
         assert run.found is not None, mutant.name

@@ -112,10 +112,10 @@ def test_the_map_is_coloured_by_what_was_seen() -> None:
 def test_readings_decide_what_is_read_otherwise() -> None:
     """A rule of a reading that was ruled out is read otherwise; one of a reading that is still possible is not."""
     spec = systems.system("bear.mission").spec
-    rule = next(one for one in spec.all_rules if one.under is not None and len(one.under.of.readings) > 1)
-    assert rule.under is not None
-    question = rule.under.of
-    others = tuple(letter for letter in question.readings if letter not in rule.under.letters)
+    rule = next(one for one in spec.all_rules if one.assumes is not None and len(one.assumes.ambiguity.readings) > 1)
+    assert rule.assumes is not None
+    question = rule.assumes.ambiguity
+    others = tuple(letter for letter in question.readings if letter not in rule.assumes.letters)
     assert Evidence(readings={question.id: others}).standing(rule) is Standing.OTHERWISE
     every = {question.id: tuple(question.readings)}
     assert Evidence(readings=every).standing(rule) is Standing.NOT_REACHED

@@ -88,7 +88,7 @@ def there_is_no_such_ride(_: Lift, asked: Asked) -> bool:
     return asked.at is None
 
 
-@rule(FAILED_PRECONDITION, cite=PAGE["Cancel", "Errors"], under=UNDER_WAY["a"])
+@rule(FAILED_PRECONDITION, cite=PAGE["Cancel", "Errors"], assumes=UNDER_WAY["a"])
 def the_ride_is_under_way(lift: Lift, asked: Asked) -> bool:
     """The ride is under way, and only one that waits can be cancelled (L-01)."""
     return lift.moving and asked.at == 0
@@ -104,16 +104,16 @@ WATCHED = promise(
 )
 SHOWN = promise(
     "rides-are-shown-in-order", "Rides are shown as they are, in the order of calls.", cite=PAGE["Watch"]
-).of(NAME)
+).registered(NAME)
 DEPARTS = promise(
     "the-lift-departs", "An idle lift departs at once for the ride that waits longest.", cite=PAGE["Rides"]
-).of(NAME)
-ARRIVES = promise("a-ride-ends", "With the arrival at its floor a ride ends.", cite=PAGE["Rides"]).of(NAME)
+).registered(NAME)
+ARRIVES = promise("a-ride-ends", "With the arrival at its floor a ride ends.", cite=PAGE["Rides"]).registered(NAME)
 
 OPERATIONS = {
     operation.name: operation
     for operation in (
-        Operation.of(
+        Operation.with_rules(
             "Call",
             NAME,
             PAGE["Call"],
@@ -121,7 +121,7 @@ OPERATIONS = {
             promises=[QUEUED, SHARED],
             failures=[DEADLINE_EXCEEDED],
         ),
-        Operation.of(
+        Operation.with_rules(
             "Cancel",
             NAME,
             PAGE["Cancel"],
@@ -129,7 +129,7 @@ OPERATIONS = {
             promises=[TAKEN_OFF],
             failures=[DEADLINE_EXCEEDED],
         ),
-        Operation.of("Watch", NAME, PAGE["Watch"], promises=[WATCHED], streaming=True),
+        Operation.with_rules("Watch", NAME, PAGE["Watch"], promises=[WATCHED], streaming=True),
     )
 }
 

@@ -388,7 +388,7 @@ def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
 
 
 def _cited(rule: Rule) -> tuple[str, ...]:
-    return (rule.of(SYSTEM, "SkipGoal").id,)
+    return (rule.registered(SYSTEM, "SkipGoal").id,)
 
 
 def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:

@@ -99,7 +99,7 @@ from missionfsm.kernel.rules import (
 
 def _under(rule: Rule, assumption: Assumption) -> Rule:
     """A refusal that holds under a reading."""
-    return evolve(rule, under=assumption)
+    return evolve(rule, assumes=assumption)
 
 
 def _format(call: str) -> tuple[Rule, ...]:
@@ -212,7 +212,7 @@ def _operation(
     streaming: bool = False,
 ) -> Operation:
     own = tuple(_at_home(name, one) for one in refusals)
-    return Operation.of(
+    return Operation.with_rules(
         name, SYSTEM, MISSION[name], refusals=own, promises=promises, failures=failures, streaming=streaming
     )
 

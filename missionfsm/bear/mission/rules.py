@@ -194,7 +194,7 @@ def another_mission_is_running_or_queued(robot: Situation, _: Call) -> bool:
     return running or robot.queued
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], under=AM_06["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], assumes=AM_06["a"], kind=STATE)
 def a_paused_mission_counts_as_running(robot: Situation, _: Call) -> bool:
     """A mission is paused, which counts as running (AM-06)."""
     return _is_paused(robot)
@@ -297,7 +297,7 @@ def a_mission_is_running(robot: Situation, _: Call) -> bool:
     return robot.active is not None and robot.active.state is State.STATE_RUNNING
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], under=AM_37_PAUSED["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], assumes=AM_37_PAUSED["a"], kind=STATE)
 def a_mission_is_paused(robot: Situation, _: Call) -> bool:
     """A mission is paused and must be cancelled first (AM-37)."""
     return _is_paused(robot)
@@ -313,7 +313,7 @@ CHARGING_WHILE_WAITING = _about_waiting(
 
 
 def _charger_rule(code: str, letter: str) -> Rule:
-    @rule(code, cite=MISSION["ChargeRobot"], under=AM_38_DOCK[letter], kind=GOALS)
+    @rule(code, cite=MISSION["ChargeRobot"], assumes=AM_38_DOCK[letter], kind=GOALS)
     def the_robot_has_no_contact_dock(robot: Situation, _: Call) -> bool:
         """The robot has no contact-based charging dock.
 
@@ -351,25 +351,25 @@ def a_mission_is_running_or_paused(robot: Situation, _: Call) -> bool:
     return robot.active is not None
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["cleared"]["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["b"], kind=STATE)
 def nothing_is_listed(robot: Situation, _: Call) -> bool:
     """There is nothing left to clear (AM-33)."""
     return _nothing_listed(robot) and not robot.fresh
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["cleared"]["c"], kind=SHAPE)
+@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["c"], kind=SHAPE)
 def there_is_nothing_to_clear(robot: Situation, _: Call) -> bool:
     """There is nothing left to clear, so the request means nothing (AM-33)."""
     return _nothing_listed(robot) and not robot.fresh
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["fresh"]["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["b"], kind=STATE)
 def nothing_was_ever_listed(robot: Situation, _: Call) -> bool:
     """There never was anything to clear (AM-33)."""
     return robot.fresh
 
 
-@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], under=AM_33["fresh"]["c"], kind=SHAPE)
+@rule(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["c"], kind=SHAPE)
 def there_never_was_anything_to_clear(robot: Situation, _: Call) -> bool:
     """There never was anything to clear, so the request means nothing (AM-33)."""
     return robot.fresh
@@ -390,7 +390,7 @@ def the_robot_is_not_on_a_mission(robot: Situation, _: Call) -> bool:
     return robot.active is None
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], under=AM_16["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], assumes=AM_16["a"], kind=STATE)
 def the_mission_is_paused(robot: Situation, _: Call) -> bool:
     """The mission is paused, not actively running (AM-16)."""
     return _is_paused(robot)
@@ -428,7 +428,7 @@ def the_mission_id_is_missing(_: Situation, call: Call) -> bool:
     return Defect.EMPTY in call.request.defects
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_04_NO_ID["c"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_04_NO_ID["c"], kind=STATE)
 def the_robot_is_on_no_mission(robot: Situation, call: Call) -> bool:
     """No mission is active, and the request does not say readably which one it is about (AM-04)."""
     return call.target is None and robot.active is None
@@ -555,25 +555,25 @@ def _asks(call: Call, command: Command) -> bool:
     return call.target is Target.ACTIVE and call.request.command is command
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["pause"]["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["pause"]["a"], kind=STATE)
 def the_mission_is_already_paused(robot: Situation, call: Call) -> bool:
     """The mission is paused already (AM-29)."""
     return _asks(call, Command.COMMAND_PAUSE) and _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_29["resume"]["a"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["resume"]["a"], kind=STATE)
 def the_mission_is_not_paused(robot: Situation, call: Call) -> bool:
     """The mission is not paused, so it cannot be resumed (AM-29)."""
     return _asks(call, Command.COMMAND_RESUME) and not _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_31["b"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_31["b"], kind=STATE)
 def a_paused_mission_cannot_be_finished(robot: Situation, call: Call) -> bool:
     """The mission is paused and must be resumed before it can be finished (AM-31)."""
     return _asks(call, Command.COMMAND_FINISH) and _is_paused(robot)
 
 
-@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], under=AM_40["c"], kind=STATE)
+@rule(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_40["c"], kind=STATE)
 def charging_cannot_be_paused(robot: Situation, call: Call) -> bool:
     """The robot is charging, which cannot be paused (AM-40)."""
     charging = robot.active is not None and robot.active.kind is Kind.CHARGE

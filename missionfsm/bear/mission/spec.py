@@ -73,14 +73,14 @@ from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 _MOVES = {
     trigger: promise(
         trigger.replace(" ", "-"), f"A mission moves by {trigger}.", cite=MISSION["MissionState", "State enum"]
-    ).of(SYSTEM, "lifecycle")
+    ).registered(SYSTEM, "lifecycle")
     for trigger in ("start", "succeed", "fail")
 }
 """The moves of the lifecycle that no call makes."""
 
 _NEXT_GOAL = promise(
     "goals-are-taken-up-in-order", "A mission goes from goal to goal in order.", cite=MISSION["MissionState"]
-).of(SYSTEM, "lifecycle")
+).registered(SYSTEM, "lifecycle")
 RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
 
 

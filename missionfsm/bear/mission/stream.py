@@ -116,7 +116,9 @@ class Seen:
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:
-    return promise(name, says, cite=MISSION[("SubscribeMissionStatus", *place)]).of(SYSTEM, "SubscribeMissionStatus")
+    return promise(name, says, cite=MISSION[("SubscribeMissionStatus", *place)]).registered(
+        SYSTEM, "SubscribeMissionStatus"
+    )
 
 
 WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "Response")

@@ -352,7 +352,7 @@ def _addressed(  # noqa: PLR0913 - an emission's own fields
 def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assumption] = ()) -> Iterator[Way]:
     """A message that is due; or, under each of some readings, one that may be sent from now on."""
     lenient = tuple(lenient)
-    strict = tuple(one.of.besides(*one.letters) for one in lenient)
+    strict = tuple(one.ambiguity.besides(*one.letters) for one in lenient)
     for emits, assumed in _addressed(robot, endpoint, shown):
         yield emits, (*strict, *assumed)
     for one in lenient:

@@ -346,7 +346,7 @@ _GETTING: tuple[_Row, ...] = (
 def _placed(call: str, rows: tuple[_Row, ...]) -> Iterator[Rule]:
     """The rules of a call: each cites the call's own table, and is read as that call is read."""
     for one, question, letter in rows:
-        yield evolve(one, cite=STATUS[call, one.cite.headings[1]], under=question[call][letter] if question else None)
+        yield evolve(one, cite=STATUS[call, one.cite.headings[1]], assumes=question[call][letter] if question else None)
 
 
 def _subscription(endpoint: Endpoint) -> Operation:
@@ -355,7 +355,7 @@ def _subscription(endpoint: Endpoint) -> Operation:
         "A new stream begins with what is known last of every selected robot.",
         cite=STATUS[endpoint.value,],
     )
-    return Operation.of(
+    return Operation.with_rules(
         endpoint.value,
         SYSTEM,
         STATUS[endpoint.value,],
@@ -370,7 +370,7 @@ _LATEST = promise(
     "the-answer-is-the-latest-state", "The answer is the latest state of the robot.", cite=STATUS[GET, "Response"]
 )
 OPERATIONS: Mapping[str, Operation] = {
-    GET: Operation.of(
+    GET: Operation.with_rules(
         GET,
         SYSTEM,
         STATUS[GET,],

@@ -44,7 +44,7 @@ from missionfsm.kernel.text import brief
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:
-    return promise(name, says, cite=STATUS[place]).of(SYSTEM, "messages")
+    return promise(name, says, cite=STATUS[place]).registered(SYSTEM, "messages")
 
 
 WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "GetRobotStatus", "Response")
@@ -66,9 +66,9 @@ UPDATES = _promise(
     "SubscribeBatteryStatus",
 )
 VALUES = {
-    place: promise("values-are-those-reported", "What is shown is what the robot reported.", cite=STATUS[place,]).of(
-        SYSTEM, place
-    )
+    place: promise(
+        "values-are-those-reported", "What is shown is what the robot reported.", cite=STATUS[place,]
+    ).registered(SYSTEM, place)
     for place in (GET, *(endpoint.value for endpoint in Endpoint))
 }
 RULES = (WELL_FORMED, SEQUENCE, SELECTED, UPDATES, *VALUES.values(), *(one.rule for one in CHECKS))

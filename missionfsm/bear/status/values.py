@@ -76,7 +76,7 @@ def check(
         cite: Citation = STATUS[place]
         name = wrong.__name__.replace("_", "-")
         topic = of.__name__ if of else "enums"
-        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).of(SYSTEM, topic)
+        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).registered(SYSTEM, topic)
         return Check(registered, wrong, of, robots, lasts)
 
     return register

@@ -136,7 +136,7 @@ def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due,
     for sent in range(len(due), -1, -1):
         now, later = due[:sent], due[sent:]
         assumes = (*(one.when["a"] for one in now[-1:]), *(one.when["b"] for one in later[:1]))
-        if len({one.of for one in assumes}) == len(assumes):
+        if len({one.ambiguity for one in assumes}) == len(assumes):
             yield now, later, assumes
 
 

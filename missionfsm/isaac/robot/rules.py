@@ -11,7 +11,7 @@ CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
 def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
-    return promise(name, says, cite=cite, argues=argues).of(SYSTEM, topic)
+    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM, topic)
 
 
 STARTS = _promise(

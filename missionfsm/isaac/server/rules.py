@@ -51,38 +51,38 @@ def the_robots_name_is_empty(_: Server, ask: Ask) -> bool:
     return NO_NAME in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"], under=AI_19["c"])
+@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"], assumes=AI_19["c"])
 def the_mission_has_no_robot(_: Server, ask: Ask) -> bool:
     """No robot is named, and such a mission is refused (AI-19)."""
     return ask.submission.robot is None
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, under=AI_20_KEYS["a"])
+@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_KEYS["a"])
 def a_key_is_unknown(_: Server, ask: Ask) -> bool:
     """The mission has a key that is not documented, and such a mission is refused (AI-20.keys)."""
     return KEY in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, under=AI_20_NULL["a"])
+@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_NULL["a"])
 def a_field_is_null(_: Server, ask: Ask) -> bool:
     """A field that has a type is null, and that is taken for a wrong type (AI-20.null)."""
     return NULL in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, under=AI_20_EMPTY["a"])
+@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_EMPTY["a"])
 def a_channel_is_empty(_: Server, ask: Ask) -> bool:
     """A channel's name is empty, and such a mission is refused (AI-20.empty)."""
     return EMPTY in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "config"], under=AI_33_NULL["b"])
+@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "config"], assumes=AI_33_NULL["b"])
 def the_configuration_is_null(_: Server, ask: Ask) -> bool:
     """The configuration is null, and that is taken for a wrong type (AI-33.null)."""
     return NULL_CONFIG in ask.submission.defects
 
 
 def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
-    return promise(name, says, cite=cite, argues=argues).of(SYSTEM, topic)
+    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM, topic)
 
 
 ACCEPTED = promise("a-mission-is-queued-for-its-robot", "A submitted mission is queued for its robot.", cite=SERVER)
@@ -230,7 +230,7 @@ RULES = (
 OPERATIONS = {
     one.name: one
     for one in (
-        Operation.of(
+        Operation.with_rules(
             "submit",
             SYSTEM,
             SERVER,
@@ -248,6 +248,6 @@ OPERATIONS = {
             ),
             promises=(ACCEPTED,),
         ),
-        Operation.of("statuses", SYSTEM, PAGE["Sample Usage", "Mission.Status"], promises=(SHOWN,)),
+        Operation.with_rules("statuses", SYSTEM, PAGE["Sample Usage", "Mission.Status"], promises=(SHOWN,)),
     )
 }

@@ -135,8 +135,8 @@ def _distance(one: str, other: str) -> int:
 
 def rules_about(spec: Spec, assumption: Assumption) -> tuple[str, ...]:
     """The rules that are broken by whoever reads a question now so and now otherwise."""
-    ambiguity = assumption.of
-    under = [rule.id for rule in spec.all_rules if rule.under is not None and rule.under.of is ambiguity]
+    ambiguity = assumption.ambiguity
+    under = [rule.id for rule in spec.all_rules if rule.assumes is not None and rule.assumes.ambiguity is ambiguity]
     named = [rule.id for rule in spec.all_rules if ambiguity.rule and rule.id.endswith(ambiguity.rule)]
     return tuple(dict.fromkeys((*named, *under)))
 
@@ -204,7 +204,8 @@ class Nearest:
         what = answer_words(answer, tuple(map(self._known, names)))
         allowed = bool(meet(here.assumed, assumes))
         unusual = sum(
-            one.of.default not in one.letters and one.of.default in one.of.possible(here.assumed) for one in assumes
+            one.ambiguity.default not in one.letters and one.ambiguity.default in one.ambiguity.possible(here.assumed)
+            for one in assumes
         )
         shown = tuple(map(str, assumes))
         return Candidate(what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual)
@@ -358,16 +359,16 @@ class Nearest:
 
     def _clash(self, here: Explanation, assumes: Iterable[Assumption]) -> list[Assumption]:
         """Those assumptions that contradict what an explanation assumes."""
-        return [one for one in assumes if not here.assumed & one.group & one.keeps]
+        return [one for one in assumes if not here.assumed & one.group & one.kept]
 
     def _readings(self, here: Explanation, assumes: Iterable[Assumption]) -> Iterator[Problem]:
         for one in self._clash(here, assumes):
-            left = one.of.possible(here.assumed)
+            left = one.ambiguity.possible(here.assumed)
             # What ruled the needed readings out, in this explanation; others may have been left by other events.
-            rulings = [self.about.rulings.get((one.of.id, letter)) for letter in one.letters]
+            rulings = [self.about.rulings.get((one.ambiguity.id, letter)) for letter in one.letters]
             events = dict.fromkeys(str(ruling) for ruling in rulings if ruling is not None)
             since = f", since {'; '.join(events)}" if events else ""
-            followed = f"{one.of.id}={'|'.join(left)} is followed{since}"
+            followed = f"{one.ambiguity.id}={'|'.join(left)} is followed{since}"
             since_then = tuple(dict.fromkeys(rule for ruling in rulings if ruling is not None for rule in ruling.rules))
             yield Problem(f"it needs {one}, but {followed}", rules_about(self.spec, one), READING, since_then)
 

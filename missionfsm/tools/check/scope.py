@@ -47,7 +47,10 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
         rule.id
         for rule in spec.all_rules
         if rule.id not in exercised
-        and (rule.under is None or set(rule.under.letters) & set(readings.get(rule.under.of.id, rule.under.letters)))
+        and (
+            rule.assumes is None
+            or set(rule.assumes.letters) & set(readings.get(rule.assumes.ambiguity.id, rule.assumes.letters))
+        )
     )
 
 

@@ -40,7 +40,7 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
     if not reasons:
         return wanted, [f"{code} is not documented for {operation.name}"]
     held = _held_last(nearest, event, reasons)
-    reasons = [*held, *sorted(reasons, key=lambda rule: rule.under is not None)]
+    reasons = [*held, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
     conditions = "; ".join(list(dict.fromkeys(rule.says for rule in reasons))[:CONDITIONS])
     note = f"{code} needs a reason, and none holds: {conditions}"
     if wanted is done:  # what may be done is refused without a reason

@@ -130,7 +130,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     """
     known = Baseline(expected)
     plan = plan or Plan.beside(examples, tours, steps)
-    run = Run.of(
+    run = Run.against(
         system,
         subject,
         readings,

@@ -80,10 +80,10 @@ class Census:
 
     def why(self, rule: Rule) -> str:
         """Why a rule comes up seldom."""
-        followed = self.readings.get(rule.under.of.id) if rule.under else None
-        if rule.under and followed and not set(rule.under.letters) & set(followed):
-            return f"only under {rule.under}, which is not followed"
-        ways, under = self.ways[rule.id], f" (it belongs to {rule.under})" if rule.under else ""
+        followed = self.readings.get(rule.assumes.ambiguity.id) if rule.assumes else None
+        if rule.assumes and followed and not set(rule.assumes.letters) & set(followed):
+            return f"only under {rule.assumes}, which is not followed"
+        ways, under = self.ways[rule.id], f" (it belongs to {rule.assumes})" if rule.assumes else ""
         if not ways:
             return f"no step in {self.situations} situations near the start rests on it{under}"
         worlds = len(self.worlds[rule.id])
@@ -93,8 +93,8 @@ class Census:
     def _look(self, world: int, start: Any, params: Any) -> None:  # noqa: ANN401 - of any system
         spec = self.system.spec
         alphabet = self.system.alphabet(params, BOUNDS)
-        plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
-        everything = Labels.of(self.system, alphabet.inputs, alphabet.drives)
+        plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        everything = Labels.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
         size = spec.size
         situations, found, todo = set[Hashable](), {start}, [start]
         for here in todo:  # grows while it is walked

@@ -46,7 +46,7 @@ def live(  # noqa: PLR0913 - every one but the first four has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Baseline(expected)
-    run = Run.of(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
+    run = Run.against(system, subject, readings, no_flagged=no_flagged, progress=progress, expects=known, enough=enough)
     run.ledger.notes += notes
     if play(run):
         tour(run, random.Random(seed), conversations - run.ledger.examples, steps)  # noqa: S311 - no secret

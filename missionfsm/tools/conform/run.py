@@ -59,7 +59,7 @@ class Run:
         self.reach = Reach(self.system, matrix, self.guide.worlds) if matrix is not None else None
 
     @classmethod
-    def of(  # noqa: PLR0913 - every one but the first two has a default
+    def against(  # noqa: PLR0913 - every one but the first two has a default
         cls,
         system: System,
         subject: Subject,

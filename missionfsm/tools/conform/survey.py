@@ -78,7 +78,7 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
         SubjectError: the adapter failed.
         ValueError: `readings` names something that does not exist.
     """
-    run = Run.of(system, subject, readings)
+    run = Run.against(system, subject, readings)
     findings: dict[frozenset[str], Finding] = {}
 
     def keep(violation: Violation) -> bool:

@@ -81,7 +81,7 @@ class _Explorer:
         self._spec: Spec = system.spec
         self._sketch = sketch
         self._assumed = assumed
-        self._labels = Labels.of(system, sketch.inputs, sketch.drives)
+        self._labels = Labels.from_alphabet(system, sketch.inputs, sketch.drives)
         self._first = self._spec.initial(system.codec.world(sketch.world))
 
     def quotient(self) -> Quotient:

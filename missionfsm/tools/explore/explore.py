@@ -34,7 +34,7 @@ class Labels:
     events: tuple[tuple[Any, Free], ...]
 
     @classmethod
-    def of(cls, system: System, prompts: Iterable[Input], drives: Iterable[JSON]) -> Labels:
+    def from_alphabet(cls, system: System, prompts: Iterable[Input], drives: Iterable[JSON]) -> Labels:
         """The requests of some prompts, each once, and the events of some drives."""
         requests, events = [], []
         for prompt in prompts:
@@ -277,7 +277,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     spec = system.spec
     usual = system.alphabet({}, bounds).worlds[0] if world is None else world
     alphabet = system.alphabet(usual, bounds)
-    labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
+    labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
     start = spec.initial(system.codec.world(usual))
     found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
     broken = _first_broken(found, spec.invariants if invariants is None else invariants)
@@ -289,7 +289,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     tally = _Tally(spec)
     for situation, here in representatives.items():
         tally.add(here, labels, groups[situation], assumed)
-    everything = Labels.of(system, alphabet.inputs, alphabet.drives)
+    everything = Labels.from_alphabet(system, alphabet.inputs, alphabet.drives)
     firing = firings(spec, representatives.values(), everything, assumed)
     return Exploration(
         system.name,

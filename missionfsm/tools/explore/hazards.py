@@ -112,7 +112,7 @@ def hazards(system: System, bounds: Bounds | None = None, choice: Mapping[str, s
     bounds = bounds or Bounds()
     world = system.alphabet({}, bounds).worlds[0]
     alphabet = system.alphabet(world, bounds)
-    labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
+    labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
     model = Reference(system, choice)
     search = _Search(system, model, labels, bounds)
     return Hazards(system.name, bounds, search.run(world))

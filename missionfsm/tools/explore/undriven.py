@@ -81,7 +81,7 @@ class _Look:
         self._assumed = choose(self.spec.ambiguities)
         usual = system.alphabet({}, bounds).worlds[0]
         alphabet = system.alphabet(usual, bounds)
-        self._labels = Labels.of(system, alphabet.core_inputs, alphabet.core_drives)
+        self._labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
         self._start = self.spec.initial(system.codec.world(usual))
         self._succeeds: dict[Any, bool] = {}
 

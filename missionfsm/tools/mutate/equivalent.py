@@ -198,8 +198,8 @@ class _Explorer:
 
     def _walk(self, world: JSON) -> int:
         alphabet = self.system.alphabet(world, self.scope.bounds)
-        plain = Labels.of(self.system, alphabet.core_inputs, alphabet.core_drives)
-        own = Labels.of(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
+        plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        own = Labels.from_alphabet(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
         start = self.spec.initial(self.system.codec.world(world))
         extent, abstraction = self.spec.extent, self.spec.abstraction

@@ -280,9 +280,9 @@ def _operation_of(spec: Spec, rule: str) -> str | None:
 def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
     """A choice of readings under which a rule is in force."""
     rule = spec.rules_by_id.get(rule_id)
-    if rule is None or rule.under is None or rule.under.of.default in rule.under.letters:
+    if rule is None or rule.assumes is None or rule.assumes.ambiguity.default in rule.assumes.letters:
         return {}
-    return {rule.under.of.id: rule.under.letters[0]}
+    return {rule.assumes.ambiguity.id: rule.assumes.letters[0]}
 
 
 def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]) -> Iterator[Mutant]:

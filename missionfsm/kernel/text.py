@@ -25,3 +25,8 @@ def shown(text: str) -> str:
         half = MAX_CHARACTERS // 2
         text = f"{text[:half]} … {text[-half:]}"
     return printable(text)
+
+
+def printable_lines(text: str) -> str:
+    """A text without what a terminal would obey; its lines stay apart."""
+    return "\n".join(map(printable, text.split("\n")))

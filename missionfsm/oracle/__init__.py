@@ -1,5 +1,5 @@
 """The engine: from the lines of a history to the explanations of what was observed, for any specification.
 
-It imports the kernel alone. Begin with `missionfsm.oracle.transcript` and follow an event through `transition` and
-`automaton` to `missionfsm.oracle.belief`.
+It imports the kernel alone. Begin with `missionfsm.oracle.transcript` and follow an event through `belief` to
+`transition` and `successors`.
 """

@@ -113,7 +113,8 @@ class Lookahead:
         self._known: dict[tuple[int, int, int, int], _Stretch] = {}
         self._stretches: dict[tuple[int, int], _Stretch] = {}
         self._at_cut, self._found_cut = -1, horizon
-        self._shows: dict[Hashable, bool] = {}
+        self._foreseen: dict[Hashable, bool] = {}
+        self._showable: dict[Hashable, bool] = {}
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
         called: dict[int, tuple[int, Hashable, Names]] = {}
@@ -387,7 +388,8 @@ class Lookahead:
         """Count what is going to be remembered of an explanation; forget the rest where that becomes too much."""
         if self._room.overflows(explanation_bytes(explanation)):
             self._led.clear()
-            self._shows.clear()
+            self._foreseen.clear()
+            self._showable.clear()
             for stretch in self._known.values():
                 stretch.led.clear()
 
@@ -400,19 +402,19 @@ class Lookahead:
         if foresees is None:
             return True
         key = (explanation.state, explanation.names, message)
-        found = self._shows.get(key)
+        found = self._foreseen.get(key)
         if found is None:
             self._make_room(explanation)
-            found = self._shows[key] = foresees(explanation.state, explanation.names, content, names, self._calls)
+            found = self._foreseen[key] = foresees(explanation.state, explanation.names, content, names, self._calls)
         return found
 
     def _may_show(self, owed: Owed, message: Message) -> bool:
         key = (owed.view, owed.names, message)
-        found = self._shows.get(key)
+        found = self._showable.get(key)
         if found is None:
             content, names = message
             matches = self.spec.matches(owed.view, content)
-            found = self._shows[key] = not isinstance(matches, Mismatch) and any(
+            found = self._showable[key] = not isinstance(matches, Mismatch) and any(
                 all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
                 for match in matches
             )

@@ -42,12 +42,9 @@ from missionfsm.bear.mission.readings import (
     AM_61,
     AM_64,
     AM_64_AUTOMATIC,
-    BLOCKED,
-    GAP,
-    HALTED,
     part_of,
 )
-from missionfsm.bear.mission.rules import ABILITY, CHARGING, LAST_GOAL
+from missionfsm.bear.mission.rules import ABILITY, CHARGING, LAST_GOAL, waiting
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     GOALLESS,
@@ -90,7 +87,7 @@ Assumed = tuple[Assumption, ...]
 Way = tuple[Edit, Assumed]
 """One way in which something takes effect, with what it assumes."""
 
-ADDED, ACTIVE, GONE, NOBODY = "those added", "the active one", "those that vanish", "none"
+ADDED, ACTIVE, GONE, NOBODY, STREAM = "those added", "the active one", "those that vanish", "none", "a stream"
 """Whose ids an answer has."""
 
 
@@ -133,7 +130,7 @@ def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcom
 def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -> Iterator[Outcome]:
     """The outcome, or the failure that a tester has armed in its place."""
     fault = robot.fault
-    if fault is None or outcome.code != OK or fault.status not in failures or outcome.whose == "stream":
+    if fault is None or outcome.code != OK or fault.status not in failures or outcome.whose == STREAM:
         yield outcome
         return
     disarmed: Edit = ((Op.ARM, None),)
@@ -141,7 +138,7 @@ def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -
     yield Outcome(fault.status, edit, NOBODY, outcome.assumes)
 
 
-TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
+UNLISTED_CODES = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
 """AM-61: codes of the transport and of authentication, which no table lists."""
 
 
@@ -156,7 +153,7 @@ def failing(request: Request, code: str) -> Failure | None:
         # No tester can drive a subscription to fail.
         open_ended = code == DEADLINE_EXCEEDED or request.operation == "SkipGoal"
         return Failure(open_ended=open_ended, drive=None if operation.streaming else "fault")
-    if code in TRANSPORT:
+    if code in UNLISTED_CODES:
         return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED))
     return None
 
@@ -168,7 +165,7 @@ def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
 # Missions that come.
 
 
-def _accepted(robot: Situation, call: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
+def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
     """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
 
     Args:
@@ -176,7 +173,7 @@ def _accepted(robot: Situation, call: str, wanted: Wanted, *, waits: bool) -> It
         waits: whether it does not start at once.
     """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
-    for mission, assumes in _as_possible(robot, call, wanted.kind, wanted.goals):
+    for mission, assumes in _doomed_or_hopeless(robot, operation, wanted.kind, wanted.goals):
         if wanted.kind not in AUTOMATIC:
             yield mission, assumes
             continue
@@ -190,26 +187,30 @@ def _accepted(robot: Situation, call: str, wanted: Wanted, *, waits: bool) -> It
             yield evolve(mission, goal=chosen), (*assumes, when["h"])
 
 
-def _as_possible(robot: Situation, call: str, kind: Kind, goals: tuple[Goal, ...]) -> Iterator[tuple[Mission, Assumed]]:
+def _doomed_or_hopeless(
+    robot: Situation, operation: str, kind: Kind, goals: tuple[Goal, ...]
+) -> Iterator[tuple[Mission, Assumed]]:
     """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
     reasons = []
     if is_missing(robot.world, goals):
-        reasons.append((AM_43[call]["b"], AM_43[call]["d"]))
+        reasons.append((AM_43[operation]["b"], AM_43[operation]["d"]))
     if is_foreign(robot.world, kind):
-        reasons.append((AM_41[call]["c"], AM_41[call]["d"]))
+        reasons.append((AM_41[operation]["c"], AM_41[operation]["d"]))
     for how in itertools.product(*reasons):
         at_once = any(one in how for one, _ in reasons)
         yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
 
 
-def _all_accepted(robot: Situation, call: str, wanted: tuple[Wanted, ...]) -> list[tuple[tuple[Mission, ...], Assumed]]:
+def _all_accepted(
+    robot: Situation, operation: str, wanted: tuple[Wanted, ...]
+) -> list[tuple[tuple[Mission, ...], Assumed]]:
     """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
     first = robot.active is None and not robot.queued
     held = first and robot.world.blocked
     waits = not first or held
     ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), UNCONSTRAINED)]
     for one in wanted:
-        accepted = tuple(_accepted(robot, call, one, waits=waits))
+        accepted = tuple(_accepted(robot, operation, one, waits=waits))
         ways = [
             ((*missions, mission), (*assumed, *assumes) if assumes else assumed, left)
             for missions, assumed, before in ways
@@ -218,23 +219,18 @@ def _all_accepted(robot: Situation, call: str, wanted: tuple[Wanted, ...]) -> li
         ]
         waits = True
     return [
-        ((evolve(missions[0], first=call), *missions[1:]) if held else missions, tuple(dict.fromkeys(assumed)))
+        ((evolve(missions[0], first=operation), *missions[1:]) if held else missions, tuple(dict.fromkeys(assumed)))
         for missions, assumed, _ in ways
     ]
 
 
-def _listed_anew(robot: Situation, call: str, edit: Edit) -> Iterator[Way]:
+def _listed_anew(robot: Situation, operation: str, edit: Edit) -> Iterator[Way]:
     """AM-13: the new missions follow the ended ones, or replace them."""
     if not robot.ended:
         yield edit, ()
         return
-    yield edit, (AM_13[call]["a"],)
-    yield ((Op.FORGET_ENDED, None), *edit), (AM_13[call]["b"],)
-
-
-def waiting(robot: Situation) -> str:
-    """Why missions wait where none is active: a part of AM-07, AM-34 and AM-37."""
-    return HALTED if robot.halted else BLOCKED if robot.world.blocked else GAP
+    yield edit, (AM_13[operation]["a"],)
+    yield ((Op.FORGET_ENDED, None), *edit), (AM_13[operation]["b"],)
 
 
 def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
@@ -444,7 +440,7 @@ def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
     if mission is None or call.target is not Target.ACTIVE or command is None:
         return
     promised = (f"bear.mission/UpdateMission/{command.name.removeprefix('COMMAND_').lower()}",)
-    for edit, assumes in _COMMANDS[command](robot, mission):
+    for edit, assumes in _COMMAND_EFFECTS[command](robot, mission):
         yield Outcome(OK, edit, NOBODY, assumes, promised)
 
 
@@ -500,7 +496,7 @@ def _finish(_: Situation, mission: Mission) -> Iterator[Way]:
     yield ((), (AM_30["b"],)) if mission.finishing else (become(evolve(mission, finishing=True)), (AM_30["b"],))
 
 
-_COMMANDS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
+_COMMAND_EFFECTS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
     Command.COMMAND_CANCEL: _cancelled,
     Command.COMMAND_PAUSE: _pause,
     Command.COMMAND_RESUME: _resume,
@@ -509,7 +505,7 @@ _COMMANDS: Mapping[Command, Callable[[Situation, Mission], Iterator[Way]]] = {
 
 
 def _subscribe(_: Situation, __: Call) -> Iterator[Outcome]:
-    yield Outcome(OK, (), "stream")
+    yield Outcome(OK, (), STREAM)
 
 
 _EFFECTS: Mapping[str, Callable[[Situation, Call], Iterator[Outcome]]] = {

@@ -102,44 +102,44 @@ def _under(rule: Rule, assumption: Assumption) -> Rule:
     return evolve(rule, assumes=assumption)
 
 
-def _format(call: str) -> tuple[Rule, ...]:
+def _format(operation: str) -> tuple[Rule, ...]:
     return (
         the_request_is_empty,
         the_request_is_malformed,
         a_goal_is_invalid,
         the_goals_do_not_match_the_mission_type,
-        _under(a_destination_is_not_on_the_map, AM_43[call]["a"]),
-        _under(a_goal_occurs_twice, AM_44[call]["i"]),
-        _under(a_field_is_unknown, AM_58[call]["b"]),
+        _under(a_destination_is_not_on_the_map, AM_43[operation]["a"]),
+        _under(a_goal_occurs_twice, AM_44[operation]["i"]),
+        _under(a_field_is_unknown, AM_58[operation]["b"]),
     )
 
 
-def _mission(call: str) -> tuple[Rule, ...]:
+def _mission(operation: str) -> tuple[Rule, ...]:
     return (
-        *_format(call),
-        _under(a_goal_occurs_twice_in_the_list, AM_44_AUTOMATIC[call]["i"]),
-        _under(the_mission_is_for_another_family, AM_41[call]["a"]),
-        _under(the_robot_is_of_another_family, AM_41[call]["b"]),
-        _under(no_goal_is_free, AM_45_REFUSED[call]["c"]),
-        _under(no_goal_is_free_now, AM_45_REFUSED[call]["c"]),
+        *_format(operation),
+        _under(a_goal_occurs_twice_in_the_list, AM_44_AUTOMATIC[operation]["i"]),
+        _under(the_mission_is_for_another_family, AM_41[operation]["a"]),
+        _under(the_robot_is_of_another_family, AM_41[operation]["b"]),
+        _under(no_goal_is_free, AM_45_REFUSED[operation]["c"]),
+        _under(no_goal_is_free_now, AM_45_REFUSED[operation]["c"]),
     )
 
 
-def _append(call: str) -> tuple[Rule, ...]:
+def _append(operation: str) -> tuple[Rule, ...]:
     return (
-        *_mission(call),
+        *_mission(operation),
         the_mission_queue_is_empty,
-        _under(every_mission_has_ended, AM_11[call]["b"]),
-        _under(no_mission_is_running, AM_12_PAUSED[call]["b"]),
-        _under(the_queue_is_halted, AM_12_HALTED[call]["b"]),
+        _under(every_mission_has_ended, AM_11[operation]["b"]),
+        _under(no_mission_is_running, AM_12_PAUSED[operation]["b"]),
+        _under(the_queue_is_halted, AM_12_HALTED[operation]["b"]),
     )
 
 
-def _no_fields(call: str) -> tuple[Rule, ...]:
-    return (the_request_is_malformed, _under(a_field_is_unknown, AM_58[call]["b"]))
+def _no_fields(operation: str) -> tuple[Rule, ...]:
+    return (the_request_is_malformed, _under(a_field_is_unknown, AM_58[operation]["b"]))
 
 
-_COMMAND = (the_mission_is_already_paused, the_mission_is_not_paused, a_paused_mission_cannot_be_finished)
+_COMMAND_REFUSALS = (the_mission_is_already_paused, the_mission_is_not_paused, a_paused_mission_cannot_be_finished)
 _ONE_ID = promise(
     "the-answer-names-the-new-mission",
     "The answer has the id of the mission that was created, which no mission had before.",
@@ -170,7 +170,7 @@ _SKIPPED = promise(
     "The active mission goes on to its next goal, and the answer has its id.",
     cite=MISSION["SkipGoal"],
 )
-_COMMANDED = tuple(
+_COMMAND_PROMISES = tuple(
     promise(name, says, cite=MISSION["UpdateMission", "Command enum"])
     for name, says in (
         ("cancel", "COMMAND_CANCEL ends the mission as cancelled."),
@@ -184,7 +184,7 @@ _SNAPSHOT = promise(
     "The first message of a stream shows the latest known state.",
     cite=MISSION["SubscribeMissionStatus"],
 )
-_EITHER = (INTERNAL, DEADLINE_EXCEEDED)
+_INTERNAL_OR_DEADLINE = (INTERNAL, DEADLINE_EXCEEDED)
 
 
 INVALID_UNLISTED = ("ChargeRobot", "SkipGoal")
@@ -208,7 +208,7 @@ def _operation(
     name: str,
     refusals: tuple[Rule, ...],
     *promises: Rule,
-    failures: tuple[str, ...] = _EITHER,
+    failures: tuple[str, ...] = _INTERNAL_OR_DEADLINE,
     streaming: bool = False,
 ) -> Operation:
     own = tuple(_at_home(name, one) for one in refusals)
@@ -301,10 +301,10 @@ OPERATIONS: Mapping[str, Operation] = {
                 the_robot_is_on_no_mission,
                 the_mission_is_still_queued,
                 *WRONG_ID,
-                *_COMMAND,
+                *_COMMAND_REFUSALS,
                 charging_cannot_be_paused,
             ),
-            *_COMMANDED,
+            *_COMMAND_PROMISES,
         ),
         _operation(
             "SubscribeMissionStatus",

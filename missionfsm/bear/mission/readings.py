@@ -1,6 +1,6 @@
 """Where the Mission page can be read in more than one way, entry by entry; ``specs/bear-mission.md`` argues each.
 
-Letters are those of the readings' list. An entry with several independent questions has an ambiguity for each, with a
+Letters are those of its entries. An entry with several independent questions has an ambiguity for each, with a
 word after its number, and a question that no sentence answers for several calls, situations or kinds of missions at
 once has one for each of those (`_each`). `WAIVED` has the entries without an ambiguity, and the letters that are not
 offered, with the reason.

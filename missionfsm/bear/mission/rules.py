@@ -224,10 +224,14 @@ def another_mission_is_active(robot: Situation, _: Call) -> bool:
     return robot.active is not None
 
 
+def waiting(robot: Situation) -> str:
+    """Why missions wait where none is active: a part of AM-07, AM-34 and AM-37."""
+    return HALTED if robot.halted else BLOCKED if robot.world.blocked else GAP
+
+
 def _waits(where: str, robot: Situation, _: Call) -> bool:
     """Whether missions wait and none is active, in one of the situations in which that can be so."""
-    found = HALTED if robot.halted else BLOCKED if robot.world.blocked else GAP
-    return robot.active is None and robot.queued and found == where
+    return robot.active is None and robot.queued and waiting(robot) == where
 
 
 def _about_waiting(operation: str, under: Mapping[str, Assumption], *rules: tuple[str, str, str]) -> tuple[Rule, ...]:

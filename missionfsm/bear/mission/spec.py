@@ -14,7 +14,8 @@ from missionfsm.bear.mission.effects import (
     ACTIVE,
     ADDED,
     GONE,
-    TRANSPORT,
+    STREAM,
+    UNLISTED_CODES,
     Outcome,
     call_of,
     failing,
@@ -215,7 +216,7 @@ def _outcomes(
     for outcome in outcomes(operation, situation(robot), call_of(robot, request, refs)):
         if not meet(assumed, outcome.assumes):
             continue
-        if outcome.whose == "stream":
+        if outcome.whose == STREAM:
             found += _opened(robot, outcome)
         else:
             found.append(_answered(robot, request, outcome))
@@ -276,7 +277,7 @@ def _answers(_: object, given: object) -> tuple[Match, ...] | Mismatch:
 @functools.cache
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
-    ends = {INTERNAL: (), **dict.fromkeys(TRANSPORT, (AM_61["b"],))}
+    ends = {INTERNAL: (), **dict.fromkeys(UNLISTED_CODES, (AM_61["b"],))}
     first = tuple(rule.id for rule in OPERATIONS["SubscribeMissionStatus"].promises)
     return Delivery(
         skips=AM_47_SKIP["b"],

@@ -1,9 +1,9 @@
 """Where the Robot Status page can be read in more than one way, entry by entry; ``specs/bear-status.md`` argues each.
 
-Letters are those of the readings' list. An entry with several independent questions has an ambiguity for each, with a
+Letters are those of its entries. An entry with several independent questions has an ambiguity for each, with a
 word after its number; one that is asked in several calls has a part for each, with the name of the call at its end
 (``AS-03.unknown.SubscribeBatteryStatus``): every call has a table of its own, and no sentence of the page says that two
-calls answer alike. The parts of one question are marked as alike. Readings that the list calls violations are not
+calls answer alike. The parts of one question are marked as alike. Readings that would be violations are not
 offered. `WAIVED` has the entries, or the parts of entries, from which no rule follows, with the reason.
 """
 
@@ -458,8 +458,8 @@ AMBIGUITIES: tuple[Ambiguity, ...] = tuple(
 """In the order of the list."""
 
 WAIVED: Mapping[str, str] = {
-    "AS-02 c": "an unknown id that is left out in silence: the list calls it a violation",
-    "AS-04 c, d": "union and intersection of the two arms: the list calls them deviations",
+    "AS-02 c": "an unknown id that is left out in silence: it would be a violation",
+    "AS-04 c, d": "union and intersection of the two arms: they would be deviations",
     "AS-05 b": "each message twice under one number breaks the sequence rule",
     "AS-09 d": "INTERNAL may be answered to a subscription at any time",
     "AS-08 a, b": "a map is read entry by entry, so that one first message and several are the same",

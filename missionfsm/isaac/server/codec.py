@@ -106,11 +106,11 @@ class _Reader:
         if robot == "":
             self.defects.add(inputs.NO_NAME)
         channel, status_channel = self._channel("channel"), self._channel("status_channel")
-        start, run = self._time("start_timeout", 5.0), self._time("timeout", math.inf)
+        start, run = self._time("start_timeout", inputs.DEFAULT_START / MICROSECONDS), self._time("timeout", math.inf)
         upstream = self._upstream()
         config = self._config()
         defects = tuple(one for one in DEFECTS if one in self.defects)
-        channel = "mission" if channel is None else channel
+        channel = inputs.DEFAULT_CHANNEL if channel is None else channel
         return Submission(robot, channel, status_channel, config, start, run, upstream, defects)
 
     def _text(self, key: str) -> str | None:

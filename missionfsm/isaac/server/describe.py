@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.inputs import Connects, Drops, Incoming, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import DEFAULT_START, Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.codec import Malformed
@@ -47,7 +47,7 @@ def _submission(asked: Submission) -> str:
     if asked.upstream:
         parts.append(f"{asked.upstream} upstream")
     for name, time in (("start_timeout", asked.start), ("timeout", asked.run)):
-        if time is not None and not (name == "start_timeout" and time == 5 * MICROSECONDS):
+        if time is not None and not (name == "start_timeout" and time == DEFAULT_START):
             parts.append(f"{name} {time / MICROSECONDS:g}")
     return f"submit({', '.join(parts)})"
 

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.values import value
 
 NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
 """What a line can be: a name, a status, a message for nobody, no message, one of another type."""
+
+DEFAULT_CHANNEL = "mission"
+"""The channel of a mission that names none."""
+
+DEFAULT_START = 5 * MICROSECONDS
+"""The time that a mission has to start if it does not say so, in microseconds."""
 
 
 @value(cache_hash=True)
@@ -18,10 +25,10 @@ class Submission:
     """
 
     robot: str | None = None
-    channel: str = "mission"
+    channel: str = DEFAULT_CHANNEL
     status_channel: str | None = None
     config: str = "{}"
-    start: int | None = 5_000_000
+    start: int | None = DEFAULT_START
     run: int | None = None
     upstream: int = 0
     defects: tuple[str, ...] = ()

@@ -1,6 +1,6 @@
 """Where the page can be read in more than one way as to the mission server; ``specs/isaac-server.md`` argues each.
 
-Letters are those of the readings' list; an entry with several questions has an ambiguity for each. Readings that the
+Letters are those of its entries; an entry with several questions has an ambiguity for each. Readings that the
 list calls violations are not offered.
 """
 

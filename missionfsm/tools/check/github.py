@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from missionfsm.kernel.text import printable
+from missionfsm.kernel.text import printable_lines
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
 _DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
@@ -30,14 +30,9 @@ def workflow_commands(verdicts: Iterable[tuple[str | None, str, Verdict]]) -> It
 def _command(kind: str, path: str | None, line: int, title: str, told: str) -> str:
     place = {"file": path, "line": str(line)} if path else {}
     properties = ",".join(
-        f"{name}={_clean(value).translate(_PROPERTY)}" for name, value in {**place, "title": title}.items()
+        f"{name}={printable_lines(value).translate(_PROPERTY)}" for name, value in {**place, "title": title}.items()
     )
-    return f"::{kind} {properties}::{_clean(told).translate(_DATA)}"
-
-
-def _clean(text: str) -> str:
-    """The text without what a terminal would obey; its lines stay apart."""
-    return "\n".join(map(printable, text.split("\n")))
+    return f"::{kind} {properties}::{printable_lines(told).translate(_DATA)}"
 
 
 __all__ = ["workflow_commands"]

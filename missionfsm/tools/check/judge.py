@@ -107,7 +107,7 @@ class Judge:
         self.exhausted = False
         self.recent: deque[Call] = deque(maxlen=RECENT)
         self._about: dict[Name, tuple[Name, ...]] = {}
-        self._waits = self._unanswered = False
+        self._lost_a_call = self._unanswered = False
         self._unexplained: Event | None = None
         self._undecided: Event | None = None
         self._violation: Violation | None = None
@@ -120,7 +120,7 @@ class Judge:
         """Take a line into account; False once the verdict cannot get better.
 
         Args:
-            place: where the line stands, for `place`.
+            place: where the line stands, kept in `place` if nothing explains it.
 
         Raises:
             UnreadableError: the line is not of the format.
@@ -136,7 +136,7 @@ class Judge:
         """Take the events of a line into account that was read already and need not be shown; see `feed`.
 
         Args:
-            place: where the line stands, for `place`.
+            place: where the line stands, kept in `place` if nothing explains it.
         """
         if not self.right:
             return False
@@ -175,11 +175,11 @@ class Judge:
             self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
             self.recent.append(Call(asked, self._about.pop(event.call, ()), event.answer, event.names))
         elif type(event) is Settled:
-            self._unanswered = self._unanswered or self._waits or open_calls
+            self._unanswered = self._unanswered or self._lost_a_call or open_calls
         elif type(event) is Called:
             if event.names:
                 self._about[event.call] = event.names
-            self._waits = self._waits or event.lost
+            self._lost_a_call = self._lost_a_call or event.lost
 
     def _hold(self, events: tuple[Event, ...], place: int) -> bool:
         """Events wait for those that follow."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from missionfsm.kernel.text import printable
+from missionfsm.kernel.text import printable, printable_lines
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
 
@@ -22,7 +22,7 @@ def junit(verdicts: Iterable[tuple[str, Verdict]]) -> bytes:
     )
     for name, verdict in judged:
         case = SubElement(suite, "testcase", classname=verdict.system, name=printable(name))
-        told = "\n".join(map(printable, str(verdict).split("\n")))
+        told = printable_lines(str(verdict))
         headline = told.partition("\n")[0]
         if verdict.conforms:
             SubElement(case, "system-out").text = told

@@ -39,12 +39,13 @@ class Quiet:
             self.timed = True
             if self._waiting and self._since is not None and at - self._since >= self.seconds:
                 before, self._waiting = (_SETTLED,), False
-        causes = sum(map(self._is_cause, events))  # each of them is noted
-        if causes:
+        noted = [self._note(event) for event in events]
+        if any(noted):
             self._since, self._waiting = self._since if at is None else at, True
         return (*before, *events)
 
-    def _is_cause(self, event: Event) -> bool:
+    def _note(self, event: Event) -> bool:
+        """Note what an event shows: whether something may come of it."""
         if type(event) is not Received:
             return True
         key = (event.channel, *(track for track, _ in event.marks))

@@ -14,7 +14,7 @@ from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, 
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
-Eliminations = Mapping[tuple[str, str], Elimination]
+Rulings = Mapping[tuple[str, str], Elimination]
 """Ambiguity id and letter to the event that ruled the letter out."""
 
 Answers = Mapping[str, Mapping[str, int]]
@@ -55,7 +55,7 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 
 
 def flagged(
-    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Eliminations, ways: Iterable[int] = ()
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, ways: Iterable[int] = ()
 ) -> tuple[str, ...]:
     """What is explained, and yet departs from the letter of the text or from itself, a line each.
 
@@ -80,7 +80,7 @@ def flagged(
 
 
 def flagged_in_all(
-    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Eliminations, several: Iterable[Iterable[int]]
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, several: Iterable[Iterable[int]]
 ) -> tuple[str, ...]:
     """What `flagged` says of several conversations that follow the same readings, an ambiguity once.
 
@@ -109,7 +109,7 @@ def _departing(spec: Spec, assumed: int) -> list[Ambiguity]:
     return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(one.possible(assumed))]
 
 
-def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Eliminations) -> str:
+def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> str:
     says = "; or: ".join(ambiguity.readings[letter] for letter in letters)
     event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), rulings)
     where = f" (seen where {event})" if event else ""
@@ -117,7 +117,7 @@ def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Eliminat
 
 
 def _incoherences(
-    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Eliminations
+    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Rulings
 ) -> Iterable[str]:
     """A line for every question that is read differently where it is asked alike, with an event for each side."""
     said: set[str | None] = set()
@@ -132,7 +132,7 @@ def _incoherences(
         yield f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
 
 
-def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Eliminations) -> str:
+def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Rulings) -> str:
     """The event that ruled out the last of some letters, as far as that is known."""
     found = [rulings[ambiguity.id, letter] for letter in letters if (ambiguity.id, letter) in rulings]
     return str(max(found, key=lambda ruling: ruling.at)) if found else ""

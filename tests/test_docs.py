@@ -30,6 +30,8 @@ PAGES = sorted((ROOT / "docs").glob("*.md"))
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 RUN_SHELL = re.compile(r"<!-- run: shell -->\n```bash\n(.*?)```", re.DOTALL)
 RUN_PYTHON = re.compile(r"<!-- run -->\n```python\n(.*?)```", re.DOTALL)
+RUN_LOGS = re.compile(r"<!-- run: logs -->\n```(python|console)\n(.*?)```", re.DOTALL)
+RUN_SQL = re.compile(r"<!-- run: sql -->\n```sql\n(.*?)```", re.DOTALL)
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)")
 
 
@@ -171,6 +173,78 @@ def test_commands_that_are_shown_are_found() -> None:
 def test_python_that_is_shown_runs(script: str) -> None:
     """What a reader copies into Python works."""
     exec(compile(script, "docs", "exec"), {})  # noqa: S102 - the page's own code
+
+
+MARKED = re.compile(r"(?:<!-- (.*) -->\n)?```(bash|console|python|sql)\n")
+RUNS = {
+    "run": "tests/test_docs.py",
+    "run: shell": "tests/test_docs.py",
+    "run: logs": "tests/test_docs.py",
+    "run: sql": "tests/test_docs.py",
+    "run: lamp": "tests/test_newsystem.py",
+    "run: grpcurl": "tests/grpc/test_grpc_page.py",
+    "console": "tests/test_readme.py",
+    "suite": "tests/test_readme.py",
+    "ci: main": ".ci/run",
+    "ci: test": ".ci/run",
+}
+"""What stands before a block that is run, and the file that runs it."""
+NOT_RUN = re.compile(r"not run: .*?(tests/[\w/.]+|\.ci/run)")
+
+
+@pytest.mark.parametrize("page", sorted(EVERY_PAGE), ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_block_is_run_or_says_why_not(page: Path) -> None:
+    """Before each block of code stands by what it is run, or why it is not, and then what runs in its place."""
+    for marker, kind in MARKED.findall(page.read_text()):
+        instead = NOT_RUN.match(marker)
+        by = instead[1] if instead else RUNS.get(marker)
+        assert by is not None, f"{kind} after {marker!r}"
+        assert (ROOT / by).exists(), by
+        assert instead or f"<!-- {marker.partition(':')[0]}" in (ROOT / by).read_text(), by
+
+
+@pytest.fixture
+def logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder `logs` with what conforms and what does not, where the reader stands."""
+    (tmp_path / "logs").mkdir()
+    for verdict in ("conform", "violate"):
+        some = sorted((ROOT / "tests" / "bear" / "edges" / verdict).glob("*.jsonl"))[:2]
+        for one in some:
+            (tmp_path / "logs" / one.name).write_bytes(one.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("kind", "text"), [found for path in PAGES for found in RUN_LOGS.findall(path.read_text())])
+def test_what_is_shown_of_logs_runs(kind: str, text: str, logs: Path, command_line: CommandLine) -> None:
+    """Logs are judged as the page shows it: every file has a verdict, whatever judges it."""
+    files = sorted(one.name for one in (logs / "logs").iterdir())
+    if "dask" in text or "fleet" in text:
+        pytest.importorskip("distributed", reason="the extra fleet is not installed")
+    if "parquet" in text:
+        pytest.importorskip("pyarrow", reason="the extra parquet is not installed")
+    if kind == "python":
+        (logs / "shown.py").write_text(text)
+        command = [sys.executable, "shown.py"]
+        told = subprocess.run(command, cwd=logs, capture_output=True, text=True, check=True, timeout=120).stdout
+        assert [name for name in files if name not in told] == []
+        return
+    for line in text.splitlines():
+        ended = command_line(*shlex.split(line.removeprefix("$ missionfsm ")))
+        assert (ended.status, ended.err) == (1, "")
+        assert f"{len(files)} " in ended.out
+
+
+def test_the_question_to_the_table_is_answered(logs: Path, command_line: CommandLine) -> None:
+    """The SQL that is shown finds the rules that are broken in the table that `--parquet` writes."""
+    pytest.importorskip("pyarrow", reason="the extra parquet is not installed")
+    duckdb = pytest.importorskip("duckdb", reason="DuckDB is not installed")
+    command_line("check", "logs", "--parquet", "verdicts.parquet", "--json", "verdicts.json")
+    verdicts = json.loads((logs / "verdicts.json").read_text())
+    broken = {one["violation"]["rules"][0] for one in verdicts if one["violation"]}
+    for text in (text for path in PAGES for text in RUN_SQL.findall(path.read_text())):
+        assert {row[0] for row in duckdb.sql(text).fetchall()} == broken
 
 
 def test_the_servers_that_share_robots_are_those_of_the_simulation() -> None:

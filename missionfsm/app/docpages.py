@@ -5,6 +5,7 @@ A computed part stands between ``<!-- generated: KIND WHAT -->`` and ``<!-- end 
 - ``session SYSTEM``: a session with the reference, line by line;
 - ``history SYSTEM``: the same session as a history;
 - ``calls SYSTEM``: every call with a request and the answer of the reference;
+- ``messages SYSTEM``: every message with its members;
 - ``world SYSTEM``: the default world;
 - ``statuses``: the status names with their numbers;
 - ``transport``: what may happen on the way from an implementation to a log of it.
@@ -55,6 +56,7 @@ def regenerate(text: str) -> str:
         "session": _session,
         "history": _history,
         "calls": _calls,
+        "messages": _messages,
         "world": _world,
         "statuses": _statuses,
         "transport": _transport,
@@ -145,6 +147,37 @@ def _call(found: System, method: str) -> str:
                 return f"| `{method}` | `{json.dumps(asked)}` | `{_cut(json.dumps(exchange.result))}` |"
     message = f"{found.name}: no request of {method} that is worth trying succeeds"
     raise AssertionError(message)
+
+
+def _messages(name: str) -> str:
+    """Every message that requests, answers and streams are made of; names as they are read, in their first form."""
+    shapes = the_system(name).shapes()
+    rows = [
+        f"| {message} | {_members(schema)} |" for message, schema in shapes.definitions.items() if schema["properties"]
+    ]
+    return "\n".join(("| message | members |", "| --- | --- |", *rows))
+
+
+def _members(schema: JSON) -> str:
+    exclusive = {one for rule in schema.get("allOf", ()) for one in rule.get("not", {}).get("required", ())}
+    members = [(one, _kind(kind)) for one, kind in schema["properties"].items() if "_" not in one]
+    told = [f"`{one}` {kind}" for one, kind in members if one not in exclusive]
+    *others, last = [f"`{one}` {kind}" for one, kind in members if one in exclusive] or [""]
+    return ", ".join((*([f"one of {', '.join(others)} or {last}"] if others else []), *told))
+
+
+def _kind(schema: JSON) -> str:
+    """What a member is, in a few words: the first thing that its schema allows, which is how it is written best."""
+    if "anyOf" in schema:
+        return _kind(next(one for one in schema["anyOf"] if one != {"type": "null"}))
+    if "$ref" in schema:
+        return str(schema["$ref"].rpartition("/")[2])
+    if "enum" in schema:
+        return f"({', '.join(schema['enum'])})"
+    if schema.get("type") == "array":
+        return f"{_kind(schema['items'])}[]"
+    kind = schema.get("type", "any")
+    return kind if isinstance(kind, str) else str(kind[0])
 
 
 def _cut(text: str) -> str:

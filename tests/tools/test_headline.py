@@ -11,6 +11,7 @@ from pathlib import Path
 
 import orjson
 import pytest
+from attrs import evolve
 from broken import BUSY, MISSION
 from commandline import CommandLine
 
@@ -191,6 +192,17 @@ def test_the_rule_ids_that_are_told_can_be_expected(command_line: CommandLine, t
     assert ids is not None
     (tmp_path / "known").write_text(ids[1])
     assert command_line("check", log, "--expect-violations", tmp_path / "known").status == 0
+
+
+def test_rules_of_what_was_met_before_it_was_made_short_are_told_as_such(tmp_path: Path) -> None:
+    """Where the short story breaks other rules than the one that was met, what is expected is told apart from it."""
+    ((_, verdict),) = check_file(str(skipped(tmp_path / "log")))
+    assert verdict.violation is not None
+    other = evolve(verdict, violation=evolve(verdict.violation, listed=("bear.mission/other/rule",)))
+    lines = other.told().splitlines()
+    at = lines.index("  as it was met before it was made short, and as --expect-violations takes it:")
+    assert lines[at + 1] == "    bear.mission/other/rule"
+    assert "  as --expect-violations takes it:" in verdict.told().splitlines()
 
 
 def test_what_is_written_says_how_it_was_made(command_line: CommandLine, tmp_path: Path) -> None:

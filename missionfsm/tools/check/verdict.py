@@ -321,8 +321,12 @@ class Verdict:
 
     def _rule_ids(self) -> list[str]:
         """The rules that are broken as a list of known violations takes them."""
-        ids = self.violation.known_by if self.violation else ()
-        return ["  as --expect-violations takes it:", *(f"    {one}" for one in ids)] if ids else []
+        if not self.violation or not self.violation.known_by:
+            return []
+        ids = self.violation.known_by
+        shown = {rule.id for rule in self.violation.rules}
+        met = "" if shown.issuperset(ids) else "as it was met before it was made short, and "
+        return [f"  {met}as --expect-violations takes it:", *(f"    {one}" for one in ids)]
 
     def _readings(self, *, verbose: bool) -> list[str]:
         """The readings that are left: those of open questions first, the others only if they are wanted."""

@@ -1,18 +1,16 @@
-"""Breaks that binary protobuf can carry are found on the wire as they are in this process."""
+"""Breaks that binary protobuf can carry are found on the wire, and readings accepted; tests/bench has all of them."""
 
 from __future__ import annotations
 
 import functools
 
 import pytest
-from brokenserver import Searcher
 from commandline import CommandLine
-from relay import Relay
+from onwire import Searcher, breaks_carried, connected, readings_accepted
 
-from missionfsm.adapters.grpc.client import GrpcSubject
-from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.serve import serve
 from missionfsm.systems import system
+from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.mutate.teeth import Mutant, mutants
 
 BREAKS = (
@@ -22,7 +20,8 @@ BREAKS = (
     "bear.mission/lifecycle/goals-are-taken-up-in-order skips one",
     "bear.status/GetRobotStatus/PERMISSION_DENIED/the-robot-is-somebody-elses is dropped",
 )
-"""One of every kind; tests/bench/test_bench_breaks.py has all of them."""
+"""One of every kind."""
+SYSTEMS = ("bear.mission", "bear.status")
 
 
 @functools.cache
@@ -34,33 +33,40 @@ def mutant(name: str) -> Mutant:
     return next(one for one in mutants(system(name.partition("/")[0])) if one.name == name)
 
 
-@pytest.mark.parametrize("name", BREAKS)
-def test_a_break_is_found_over_grpc_as_in_process(name: str) -> None:
-    """What is served with a rule broken is judged wrong, against the rules that it is judged by in process."""
-    found, broken = searcher(name.partition("/")[0]), mutant(name)
-    rules = found.in_process(broken)
-    assert rules
-    assert set(found.over_grpc(broken)) == set(rules)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_breaks_are_found_over_grpc_and_through_a_proxy(name: str) -> None:
+    """What is served with a rule broken is judged wrong where it is in process; what stands between hides nothing."""
+    found = breaks_carried(system(name), [mutant(one) for one in BREAKS if one.startswith(name)], 1)
+    assert (found.hidden, found.wrong, found.shown) == ([], [], found.every)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_sample_of_all_breaks_is_found_over_grpc(name: str) -> None:
+    """So it is with every sixtieth of all breaks, where it shows in binary requests."""
+    found = breaks_carried(system(name), mutants(system(name)), 60)
+    assert found.wrong == []
+    assert found.shown > 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_sample_of_all_readings_is_accepted_over_grpc(name: str) -> None:
+    """The reference under every reading of every sixtieth ambiguity conforms, alone and through a proxy."""
+    found = readings_accepted(system(name), 60)
+    assert found.wrong == []
+    assert found.shown > 2
 
 
 def test_a_break_is_asked_for_by_its_rule() -> None:
     """A rule's id alone breaks it in the first way that there is."""
-    broken = mutant(BREAKS[1])
-    with serve("bear.mission", broken=broken.rule) as robot:
-        subject = GrpcSubject("bear.mission", Target(robot.target, settle=0.02))
-        assert broken.rule in searcher("bear.mission").search(broken, subject)
-        subject.close()
-
-
-def test_a_break_is_found_through_a_proxy() -> None:
-    """What stands between the tester and a broken robot neither hides the break nor makes another of it."""
-    broken = mutant(BREAKS[1])
-    with serve("bear.mission", broken=broken.rule) as robot:
-        relay = Relay(robot.target, lambda _: None)
-        subject = GrpcSubject("bear.mission", Target(f"localhost:{relay.proxy.port}", settle=0.02))
-        assert broken.rule in searcher("bear.mission").search(broken, subject)
-        subject.close()
-        relay.close()
+    broken, of = mutant(BREAKS[1]), system("bear.mission")
+    had = searcher("bear.mission").break_shown(broken)
+    assert had is not None
+    with serve("bear.mission", broken=broken.rule) as robot, connected(of, robot.target) as subject:
+        violation = searcher("bear.mission").violation(subject, had)
+    assert isinstance(violation, Violation)
+    assert broken.rule in [rule.id for rule in violation.rules]
 
 
 def test_a_break_that_does_not_exist_is_told_with_the_nearest(command_line: CommandLine) -> None:

@@ -7,35 +7,27 @@ nor on how many wait. That makes it worth remembering, and every outcome is comp
 from __future__ import annotations
 
 import functools
-import itertools
 from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
 
-from missionfsm.bear.mission.inputs import Call, Request, Target, Wanted
+from missionfsm.bear.mission.adding import append, charge, create, create_workflow
+from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import OPERATIONS, ranking
+from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings import (
-    AM_06,
-    AM_07,
     AM_09,
     AM_09_SKIP,
     AM_10,
     AM_10_START,
-    AM_12_HALTED,
-    AM_13,
     AM_17_LAST,
     AM_17_PATROL,
     AM_18,
     AM_19,
     AM_19_RETURN,
-    AM_25,
-    AM_27,
     AM_29,
     AM_30,
     AM_34,
-    AM_37_QUEUED,
-    AM_41,
-    AM_43,
     AM_45_NONE,
     AM_45_WHEN,
     AM_53,
@@ -50,7 +42,6 @@ from missionfsm.bear.mission.state import (
     GOALLESS,
     NOT_CHOSEN,
     PATROLS,
-    RETURN_POINT,
     SYSTEM,
     Edit,
     Kind,
@@ -60,11 +51,9 @@ from missionfsm.bear.mission.state import (
     Situation,
     World,
     free_goal,
-    is_foreign,
-    is_missing,
 )
-from missionfsm.bear.wire.messages import Command, Goal, State
-from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
+from missionfsm.bear.wire.messages import Command, State
+from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
     CANCELLED,
     DEADLINE_EXCEEDED,
@@ -81,27 +70,6 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import ONCE_HAD
-from missionfsm.kernel.values import value
-
-Assumed = tuple[Assumption, ...]
-Way = tuple[Edit, Assumed]
-"""One way in which something takes effect, with what it assumes."""
-
-ADDED, ACTIVE, GONE, NOBODY, STREAM = "those added", "the active one", "those that vanish", "none", "a stream"
-"""Whose ids an answer has."""
-
-
-@value
-class Outcome:
-    """One answer that is allowed in a situation, with the edit that comes with it."""
-
-    code: str
-    edit: Edit = ()
-    whose: str = NOBODY
-    assumes: Assumed = ()
-    rules: tuple[str, ...] = ()
-    applied: bool = True
-    """See `missionfsm.kernel.step.Step`."""
 
 
 @functools.lru_cache(maxsize=100_000)
@@ -163,172 +131,6 @@ def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
 
 
 # Missions that come.
-
-
-def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
-    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
-
-    Args:
-        call: the operation.
-        waits: whether it does not start at once.
-    """
-    assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
-    for mission, assumes in _doomed_or_hopeless(robot, operation, wanted.kind, wanted.goals):
-        if wanted.kind not in AUTOMATIC:
-            yield mission, assumes
-            continue
-        chosen = free_goal(wanted.goals, robot.world)
-        if chosen == NOT_CHOSEN or not waits:
-            # Selecting when it is created and when it starts is the same for a mission that starts at once.
-            yield evolve(mission, goal=NOT_CHOSEN), assumes
-        else:
-            when = AM_45_WHEN[part_of(wanted.kind)]
-            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, when["i", "j"])
-            yield evolve(mission, goal=chosen), (*assumes, when["h"])
-
-
-def _doomed_or_hopeless(
-    robot: Situation, operation: str, kind: Kind, goals: tuple[Goal, ...]
-) -> Iterator[tuple[Mission, Assumed]]:
-    """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
-    reasons = []
-    if is_missing(robot.world, goals):
-        reasons.append((AM_43[operation]["b"], AM_43[operation]["d"]))
-    if is_foreign(robot.world, kind):
-        reasons.append((AM_41[operation]["c"], AM_41[operation]["d"]))
-    for how in itertools.product(*reasons):
-        at_once = any(one in how for one, _ in reasons)
-        yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
-
-
-def _all_accepted(
-    robot: Situation, operation: str, wanted: tuple[Wanted, ...]
-) -> list[tuple[tuple[Mission, ...], Assumed]]:
-    """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
-    first = robot.active is None and not robot.queued
-    held = first and robot.world.blocked
-    waits = not first or held
-    ways: list[tuple[tuple[Mission, ...], Assumed, int]] = [((), (), UNCONSTRAINED)]
-    for one in wanted:
-        accepted = tuple(_accepted(robot, operation, one, waits=waits))
-        ways = [
-            ((*missions, mission), (*assumed, *assumes) if assumes else assumed, left)
-            for missions, assumed, before in ways
-            for mission, assumes in accepted
-            if (left := meet(before, assumes))
-        ]
-        waits = True
-    return [
-        ((evolve(missions[0], first=operation), *missions[1:]) if held else missions, tuple(dict.fromkeys(assumed)))
-        for missions, assumed, _ in ways
-    ]
-
-
-def _listed_anew(robot: Situation, operation: str, edit: Edit) -> Iterator[Way]:
-    """AM-13: the new missions follow the ended ones, or replace them."""
-    if not robot.ended:
-        yield edit, ()
-        return
-    yield edit, (AM_13[operation]["a"],)
-    yield ((Op.FORGET_ENDED, None), *edit), (AM_13[operation]["b"],)
-
-
-def _create(robot: Situation, call: Call) -> Iterator[Outcome]:
-    paused = (AM_06["b"],) if robot.active is not None else ()
-    operation = call.request.operation
-    for missions, assumes in _all_accepted(robot, operation, call.request.wanted):
-        for edit, anew in _listed_anew(robot, operation, ((Op.ADD, missions),)):
-            yield Outcome(OK, edit, ADDED, (*paused, *assumes, *anew))
-
-
-def _create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
-    (wanted,) = call.request.wanted
-    for parts, how in _workflow_missions(wanted):
-        for missions, assumes in _all_accepted(robot, "CreateMissionWorkflow", parts):
-            for edit, anew in _listed_anew(robot, "CreateMissionWorkflow", ((Op.ADD, missions),)):
-                yield from _joining(robot, edit, (*how, *assumes, *anew))
-
-
-def _joining(robot: Situation, edit: Edit, assumes: Assumed) -> Iterator[Outcome]:
-    """AM-07: a workflow joins the missions that wait, or replaces them; a halted queue may go on with it."""
-    if not robot.queued:
-        yield Outcome(OK, edit, ADDED, assumes)
-        return
-    how = AM_07[waiting(robot)]
-    yield Outcome(OK, edit, ADDED, (*assumes, how["b"]))
-    yield Outcome(OK, ((Op.DROP_QUEUE, None), *edit, (Op.HALT, False)), ADDED, (*assumes, how["r"]))
-    if robot.halted:
-        yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, how["b"]))
-
-
-@functools.lru_cache(maxsize=1_000)
-def _workflow_missions(wanted: Wanted) -> tuple[tuple[tuple[Wanted, ...], Assumed], ...]:
-    """AM-25, AM-27: the missions that a workflow may create, with their goals."""
-    assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - as above
-    part = part_of(wanted.kind)
-    many, point = AM_25[part], AM_27[part]
-    back, place = Wanted(Kind.RETURN), (RETURN_POINT,)
-
-    def to(*goals: Goal) -> Wanted:
-        return evolve(wanted, goals=goals)
-
-    whole = wanted.goals
-    each = tuple(map(to, whole))
-    ways: list[tuple[tuple[Wanted, ...], Assumed]] = [
-        ((wanted,), (many["a"], point["a"])),
-        ((to(*whole, *place),), (many["a"], point["b"])),
-        ((wanted, back), (many["b"],)),
-        (each, (many["c"],)),
-        ((*each, back), (many["d"],)),
-    ]
-    others = (
-        (to(*whole, *place), back),
-        (to(*place, *whole),),
-        (to(*place, *whole, *place),),
-        (to(*whole, *place, *place),),
-        (back, wanted),
-        (back, wanted, back),
-        (wanted, back, back),
-        tuple(to(goal, *place) for goal in whole),
-        tuple(itertools.chain.from_iterable((one, back) for one in each)),
-        *(tuple(to(*group) for group in groups) for groups in _groups(whole)),
-    )
-    known = {parts for parts, _ in ways}
-    return (*ways, *((parts, (many["x"],)) for parts in dict.fromkeys(others) if parts not in known))
-
-
-def _groups(goals: tuple[Goal, ...]) -> Iterator[tuple[tuple[Goal, ...], ...]]:
-    """Every way to cut goals into groups of which none is empty."""
-    for cuts in itertools.product((False, True), repeat=len(goals) - 1):
-        ends = [0, *(at for at, cut in enumerate(cuts, 1) if cut), len(goals)]
-        yield tuple(goals[begin:end] for begin, end in itertools.pairwise(ends))
-
-
-def _append(robot: Situation, call: Call) -> Iterator[Outcome]:
-    operation = call.request.operation
-    for missions, assumes in _all_accepted(robot, operation, call.request.wanted):
-        edit: Edit = ((Op.ADD, missions),)
-        if robot.halted:
-            how = AM_12_HALTED[operation]
-            yield Outcome(OK, edit, ADDED, (*assumes, how["a"]))
-            yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, how["c"]))
-        else:
-            yield Outcome(OK, edit, ADDED, assumes)
-
-
-def _charge(robot: Situation, _: Call) -> Iterator[Outcome]:
-    alone = robot.active is None and not robot.queued
-    charge = (Mission(Kind.CHARGE, first="ChargeRobot" if alone and robot.world.blocked else ""),)
-    ways: list[Way] = [(((Op.ADD, charge),), ())]
-    if robot.active is None and robot.queued:
-        how = AM_37_QUEUED[waiting(robot)]
-        ways = [
-            (((Op.ADD, charge), (Op.HALT, False)), (how["b"],)),
-            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (how["c"],)),
-        ]
-    for edit, assumes in ways:
-        for whole, anew in _listed_anew(robot, "ChargeRobot", edit):
-            yield Outcome(OK, whole, ADDED, (*assumes, *anew))
 
 
 # Missions that end.
@@ -509,12 +311,12 @@ def _subscribe(_: Situation, __: Call) -> Iterator[Outcome]:
 
 
 _EFFECTS: Mapping[str, Callable[[Situation, Call], Iterator[Outcome]]] = {
-    "CreateMission": _create,
-    "CreateMissionBatch": _create,
-    "CreateMissionWorkflow": _create_workflow,
-    "AppendMission": _append,
-    "AppendMissionBatch": _append,
-    "ChargeRobot": _charge,
+    "CreateMission": create,
+    "CreateMissionBatch": create,
+    "CreateMissionWorkflow": create_workflow,
+    "AppendMission": append,
+    "AppendMissionBatch": append,
+    "ChargeRobot": charge,
     "ClearMissionStatus": _clear,
     "SkipGoal": _skip,
     "UpdateMission": _update,

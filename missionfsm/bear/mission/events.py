@@ -7,7 +7,8 @@ from collections.abc import Hashable, Iterable, Iterator
 
 from attrs import evolve
 
-from missionfsm.bear.mission.effects import Way, become, end, failed, failed_to_start, reselected
+from missionfsm.bear.mission.effects import become, end, failed, failed_to_start, reselected
+from missionfsm.bear.mission.outcome import Way
 from missionfsm.bear.mission.readings import AM_43_LEFT, AM_45_NONE, AM_53_THEN, QUEUE, part_of
 from missionfsm.bear.mission.state import (
     AUTOMATIC,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from missionfsm.bear.mission.codec import REQUESTS, RESULTS, STREAMS
+from missionfsm.bear.mission.codec import RESULTS, STREAMS
+from missionfsm.bear.mission.request_codec import REQUESTS
 from missionfsm.bear.mission.state import Family
 from missionfsm.bear.wire.messages import Empty, FamilyStatus, MissionStatus
 from missionfsm.bear.wire.schema import names_of, reference

@@ -10,23 +10,13 @@ from attrs import evolve
 
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
 from missionfsm.bear.mission.describe import describe
-from missionfsm.bear.mission.effects import (
-    ACTIVE,
-    ADDED,
-    GONE,
-    STREAM,
-    UNLISTED_CODES,
-    Outcome,
-    call_of,
-    failing,
-    outcomes,
-    target,
-)
+from missionfsm.bear.mission.effects import UNLISTED_CODES, call_of, failing, outcomes, target
 from missionfsm.bear.mission.events import Happening, by_itself, due, happens
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
+from missionfsm.bear.mission.outcome import ACTIVE, ADDED, GONE, STREAM, Outcome
 from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_58_SENT, AM_61, AMBIGUITIES
 from missionfsm.bear.mission.state import (
     AUTOMATIC,

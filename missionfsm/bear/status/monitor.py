@@ -17,7 +17,8 @@ import marshal
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
-from missionfsm.bear.status.codec import map_value, metadata_of, read_state, single_value
+from missionfsm.bear.status.codec import map_value, metadata_of, single_value
+from missionfsm.bear.status.drive_codec import read_state
 from missionfsm.bear.status.spec import sequence
 from missionfsm.bear.status.state import MAPS, PARTS, SINGLES, WIFI, Endpoint, Value
 from missionfsm.bear.status.stream import SELECTED, SEQUENCE, WELL_FORMED

@@ -8,7 +8,8 @@ from collections.abc import Hashable, Mapping
 from attrs import evolve
 
 from missionfsm.bear.status.describe import describe
-from missionfsm.bear.status.effects import TRANSPORT, armed, failing, moved, outcomes, reported, restarted
+from missionfsm.bear.status.effects import TRANSPORT, failing, outcomes
+from missionfsm.bear.status.events import armed, moved, reported, restarted
 from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
 from missionfsm.bear.status.readings import (
     AMBIGUITIES,

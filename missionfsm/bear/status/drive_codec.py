@@ -1,0 +1,228 @@
+"""Worlds, drives and the states in them as JSON: testers and logs write them, so that what is wrong is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from attrs import evolve
+
+from missionfsm.bear.status import messages as wire
+from missionfsm.bear.status.messages import RobotState, Wifi
+from missionfsm.bear.status.state import (
+    LOCALIZATION,
+    PARTS,
+    WIFI,
+    Happening,
+    Location,
+    Robot,
+    Value,
+    World,
+)
+from missionfsm.bear.status.values import clamped, single
+from missionfsm.bear.status.views import Seen, canonical, canonical_state
+from missionfsm.bear.wire.messages import MissionState, Pose
+from missionfsm.bear.wire.protojson import MalformedError, camel, read, write
+from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.history import Name
+from missionfsm.kernel.rules import INTERNAL
+from missionfsm.kernel.text import brief
+
+_KINDS: Mapping[str, type] = {
+    "connection": wire.RobotConnection,
+    "battery": wire.BatteryState,
+    "emergency_stop": wire.EmergencyStopState,
+    "mission": MissionState,
+    "pose": Pose,
+    "error_codes": wire.ErrorCodes,
+    "servi_state": wire.ServiState,
+    "carti_state": wire.CartiState,
+    "twist": wire.Twist,
+    "navigation_state": wire.NavigationState,
+    WIFI: Wifi,
+}
+
+
+_PARTS: Mapping[str, str] = {name: part for part in PARTS for name in (camel(part), part)}
+
+
+def _refuse(says: str) -> UnreadableError:
+    return UnreadableError(says)
+
+
+def _text(given: Mapping[str, JSON], name: str, where: str) -> str:
+    value = given.get(name)
+    if not isinstance(value, str) or not value:
+        raise _refuse(f"{where}.{name}: {brief(value)} is not a text")
+    return value
+
+
+def _objects(given: JSON, where: str) -> list[dict[str, JSON]]:
+    found = [] if given is None else given
+    if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+        raise _refuse(f"{where}: {brief(given)} is not a list of objects")
+    return found
+
+
+def _owned(given: Mapping[str, JSON], where: str) -> bool:
+    value = given.get("owned", True)
+    if not isinstance(value, bool):
+        raise _refuse(f"{where}.owned: {brief(value)} is not true or false")
+    return value
+
+
+def part_value(part: str, given: JSON) -> Value:
+    """What a robot reports of a part. Raises MalformedError."""
+    if given is None or part == LOCALIZATION:
+        return None
+    if part == "mission":
+        return read_state({"mission": given})[0].mission
+    value: Value = canonical(part, single(read(_KINDS[part], given)))
+    return value
+
+
+def _robot(given: dict[str, JSON], where: str) -> Robot:
+    robot_id, state, wifi = _text(given, "robotId", where), given.get("state"), given.get("wifi")
+    location = given.get("locationId", "")
+    if not isinstance(location, str):
+        raise _refuse(f"{where}.locationId: {brief(location)} is not a text")
+    try:
+        known = read_state(state)[0]
+        network = part_value(WIFI, wifi)
+    except MalformedError as error:
+        raise _refuse(f"{where}: {error}") from None
+    known = evolve(known, battery=clamped(known.battery))
+    if known.servi_state is not None and known.carti_state is not None:
+        raise _refuse(f"{where}.state: servi_state and carti_state are both set")
+    return Robot(robot_id, location, _owned(given, where), known, clamped(network))
+
+
+def world(given: JSON) -> World:
+    """The world of a `reset` or of a history's first line."""
+    given = {} if given is None else given
+    if not isinstance(given, dict):
+        raise _refuse(f"world: {brief(given)} is not an object")
+    unknown = [name for name in given if name not in ("robots", "locations")]
+    if unknown:
+        raise _refuse(f"world.{unknown[0]}: there is no such field; there are robots, locations")
+    robots = tuple(
+        _robot(one, f"world.robots[{index}]") for index, one in enumerate(_objects(given.get("robots"), "world.robots"))
+    )
+    locations = tuple(
+        Location(_text(one, "locationId", f"world.locations[{index}]"), _owned(one, f"world.locations[{index}]"))
+        for index, one in enumerate(_objects(given.get("locations"), "world.locations"))
+    )
+    for kind, ids in (("robot", [one.id for one in robots]), ("location", [one.id for one in locations])):
+        if len(set(ids)) < len(ids):
+            raise _refuse(f"world: a {kind} is listed twice")
+    return World(robots, locations)
+
+
+def write_world(one: World) -> JSON:
+    """The parameters of `reset`."""
+    return {
+        "robots": [
+            {
+                "robotId": robot.id,
+                "locationId": robot.location,
+                "owned": robot.owned,
+                "state": write(robot.state),
+                "wifi": None if robot.wifi is None else write(robot.wifi),
+            }
+            for robot in one.robots
+        ],
+        "locations": [{"locationId": place.id, "owned": place.owned} for place in one.locations],
+    }
+
+
+def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
+    """The event of a drive."""
+    if not isinstance(given, dict) or not isinstance(given.get("event"), str):
+        raise _refuse(f"drive: {brief(given)} names no event")
+    event = given["event"]
+    if event == "fault":
+        if given.get("status") != INTERNAL:
+            raise _refuse(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
+        return Happening("fault", value=INTERNAL), ()
+    if event not in ("report", "restart", "move"):
+        raise _refuse(f"drive.event: {brief(event)} is not a drive of bear.status")
+    robot = _text(given, "robotId", "drive")
+    if event == "restart":
+        return Happening("restart", robot), ()
+    if event == "move":
+        return Happening("move", robot, value=_text(given, "locationId", "drive")), ()
+    named = given.get("part")
+    part = _PARTS.get(named) if isinstance(named, str) else None
+    if part is None:
+        raise _refuse(f"drive.part: {brief(given.get('part'))} is not a part of a robot's state")
+    try:
+        value = part_value(part, given.get("value"))
+    except MalformedError as error:
+        raise _refuse(f"drive.value: {error}") from None
+    return Happening("report", robot, part, value), ()
+
+
+def write_drive(happening: Happening, _: tuple[Name, ...] = ()) -> JSON:
+    """The JSON of a drive."""
+    if happening.name == "fault":
+        return {"event": "fault", "status": happening.value}
+    if happening.name == "restart":
+        return {"event": "restart", "robotId": happening.robot}
+    if happening.name == "move":
+        return {"event": "move", "robotId": happening.robot, "locationId": happening.value}
+    value: Any = None if happening.value is None else write(happening.value)
+    return {"event": "report", "robotId": happening.robot, "part": camel(happening.part), "value": value}
+
+
+def field(message: Mapping[str, JSON], name: str) -> JSON:
+    """A field by either of its names; absent and null are the same."""
+    value = message.get(name)
+    return value if value is not None else message.get(_SNAKE.get(name, name))
+
+
+_SNAKE = {
+    camel(name): name
+    for name in (
+        "robot_id",
+        "robot_ids",
+        "robot_state",
+        "battery_state",
+        "navigation_state",
+        "error_codes",
+        "network_states",
+        "online_states",
+        "connected_wifi",
+        "typed_status",
+    )
+}
+
+
+def read_state(given: JSON) -> tuple[RobotState, bool | None]:
+    """A robot state in the form in which it is compared, and whether the goals of its mission are wrapped (AS-22).
+
+    Raises:
+        MalformedError: it is not one.
+    """
+    if given is None:
+        return RobotState(), None
+    if not isinstance(given, dict):
+        raise MalformedError(f"{brief(given)} is not an object", "robotState")
+    if field(given, "typedStatus") is not None:
+        raise MalformedError("typed_status is the name of a oneof, not of a field", "robotState")
+    mission = given.get("mission")
+    wrapped = None
+    if isinstance(mission, dict) and isinstance(mission.get("goals"), list) and mission["goals"]:
+        goals = mission["goals"]
+        wrapped = all(isinstance(one, dict) and isinstance(one.get("goal"), dict) for one in goals)
+        if wrapped:
+            given = {**given, "mission": {**mission, "goals": [one["goal"] for one in goals]}}
+    state = read(RobotState, given)
+    return canonical_state(single(state)), wrapped
+
+
+def write_state(shown: Seen) -> JSON:
+    """The JSON of a robot state."""
+    state = write(shown.value)
+    if shown.wrapped:
+        state["mission"]["goals"] = [{"goal": goal} for goal in state["mission"]["goals"]]
+    return state

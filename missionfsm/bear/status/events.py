@@ -1,0 +1,295 @@
+"""What the environment does to a fleet, and what subscribers come to see of it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+
+from attrs import evolve
+
+from missionfsm.bear.status.messages import (
+    BatteryState,
+    ConnectionState,
+    NavigationState,
+    RobotConnection,
+    Stuck,
+    Wifi,
+)
+from missionfsm.bear.status.readings import (
+    AS_09_OFFLINE,
+    AS_09_UNSET,
+    AS_13_FIELDS,
+    AS_13_SIGNAL,
+    AS_13_THROTTLE,
+    AS_18,
+    AS_25,
+    AS_28,
+)
+from missionfsm.bear.status.state import (
+    LOCALIZATION,
+    STATE_PARTS,
+    TOPICAL,
+    Endpoint,
+    Fleet,
+    Happening,
+    Robot,
+    Value,
+    reporting,
+)
+from missionfsm.bear.status.stream import UPDATES
+from missionfsm.bear.status.values import clamped
+from missionfsm.bear.status.views import Assumed, Told, View, blank, each, view
+from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.step import Emission, Step
+
+
+def reported(fleet: Fleet, event: Happening, _: tuple[int | None, ...], alone: str | None = None) -> tuple[Step, ...]:
+    """A robot reports the value of a part; without a robot: nobody knows what robots report, or what this one does."""
+    if not event.robot:
+        return () if fleet.unheard else (_forgotten(fleet, alone),)
+    robot = fleet.robot(event.robot)
+    if robot is None:
+        return ()
+    if fleet.unheard:
+        # What it reported before may have been the same, and of its other parts nothing is known: nothing is due.
+        return (Step(fleet, label="report"),)
+    return tuple(
+        step
+        for value, assumes in _accepted(robot, event.part, event.value)
+        for step in _reported(fleet, robot, event.part, value, assumes)
+    )
+
+
+def _forgotten(fleet: Fleet, alone: str | None) -> Step:
+    """Any robot may report anything from now on: every stream may show it any number of times."""
+    after = evolve(fleet, unheard=True)
+    emits = tuple(
+        Emission(Told(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
+        for endpoint, robot in each(one for one in fleet.robots if one.owned and alone in (None, one.id))
+    )
+    return Step(after, emits=emits, label="robots report by themselves")
+
+
+def _accepted(robot: Robot, part: str, value: Value) -> Iterator[tuple[Value, Assumed]]:
+    """AS-28: what becomes of a report; one of a stuck state that is an error (AS-18) is not passed on."""
+    if isinstance(value, NavigationState) and (not value.stuck_state or value.stuck_state.state == Stuck.STATE_UNKNOWN):
+        yield robot.part(part), ()
+        return
+    right = clamped(value)
+    if right is value:
+        yield value, ()
+    else:
+        yield right, (AS_28[part]["a"],)
+        yield robot.part(part), (AS_28[part]["b"],)
+
+
+Way = tuple[tuple[Emission, ...], Assumed]
+"""What a report makes one kind of stream show, and the readings that this assumes."""
+
+
+def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assumed) -> Iterator[Step]:
+    if part == LOCALIZATION:
+        # Its content is not looked at (AS-24), so whether a message is due is not known either.
+        shown = view(robot, Endpoint.ROBOT)
+        ways = _addressed(robot, Endpoint.ROBOT, shown, stays=True) if shown and robot.owned else [((), ())]
+        for emits, assumed in ways:
+            yield Step(fleet, emits=emits, assumes=(*assumes, *assumed), label="report")
+        return
+    endpoint = next((one for one, topic in TOPICAL.items() if topic == part), None)
+    if value is None and endpoint in _UNSET and robot.part(part) is not None:
+        question = AS_09_UNSET[endpoint.value]
+        for letter in question.readings:
+            after = reporting(robot, part, None, keep=letter == "a")
+            yield from _shown(
+                fleet, robot, after, part, (*assumes, question[letter]), unset=_unset(after, endpoint, letter)
+            )
+    else:
+        yield from _shown(fleet, robot, reporting(robot, part, value), part, assumes)
+
+
+def _unset(robot: Robot, endpoint: Endpoint, letter: str) -> View | None:
+    """AS-09: what a stream shows of a topic that is not reported any more; None for nothing."""
+    if letter == "e":
+        return View(robot.id, endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED))
+    return blank(robot, endpoint) if letter == "c" else None
+
+
+_UNSET = tuple(one for one in Endpoint if one.value in AS_09_UNSET)
+
+
+def _shown(  # noqa: PLR0913 - what a report is made of
+    fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: View | None = None
+) -> Iterator[Step]:
+    """What a change of a robot shows, in every combination of the readings that matter."""
+    into = fleet.put(after)
+    if not after.owned or after == before:
+        yield Step(into, assumes=assumes, label="report")
+        return
+    ways: list[list[Way]] = []
+    for endpoint, topical in TOPICAL.items():
+        if topical == part:
+            ways.append(list(_topical(before, after, endpoint, unset=unset)))
+    if part in STATE_PARTS:
+        ways.append(list(_whole(before, after, part)))
+    if part == "connection":
+        ways += _reconnected(before, after)
+    for combination in itertools.product(*ways):
+        emits = tuple(one for emissions, _ in combination for one in emissions)
+        assumed = tuple(one for _, more in combination for one in more)
+        rules = (UPDATES.id,) if emits else ()
+        yield Step(into, emits=emits, assumes=(*assumes, *assumed), rules=rules, label="report")
+
+
+def _addressed(  # noqa: PLR0913 - an emission's own fields
+    robot: Robot,
+    endpoint: Endpoint,
+    shown: View,
+    *,
+    only: Assumption | None = None,
+    optional: bool = False,
+    stays: bool = False,
+) -> list[Way]:
+    """A message about a robot, once for each way to find its streams (AS-25), which matters once it has moved."""
+    question = AS_25[endpoint.value]
+    return [
+        (
+            (Emission(Told(endpoint, robot.id, robot.location, followed), shown, (), only, optional, stays),),
+            (question["b" if followed else "a"],) if robot.moved else (),
+        )
+        for followed in ((False, True) if robot.moved else (False,))
+    ]
+
+
+def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assumption] = ()) -> Iterator[Way]:
+    """A message that is due; or, under each of some readings, one that may be sent from now on."""
+    lenient = tuple(lenient)
+    strict = tuple(one.ambiguity.besides(*one.letters) for one in lenient)
+    for emits, assumed in _addressed(robot, endpoint, shown):
+        yield emits, (*strict, *assumed)
+    for one in lenient:
+        for emits, assumed in _addressed(robot, endpoint, shown, optional=True):
+            yield emits, (one, *assumed)
+
+
+def _topical(before: Robot, after: Robot, endpoint: Endpoint, *, unset: View | None) -> Iterator[Way]:
+    """A stream with a single topic, after a report about that topic."""
+    if unset:
+        only = AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else None
+        yield from _addressed(after, endpoint, unset, only=only)
+        return
+    shown = view(after, endpoint)
+    if shown is None or shown == view(before, endpoint):
+        yield (), ()
+    elif shown.unlinked:
+        yield from _addressed(after, endpoint, shown, optional=True, only=shown.unlinked["a", "b"])
+    else:
+        yield from _due(after, endpoint, shown, _minor(endpoint, before, after))
+
+
+def _withheld(before: Robot, after: Robot, endpoint: Endpoint) -> Iterator[Assumption]:
+    """AS-09: the readings under which what an offline robot reports is shown only once it is back."""
+    if before.offline and after.offline and endpoint.value in AS_09_OFFLINE:
+        yield AS_09_OFFLINE[endpoint.value]["b", "c"]
+
+
+def _minor(endpoint: Endpoint, before: Robot, after: Robot) -> Iterator[Assumption]:
+    """The readings under which a change need not be streamed: a small one (AS-13), or one of an offline robot."""
+    yield from _withheld(before, after, endpoint)
+    old, new = (
+        (before.wifi, after.wifi) if endpoint is Endpoint.NETWORK else (before.topic(endpoint), after.topic(endpoint))
+    )
+    if isinstance(old, BatteryState) and isinstance(new, BatteryState) and old.state == new.state:
+        yield AS_13_FIELDS[endpoint.value]["b"]
+    if isinstance(old, NavigationState) and isinstance(new, NavigationState) and _stuck(old) == _stuck(new):
+        yield AS_13_FIELDS[endpoint.value]["b"]
+    if isinstance(old, Wifi) and isinstance(new, Wifi) and (old.ssid, old.security) == (new.ssid, new.security):
+        yield AS_13_SIGNAL["b"]
+
+
+def _stuck(navigation: NavigationState) -> Stuck | None:
+    return navigation.stuck_state.state if navigation.stuck_state else None
+
+
+def _whole(before: Robot, after: Robot, part: str) -> Iterator[Way]:
+    """SubscribeRobotStatus, after a report about a part of the state."""
+    if before.state == after.state:
+        yield (), ()
+        return
+    shown = View(after.id, Endpoint.ROBOT, after.state)
+    if not after.seen:
+        # The robot reports nothing at all any more: what that looks like is AS-09.
+        yield from _addressed(after, Endpoint.ROBOT, shown, optional=True)
+        return
+    lenient = list(_withheld(before, after, Endpoint.ROBOT))
+    if part in AS_13_THROTTLE and before.part(part) is not None and after.part(part) is not None:
+        lenient.append(AS_13_THROTTLE[part]["b"])
+    yield from _due(after, Endpoint.ROBOT, shown, lenient)
+
+
+def _reconnected(before: Robot, after: Robot) -> Iterator[list[Way]]:
+    """What a change of the connection brings to the other streams: what they withheld, or a network that is gone."""
+    network = view(after, Endpoint.NETWORK)
+    if network and network.unlinked:
+        only = network.unlinked["a", "b"]
+        yield _addressed(after, Endpoint.NETWORK, network, stays=True, only=only)
+    elif network:
+        yield _addressed(after, Endpoint.NETWORK, network)
+    if before.offline and not after.offline:
+        for endpoint in (Endpoint.BATTERY, Endpoint.ERRORS, Endpoint.NAVIGATION):
+            shown = view(after, endpoint)
+            if shown:
+                question = AS_09_OFFLINE[endpoint.value]
+                back = [
+                    (emits, (*assumed, question["b", "c"])) for emits, assumed in _addressed(after, endpoint, shown)
+                ]
+                yield [*back, ((), (question["a"],))]
+
+
+def restarted(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    """A robot restarts: its numbers start over, and it may announce itself on every stream."""
+    robot = fleet.robot(event.robot)
+    if robot is None:
+        return ()
+    if not robot.owned or fleet.unheard:
+        return (Step(fleet, label="restart"),)
+    ways = [
+        _addressed(robot, endpoint, shown, stays=True, only=shown.unlinked["a", "b"] if shown.unlinked else None)
+        for endpoint in Endpoint
+        if (shown := view(robot, endpoint))
+    ]
+    return tuple(
+        Step(
+            fleet,
+            emits=tuple(one for emissions, _ in combination for one in emissions),
+            assumes=tuple(one for _, assumed in combination for one in assumed),
+            label="restart",
+        )
+        for combination in itertools.product(*ways)
+    )
+
+
+def moved(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    """A robot is at another location from now on; it may join the streams of that one (AS-25)."""
+    robot = fleet.robot(event.robot)
+    if robot is None:
+        return ()
+    after = evolve(robot, location=str(event.value), moved=True)
+    if after.location == robot.location:
+        return (Step(fleet, label="move"),)
+    emits = tuple(
+        Emission(
+            Told(endpoint, after.id, after.location, followed=True), shown, (), AS_25[endpoint.value]["b"], stays=True
+        )
+        for endpoint in Endpoint
+        if robot.owned and (shown := _anything(fleet, after, endpoint))
+    )
+    return (Step(fleet.put(after), emits=emits, label="move"),)
+
+
+def _anything(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> View | None:
+    return View(robot.id, endpoint, unheard=True) if fleet.unheard else view(robot, endpoint)
+
+
+def armed(fleet: Fleet, _: Happening, __: tuple[int | None, ...]) -> tuple[Step, ...]:
+    """The next GetRobotStatus that would succeed fails."""
+    return (Step(fleet if fleet.fault else evolve(fleet, fault=True), label="fault"),)

@@ -9,7 +9,7 @@ from attrs import frozen
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run

@@ -14,7 +14,7 @@ from traffic import navigate, one_more, readings_at_random, walk
 
 from missionfsm.app.asked import judged_system
 from missionfsm.kernel.alphabet import Bounds
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.reference.subject import ReferenceSubject

@@ -75,7 +75,8 @@ def bridged(
 
 
 def _robot(system: System, sockets: Sockets, command: list[str] | None, conversations: int, _: float) -> Bridged:
-    from missionfsm.adapters.isaac.bridge import Program, RobotBridge  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.isaac.bridge import RobotBridge  # noqa: PLC0415 - commands load what they need
+    from missionfsm.adapters.isaac.programs import Program  # noqa: PLC0415 - commands load what they need
     from missionfsm.isaac.realtime import in_real_time  # noqa: PLC0415
 
     assert sockets.listen is not None  # noqa: S101 - the caller has looked
@@ -85,7 +86,8 @@ def _robot(system: System, sockets: Sockets, command: list[str] | None, conversa
 
 def _server(system: System, sockets: Sockets, command: list[str] | None, conversations: int, timeout: float) -> Bridged:
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
-    from missionfsm.adapters.isaac.bridge import Program, ServerBridge, address  # noqa: PLC0415
+    from missionfsm.adapters.isaac.bridge import ServerBridge, address  # noqa: PLC0415
+    from missionfsm.adapters.isaac.programs import Program  # noqa: PLC0415
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415
     from missionfsm.isaac.realtime import in_real_time, submissions, with_file  # noqa: PLC0415
     from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415

@@ -28,7 +28,7 @@ from missionfsm.app.asked import Asked, judged_system
 from missionfsm.app.conversations import joined
 from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system

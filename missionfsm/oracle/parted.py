@@ -17,7 +17,8 @@ from collections.abc import Hashable, Iterable
 from missionfsm.kernel.history import Called, Event, Name, Returned
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.spec import Parting, Spec
-from missionfsm.oracle.belief import Automaton, Belief, Node
+from missionfsm.oracle.automaton import Automaton, Node
+from missionfsm.oracle.belief import Belief
 
 
 class Parted:

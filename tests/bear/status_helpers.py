@@ -11,7 +11,7 @@ from missionfsm.bear.status.system import SYSTEM
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import constrain
 from missionfsm.kernel.subject import Exchange, Notification, Subject
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.reference.subject import ReferenceSubject

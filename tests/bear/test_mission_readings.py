@@ -8,7 +8,7 @@ import pytest
 
 from missionfsm.kernel.alphabet import ANY_NAME, Bounds
 from missionfsm.kernel.readings import choose
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.systems import system
 from missionfsm.tools.conform.actions import Action
 from missionfsm.tools.conform.conform import conform

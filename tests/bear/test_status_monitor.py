@@ -18,7 +18,7 @@ from missionfsm.bear.status.values import CHECKS
 from missionfsm.bear.status.views import Seen, View
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.step import Mismatch
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 
 BATTERY, NAVIGATION, NETWORK = "SubscribeBatteryStatus", "SubscribeNavigationStatus", "SubscribeNetworkStatus"
 ROBOT, ERRORS, ONLINE = "SubscribeRobotStatus", "SubscribeErrorCodes", "SubscribeOnlineStatus"

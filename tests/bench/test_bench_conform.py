@@ -22,7 +22,7 @@ from combinations import Bench, combination, wrong
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.systems import names, system
 from missionfsm.tools.conform.actions import length
 from missionfsm.tools.conform.conform import Plan, conform, search

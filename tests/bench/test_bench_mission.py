@@ -24,7 +24,8 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.conform.conform import conform

@@ -29,7 +29,8 @@ from toys import REGISTER
 
 from missionfsm.kernel.history import Answer, Called, Event, Returned
 from missionfsm.kernel.rules import OK
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.tools.check.held import Held, HeldEvent
 from missionfsm.tools.check.judge import PATIENCE

@@ -33,7 +33,7 @@ from missionfsm.bear.wire.protojson import write
 from missionfsm.fakes.errors import ERRORS
 from missionfsm.kernel.alphabet import ANY_NAME, Bounds
 from missionfsm.kernel.rules import STATUS_NUMBERS
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
 

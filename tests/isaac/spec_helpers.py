@@ -14,7 +14,7 @@ import pytest
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.subject import Subject
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.systems import system
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import play, tour

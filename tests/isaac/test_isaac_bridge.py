@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 from commandline import CommandLine
 
-from missionfsm.adapters.isaac.bridge import Program, RobotBridge, address
+from missionfsm.adapters.isaac.bridge import RobotBridge, address
+from missionfsm.adapters.isaac.programs import Program
 from missionfsm.isaac.realtime import in_real_time, submissions
 from missionfsm.isaac.runtime.missionfile import MissionFile, parse
 from missionfsm.isaac.wire.framing import Decoder, encode

@@ -17,7 +17,8 @@ from missionfsm.isaac.server.inputs import Passes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Link, Mission, Server, Status
 from missionfsm.kernel.focus import DRIVEN, RECEIVED, Focus
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge, check
 

@@ -13,7 +13,7 @@ from missionfsm.adapters.isaac.subjects import RobotSubject
 from missionfsm.isaac.robot.readings import AMBIGUITIES
 from missionfsm.isaac.wire.framing import encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check

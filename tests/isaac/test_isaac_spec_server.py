@@ -15,7 +15,7 @@ from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
 from missionfsm.isaac.server.readings import AMBIGUITIES
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import Plan, conform
 from missionfsm.tools.explore.explore import explore

@@ -23,7 +23,8 @@ from missionfsm.kernel.rules import (
     UNAVAILABLE,
 )
 from missionfsm.kernel.spec import Spec
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 
 NAMES = ("x", "y", "z")
 STREAMS: tuple[Name, ...] = (("stream", 1), ("stream", 2))

@@ -10,7 +10,8 @@ from toys import BUTTONS, QUESTIONS
 from missionfsm.kernel.history import Answer, Called, Returned
 from missionfsm.kernel.readings import UNCONSTRAINED, constrain
 from missionfsm.kernel.rules import FAILED_PRECONDITION, OK
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 
 AUTOMATON = Automaton(BUTTONS)
 Asked = tuple[tuple[object, ...], object]

@@ -12,7 +12,8 @@ from toys import REGISTER, Request
 
 from missionfsm.kernel.history import Answer, Called, Event, Returned
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, OK
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.successors import Successors
 
 AUTOMATON = Automaton(REGISTER)

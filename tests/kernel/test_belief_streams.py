@@ -10,7 +10,8 @@ from missionfsm.kernel.history import Event as Observed
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, FAILED_PRECONDITION, NOT_FOUND, OK, UNAVAILABLE
 from missionfsm.kernel.spec import Drive, Spec
 from missionfsm.kernel.step import Emission, Opening, Step
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 
 ONE, TWO = ("stream", 1), ("stream", 2)
 NUDGE, SERVE = Driven(Event("nudge")), Driven(Event("serve"))

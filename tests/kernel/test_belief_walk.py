@@ -19,7 +19,8 @@ from missionfsm.bear.wire.messages import Command, Goal
 from missionfsm.kernel import history
 from missionfsm.kernel.history import Answer, Called, Driven, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.tools.reference.model import Reference, Reply
 
 EVENTS = 1_000

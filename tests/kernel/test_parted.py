@@ -14,7 +14,8 @@ from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Parting
 from missionfsm.kernel.step import Step
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.transcript import Transcript
 from missionfsm.systems import system

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from test_belief_bruteforce import ALPHABETS, Alphabet, Conversation, choices
 
 from missionfsm.kernel import history
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.window import Window
 

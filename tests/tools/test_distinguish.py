@@ -7,14 +7,14 @@ import functools
 import pytest
 from combinations import Bench
 
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.conform.distinguish import Lab, Trial
 from missionfsm.tools.conform.handshake import handshake
 from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.trials import Lab, Trial
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION = system("bear.mission")

@@ -22,7 +22,8 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.spec import Drive, Spec
 from missionfsm.kernel.step import Step
-from missionfsm.oracle.belief import Automaton, Belief
+from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.tools.check.eliminations import Eliminations
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, untested
 from missionfsm.tools.check.verdict import Outcome, Untested, Verdict

@@ -10,16 +10,12 @@ from __future__ import annotations
 import contextlib
 import math
 import select
-import signal
 import socket
-import subprocess
-import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final
 
-from missionfsm.adapters.processes import end_group, signal_group
-from missionfsm.isaac.wire.framing import MAX_LINE
+from missionfsm.adapters.isaac.programs import Program, Wire
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 
@@ -29,110 +25,6 @@ PATIENCE: Final = 10.0
 _ASKING: Final = ("statuses",)  # calls that cause nothing
 _RETRY: Final = 0.02
 _MOMENT: Final = 0.01  # seconds that are written down with those that follow
-_SLICE: Final = 1 << 16
-_SEND_TIMEOUT: Final = 5.0
-
-
-class Program:
-    """A program that is started anew for every conversation."""
-
-    def __init__(self, command: Sequence[str]) -> None:
-        self.command = tuple(command)
-        self._process: subprocess.Popen[bytes] | None = None
-        self._said = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - lives as long as the program
-
-    def restart(self) -> None:
-        """Stop it if it runs, and start it. Raises SubjectError."""
-        self.stop()
-        self._said.seek(0)
-        self._said.truncate()
-        try:
-            self._process = subprocess.Popen(  # noqa: S603 - running the user's command is the purpose
-                self.command,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=self._said,
-                start_new_session=True,
-            )
-        except OSError as error:
-            raise SubjectError(f"cannot start {self.command[0]}: {error.strerror}") from None
-
-    @property
-    def ended(self) -> bool:
-        """Whether it has exited by itself."""
-        return self._process is not None and self._process.poll() is not None
-
-    def complaint(self) -> str:
-        """What it wrote to stderr last, for an error message."""
-        self._said.seek(0)
-        lines = self._said.read()[-2000:].decode(errors="replace").strip().splitlines()
-        return f" (stderr: {lines[-1].strip()[:200]})" if lines else ""
-
-    def stop(self) -> None:
-        """Ask it and whatever it has started to end, and end what does not."""
-        if self._process is None:
-            return
-        signal_group(self._process, signal.SIGTERM)
-        try:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(2.0)
-        finally:
-            end_group(self._process)
-            self._process = None
-
-    def close(self) -> None:
-        """Stop it for good."""
-        self.stop()
-        self._said.close()
-
-
-class _Wire:
-    """One connection: lines out, lines in."""
-
-    def __init__(self, number: int, sock: socket.socket) -> None:
-        self.number = number
-        self.sock = sock
-        self.open = True
-        self._rest = b""
-        sock.setblocking(False)  # noqa: FBT003 - the library's own
-
-    def read(self) -> list[str]:
-        """The lines that have arrived; a last one without an end counts when the connection is closed."""
-        found: list[bytes] = []
-        while self.open:
-            try:
-                data = self.sock.recv(_SLICE)
-            except BlockingIOError:
-                break
-            except OSError:
-                data = b""
-            if not data:
-                self.close()
-                found += [self._rest] if self._rest else []
-                break
-            *whole, self._rest = (self._rest + data).split(b"\n")
-            found += whole
-            if len(self._rest) > MAX_LINE:
-                raise SubjectError(f"connection {self.number}: a line of more than {MAX_LINE} bytes")
-        return [line.decode(errors="backslashreplace") for line in found]
-
-    def write(self, line: str) -> bool:
-        """Send a line; False where the other end is gone."""
-        try:
-            self.sock.settimeout(_SEND_TIMEOUT)
-            self.sock.sendall(line.encode(errors="replace") + b"\n")
-            self.sock.setblocking(False)  # noqa: FBT003 - the library's own
-        except TimeoutError:
-            raise SubjectError(f"connection {self.number}: nothing was read for {_SEND_TIMEOUT:g} s") from None
-        except OSError:
-            self.close()
-            return False
-        return True
-
-    def close(self) -> None:
-        """Close it; what has not been read is lost."""
-        self.open = False
-        self.sock.close()
 
 
 class _Bridge:
@@ -147,7 +39,7 @@ class _Bridge:
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
-        self.wires: dict[int, _Wire] = {}
+        self.wires: dict[int, Wire] = {}
         self.left: Callable[[], float] = lambda: math.inf
         self._noted = time.monotonic()
 
@@ -335,7 +227,7 @@ class ServerBridge(_Bridge):
         sock = self._connected(PATIENCE)
         if sock is not None:
             self._made += 1
-            self.wires[self._made] = _Wire(self._made, sock)
+            self.wires[self._made] = Wire(self._made, sock)
             return {"happened": True, "connection": self._made}
         if self._adapter is None and self._made and (self._program is None or self._program.ended):
             return {"happened": False}  # it has served its file and is gone
@@ -412,7 +304,7 @@ class RobotBridge(_Bridge):
         except TimeoutError:
             why = "" if self._program is None else self._program.complaint()
             raise SubjectError(f"no robot has connected to port {self.port} within {PATIENCE:g} s{why}") from None
-        self.wires[1] = _Wire(1, sock)
+        self.wires[1] = Wire(1, sock)
         self._noted = time.monotonic()
         return ()
 

@@ -14,7 +14,8 @@ from attrs import frozen
 from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.readings import Ambiguity, meet
 from missionfsm.kernel.spec import Spec
-from missionfsm.oracle.belief import Belief, Node
+from missionfsm.oracle.automaton import Node
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation, InFlight
 from missionfsm.oracle.memory import MEMORY, NODES
 from missionfsm.oracle.parted import Parted

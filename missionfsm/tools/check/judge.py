@@ -12,7 +12,8 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event, Name, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton, Belief, Tally
+from missionfsm.oracle.automaton import Automaton, Tally
+from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript

@@ -11,7 +11,7 @@ from missionfsm.kernel.history import Driven, Received
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.explain import ACCUSED
 from missionfsm.tools.check.judge import Judge

@@ -24,7 +24,7 @@ from missionfsm.kernel.subject import (
 )
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import brief
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import STREAM_KEYS, Head
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.conform.actions import SETTLE, WRONG_NAME, Action, NameRef, filled

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from attrs import define
 
 from missionfsm.kernel.readings import meet
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.conversation import Conversation
 
 WIDE = 48

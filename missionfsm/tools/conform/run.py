@@ -11,7 +11,7 @@ from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Subject
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.scope import assumed
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.actions import SETTLE, Action, Bindings, NameRef

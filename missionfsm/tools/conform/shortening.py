@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import SubjectError
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.actions import SETTLE, Action, length
 from missionfsm.tools.conform.contradiction import beside, essential

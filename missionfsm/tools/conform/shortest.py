@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from attrs import define, evolve, field
 
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Input
-from missionfsm.oracle.belief import Node
+from missionfsm.oracle.automaton import Node
 from missionfsm.tools.conform.actions import CANCEL, SETTLE, WRONG_NAME, Action, NameRef
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.shrink import unexplained

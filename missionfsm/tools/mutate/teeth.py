@@ -31,7 +31,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.subject import Exchange, GibberishError
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run

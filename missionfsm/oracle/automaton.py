@@ -1,0 +1,189 @@
+"""The belief automaton: nodes are sets of explanations, edges are events; it is built lazily, as it is walked."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+
+from attrs import define, field
+
+from missionfsm.kernel.readings import UNCONSTRAINED
+from missionfsm.kernel.spec import Spec
+from missionfsm.oracle import memory
+from missionfsm.oracle.explanation import GONE, Explanation, rename
+from missionfsm.oracle.memory import MEMORY
+from missionfsm.oracle.subsumption import surviving_names
+from missionfsm.oracle.successors import BUDGET, Successor, Successors
+from missionfsm.oracle.symbols import Symbol
+from missionfsm.oracle.transition import TransitionFunction
+
+Tally = defaultdict[int, int]
+"""How often which set of rules, by its number, was exercised."""
+
+
+@define(eq=False, slots=True)
+class Node:
+    """All explanations of what was observed, and the edges that were walked from here.
+
+    Attributes:
+        bytes: what the node takes, without its edges (see `missionfsm.oracle.memory`).
+    """
+
+    explanations: tuple[Explanation, ...]
+    width: int
+    next: dict[Symbol, Edge] = field(factory=dict, repr=False)
+    bytes: int = field(init=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.bytes = memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
+
+
+@define(eq=False, slots=True)
+class Edge:
+    """Where an event leads: the next node and what becomes of the names.
+
+    Attributes:
+        keep: for every name of the next node its number before (new names count on from the width); None: unchanged.
+        retired: numbers of names that are gone for good.
+        exercises: which rules it exercises, as the automaton numbers such sets.
+        touched: the bits of the ambiguities on which this event's explanations depend.
+        appends: whether nothing becomes of the names before but that others follow them.
+        cuts: whether nothing becomes of the names but that the last ones are left out.
+    """
+
+    node: Node
+    keep: tuple[int, ...] | None
+    retired: tuple[int, ...]
+    exercises: int
+    touched: int
+    appends: bool = False
+    cuts: bool = False
+
+
+class Automaton:
+    """The belief automaton of a spec, as far as it has been walked.
+
+    Args:
+        spec: the system.
+        driven: names of the drives that a tester commands.
+        assumed: readings that are decided from the start (see `missionfsm.kernel.readings.constrain`).
+        budget: how many explanations a single event may cost.
+        eager: see `missionfsm.oracle.transition.TransitionFunction`.
+        memory: how many bytes it may take, by estimate, together with what walks it.
+
+    Attributes:
+        tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
+    """
+
+    def __init__(  # noqa: PLR0913 - all but the first have a default
+        self,
+        spec: Spec,
+        driven: Iterable[str] = (),
+        assumed: int = UNCONSTRAINED,
+        budget: int = BUDGET,
+        *,
+        eager: bool = False,
+        memory: int = MEMORY,
+    ) -> None:
+        self.spec = spec
+        self.assumed = assumed
+        self.memory = memory
+        self.successors = Successors(spec, driven, assumed, budget, memory=memory)
+        self.transitions = TransitionFunction(self.successors, eager=eager)
+        self._nodes: dict[tuple[Explanation, ...], Node] = {}
+        self._edges = 0
+        self.bytes = 0
+        self._rules: dict[tuple[str, ...], int] = {}
+        self.tally: Tally = defaultdict(int)
+
+    def start(self, world: object, *, used: bool = False) -> Node:
+        """The node in which an instance in this world is that is fresh, or that was used and then cleared."""
+        spec = self.successors.spec
+        state = (spec.used if used and spec.used else spec.initial)(world)
+        unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
+        return self._intern((Explanation(state, unseen, self.assumed),), 0)
+
+    def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
+        node = self._nodes.get(explanations)
+        if node is None:
+            node = Node(explanations, width)
+            if self._nodes and self.bytes + node.bytes > self.memory // memory.NODES:
+                self._start_over()
+            self._nodes[explanations] = node
+            self.bytes += node.bytes
+        return node
+
+    def _start_over(self) -> None:
+        """Forget everything but what the rules are that were exercised."""
+        for node in self._nodes.values():
+            node.next.clear()
+        self._nodes.clear()
+        self._edges = self.bytes = 0
+        self.successors.forget()
+
+    def edge(self, node: Node, symbol: Symbol) -> Edge:
+        """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
+        kind, *what = symbol
+        edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
+        node.next[symbol] = edge
+        self._edges += 1
+        self.bytes += memory.ENTRY
+        return edge
+
+    def arrive(self, node: Node, found: tuple[Successor, ...]) -> Edge:
+        """Where explanations that were found lead from a node. An empty node means: no explanation is left."""
+        explanations = tuple(successor.explanation for successor in found)
+        new = surviving_names(explanations)
+        retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
+        if retired:
+            left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
+            explanations = tuple(one.but(gone=left[id(one)]) for one in explanations)
+        numbered = tuple(rename(one, new) for one in explanations)
+        next_node = self._intern(numbered, len(new))
+        keep = tuple(new)
+        in_order = keep == tuple(range(len(keep)))
+        rules = tuple(dict.fromkeys(rule for successor in found for rule in successor.rules))
+        return Edge(
+            next_node,
+            None if in_order and len(keep) == node.width and not retired else keep,
+            retired,
+            self.numbered(rules),
+            self.touched(node.explanations, explanations),
+            len(keep) > node.width and in_order and not retired,
+            len(keep) < node.width and in_order and not retired,
+        )
+
+    def numbered(self, rules: tuple[str, ...]) -> int:
+        """The number of a set of rules in a `Tally`."""
+        return self._rules.setdefault(rules, len(self._rules))
+
+    @property
+    def numbers(self) -> tuple[tuple[str, ...], ...]:
+        """The sets of rules by their numbers in a `Tally`."""
+        return tuple(self._rules)
+
+    def touched(self, before: Iterable[Explanation], after: Iterable[Explanation]) -> int:
+        """The bits of the ambiguities on which it depends what explains an event."""
+        return self._touched({one.assumed for one in before}, {one.assumed for one in after})
+
+    def _touched(self, before: set[int], after: set[int]) -> int:
+        """The bits of the ambiguities of which other readings are possible now."""
+        touched = 0
+        if before != after:
+            for ambiguity in self.spec.ambiguities:
+                if {one & ambiguity.group for one in before} != {one & ambiguity.group for one in after}:
+                    touched |= ambiguity.group
+        return touched
+
+    def exercised(self, tally: Tally | None = None) -> dict[str, int]:
+        """How often each rule was exercised, by a tally of beliefs that walked here; by the automaton's own if none."""
+        sets, times = self.numbers, dict[str, int]()
+        for number, walked in (self.tally if tally is None else tally).items():
+            for rule in sets[number]:
+                times[rule] = times.get(rule, 0) + walked
+        return times
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """How many nodes and edges have been built."""
+        return len(self._nodes), self._edges

@@ -8,7 +8,7 @@ import orjson
 import pytest
 from attrs import evolve
 from busy import Habits, busy
-from traffic import readings_at_random
+from traffic import MISSION, readings_at_random
 
 from missionfsm.app.recorded import check_file
 
@@ -56,3 +56,13 @@ def test_a_busy_log_is_decided(tmp_path: Path, habits: Habits, clients: int) -> 
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
     ((_, verdict),) = check_file(str(path))
     assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("clients", [3, 4, 5])
+def test_a_busy_log_needs_no_transport(tmp_path: Path, clients: int) -> None:
+    """A robot that does all as by default is explained where nothing is lost on the way, whatever is in flight."""
+    path = tmp_path / "log"
+    lines = busy(clients, 90, evolve(CLOSE, clients=clients))
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path), {one.id: one.default for one in MISSION.spec.ambiguities}, strict=True)
+    assert (verdict.conforms, verdict.flagged) == (True, ()), str(verdict)

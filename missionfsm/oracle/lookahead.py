@@ -324,6 +324,10 @@ class Lookahead:
             skips: whether the channel may pass over what it owes.
             repeats: whether it may show again what it has shown.
         """
+        trimmed, assumes, _ = self._without_unshown(channel, stretch, repeats=repeats)
+        if trimmed is not channel:
+            led, shows = self._leading(trimmed, stretch, skips=skips, repeats=repeats)
+            return (led and (led[0], led[1] or assumes, led[2])), shows
         owed, last, before = channel.owed, channel.last, stretch.before
         again = repeats or self.spec.delivery(channel.topic).echoes is not None
         passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
@@ -342,7 +346,9 @@ class Lookahead:
                 # What is owed before it has to go unsaid then, and the message to show what is to come.
                 if not all(passable[max(places) :]):
                     return None, None
-                return ((channel, None, False) if position or not owed else self._passed_over(channel)), message
+                return (
+                    (channel, None, False) if position or not owed else self._passed_over(channel, len(owed))
+                ), message
             places, before = following, message
         shown_by = max(places)
         if (
@@ -357,6 +363,15 @@ class Lookahead:
         left = [one for one in owed[shown_by:] if not one.passing]
         settles = stretch.rests and before is not None and left and not self._may_show(left[-1], before)
         return (channel, None, False), before if settles else None
+
+    def _without_unshown(self, channel: Channel, stretch: _Stretch, *, repeats: bool) -> Narrowed:
+        """The channel without what it owes before the first that can be what it shows next: that is passed over."""
+        echoes = repeats or self.spec.delivery(channel.topic).echoes is not None
+        if not stretch.due or (echoes and channel.last is not None):
+            return channel, None, False
+        message = stretch.due[0]
+        first = next((at for at, one in enumerate(channel.owed) if self._may_show(one, message)), 0)
+        return (first and self._passed_over(channel, first)) or (channel, None, False)
 
     def _may_go_unsaid(self, channel: Channel, index: int) -> bool:
         """Whether a channel may pass over a message that it owes, though it has to show all that can be told."""
@@ -373,13 +388,13 @@ class Lookahead:
             if other is not None
         )
 
-    def _passed_over(self, channel: Channel) -> Narrowed | None:
-        """The channel once everything that it owes is passed over."""
-        passed = Channel(channel.name, channel.topic, channel.last)
-        if all(one.passing for one in channel.owed):
+    def _passed_over(self, channel: Channel, many: int) -> Narrowed | None:
+        """The channel once so many of those that it owes are passed over."""
+        passed, over = Channel(channel.name, channel.topic, channel.last, channel.owed[many:]), channel.owed[:many]
+        if all(one.passing for one in over):
             return passed, None, False
         last = channel.last
-        if last and any(one.view == last.view or last.looks is not None for one in channel.owed if not one.passing):
+        if last and any(one.view == last.view or last.looks is not None for one in over if not one.passing):
             return channel, None, False  # what looks like what was shown last is not due
         skips = self.spec.delivery(channel.topic).skips
         return (passed, skips, False) if skips else None

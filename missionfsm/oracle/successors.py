@@ -361,13 +361,26 @@ class Successors:
             (at, call) for at, call in enumerate(explanation.calls) if call.done is None and call.name != besides
         ]
         opening = [at for at, call in waiting if self.only_opens(explanation, call)]
-        nothing = True
-        for one in self._others(explanation, [at for at, _ in waiting if at not in opening], besides, focus):
-            nothing = False
-            yield one
-        if opening and not (nothing and focus is not None and focus(explanation).aside):
+        others = [at for at, _ in waiting if at not in opening]
+        yield from self._others(explanation, others, besides, focus)
+        if opening and not self._waits(explanation, others, focus):
             for position in opening:
                 yield from self._take_effect(explanation, position, besides)
+
+    def _waits(self, explanation: Explanation, calls: Iterable[int], focus: FocusOf | None) -> bool:
+        """Whether calls that only open channels may as well wait: nothing else can happen, and nothing tells of them.
+
+        What leads to nothing that is known of later counts: where a channel is opened before it, it may.
+        """
+        if explanation.lost or focus is None or not focus(explanation).aside:
+            return False
+        in_flight = (explanation.calls[at] for at in calls)
+        effects = (
+            self.effects(where.state, call.request, refs)
+            for call in in_flight
+            for where, refs in self.addressed(explanation, call.args)
+        )
+        return not any(effects) and not any(True for _ in self._silent(explanation, focus))
 
     def _others(
         self, explanation: Explanation, calls: Iterable[int], besides: int | None, focus: FocusOf | None

@@ -56,7 +56,7 @@ class History:
         return self.drive("line", connection=connection, line=line)
 
     def sends(self, connection: int, mission: int, config: str = "{}", channel: str = "mission") -> History:
-        message = Message(Header(channel, 1, 1, Uuid(9, 9)), MissionProto(_uuid(mission), config))
+        message = Message(Header(channel, 1, 1, Uuid(9, 9 + len(self.lines))), MissionProto(_uuid(mission), config))
         self.lines.append({"connection": connection, "line": encode(message).decode().strip()})
         return self
 

@@ -11,6 +11,8 @@ from server_history import SERVER, History
 
 from missionfsm.adapters.isaac.subjects import ServerSubject
 from missionfsm.isaac.runtime.profile import DOCUMENTED
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, Uuid, WireStatus
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import names, system
@@ -309,6 +311,36 @@ def test_what_a_mission_is_called_that_waits_for_its_robot_or_for_an_acknowledge
     assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-04.sent=t"]
     back = History().submit(1).robot(1).submit(2).sends(1, 1).settles.shows("STARTED", "CREATED").judged()
     assert back.outcome is Outcome.VIOLATES
+
+
+def _line(uuid: int | None, own: int, config: str = "{}") -> dict[str, object]:
+    """A MissionProto of some mission or of none, in a message with a uuid of its own."""
+    payload = MissionProto(None if uuid is None else Uuid(uuid, 1), config)
+    line = encode(Message(Header("mission", 1, 1, Uuid(own, 1)), payload)).decode().strip()
+    return {"connection": 1, "line": line}
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "flagged"),
+    [
+        ((1, 11), (2, 12), []),
+        ((1, 11), (2, 11), ["AI-27.uuid=b"]),
+        ((1, 1), (2, 2), ["AI-27.uuid=b"]),
+        ((None, 11), (None, 12), ["AI-28.uuid=n"]),
+    ],
+)
+def test_identifiers_that_the_wire_has_and_the_page_does_not_show(
+    first: tuple[int | None, int], second: tuple[int | None, int], flagged: list[str]
+) -> None:
+    """A header's uuid that is the mission's, or the same for two messages, is flagged; so is a mission without one."""
+    history = History().submit(1).submit(2, config={"a": 1}).robot(1)
+    history.lines.append(_line(*first))
+    line = encode(Message(Header("mission_status"), MissionStatusProto(None, WireStatus.SUCCESS))).decode().strip()
+    history = history.settles.drive("line", connection=1, line=line)
+    history.lines.append(_line(*second, '{"a":1}'))
+    verdict = history.settles.shows("SUCCESS", "STARTED").judged()
+    assert verdict.conforms, str(verdict)
+    assert [one.partition(" ")[0] for one in verdict.flagged] == flagged
 
 
 def test_what_a_drop_does_may_depend_on_whether_the_mission_was_acknowledged() -> None:

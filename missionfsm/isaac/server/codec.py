@@ -22,11 +22,11 @@ from missionfsm.isaac.server.inputs import (
     Statuses,
     Submission,
 )
-from missionfsm.isaac.server.readings import AI_25_HEADER, AI_28_CONFIG
+from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Sends, World
 from missionfsm.isaac.shared.drives import in_microseconds, seconds, text_line
-from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, to_json, uuid_name
+from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, stamp, to_json, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line, encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
@@ -312,18 +312,21 @@ def write_happened(event: Any, names: tuple[Name, ...]) -> dict[str, JSON]:  # n
 
 
 def strip(line: JSON) -> tuple[Part, ...]:
-    """The identifier in a line and what is left of it."""
+    """The identifier in a line, the uuid of its header as a mark, and what is left of it."""
     names, said = see(line)
-    return ((names, (), to_json(said)),)
+    own = stamp(line)
+    return ((names, () if own is None else (("uuid", own),), to_json(said)),)
 
 
 def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
     """The line that sends a mission."""
     time = round(at * 1e9)
     uuid = Uuid.of(names[0][1])  # type: ignore[index]
-    header = Header(view.channel, time, time, Uuid.of(new_uuid(number)[1]))  # type: ignore[index]
+    own = uuid if meet(choice, (AI_27_UUID["b"],)) else Uuid.of(new_uuid(number)[1])  # type: ignore[index]
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
-    message = json.loads(encode(Message(header, MissionProto(uuid, view.config)), header_uuid_as_numbers=bare))
+    told = uuid if meet(choice, (AI_28_UUID["y"],)) else None
+    header = Header(view.channel, time, time, own)
+    message = json.loads(encode(Message(header, MissionProto(told, view.config)), header_uuid_as_numbers=bare))
     if meet(choice, (AI_28_CONFIG["a"],)):
         message["payload"]["config"] = json.loads(view.config)
     return strictjson.compact(message)

@@ -311,12 +311,28 @@ AI_26 = Ambiguity(
     {"e": "it is skipped", "f": "its connection is closed"},
     default="e",
 )
+AI_27_UUID = Ambiguity(
+    "AI-27.uuid",
+    "Whose is the uuid in a header?",
+    {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
+    default="a",
+    flagged=_flags("b"),
+    rule="a-line-is-one-message",
+)
 AI_28_CONFIG = Ambiguity(
     "AI-28.config",
     "How does a MissionProto carry its configuration?",
     {"a": "as an object", "b": "as a string that holds JSON"},
     default="b",
     rule="a-mission-carries-its-configuration",
+)
+AI_28_UUID = Ambiguity(
+    "AI-28.uuid",
+    "Does a MissionProto say which mission it is?",
+    {"y": "yes, its payload has the mission's uuid", "n": "no"},
+    default="y",
+    flagged=_flags("n"),
+    rule="a-line-is-one-message",
 )
 AI_31 = Ambiguity(
     "AI-31",
@@ -404,7 +420,9 @@ AMBIGUITIES = (
     AI_25_TAKEN,
     AI_25_HEADER,
     AI_26,
+    AI_27_UUID,
     AI_28_CONFIG,
+    AI_28_UUID,
     AI_31,
     AI_33_NULL,
     AI_36,
@@ -423,7 +441,7 @@ WAIVED: Mapping[str, str] = {
     "AI-21": "a handle exists once that mission was submitted: no upstream is further down, none makes a cycle",
     "AI-22 a to h": "it makes and submits in one; an ended upstream counts at once (g); h is a violation",
     "AI-23": "not observable: slips in the sample",
-    "AI-27": "only the channel is needed to route a message; other header fields may be missing",
+    "AI-27 a": "other fields of a header may be missing; that a uuid comes again after others is not noticed",
     "AI-29": "about the program around the server",
     "AI-30": "about the program around the server",
     "AI-32": "a FAILURE fails the mission that it is about, preempted or not (c); a and b are about the robot",

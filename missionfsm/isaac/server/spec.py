@@ -45,7 +45,7 @@ from missionfsm.isaac.server.state import (
     emissions,
     topic,
 )
-from missionfsm.isaac.server.stream import agrees, matches, may_be_called, shown
+from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, shown
 from missionfsm.isaac.server.time import calmed, passes, settled, unseen
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
@@ -344,7 +344,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         closing=_closing,
         unopened=(rules.UNNAMED.id,),
         unowed=_unowed,
-        sequence=lambda _: (),
+        sequence=sequence,
         names=lambda server: 2 * len(server.missions) + len(server.ends),
         request_operation=lambda request: str(request.operation),
         ambiguities=AMBIGUITIES,

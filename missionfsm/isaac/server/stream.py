@@ -11,7 +11,9 @@ from missionfsm.isaac.server.readings import (
     AI_04_ROBOT,
     AI_04_SENT,
     AI_25_HEADER,
+    AI_27_UUID,
     AI_28_CONFIG,
+    AI_28_UUID,
 )
 from missionfsm.isaac.server.rules import OPERATIONS
 from missionfsm.isaac.server.state import (
@@ -127,9 +129,19 @@ def matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] 
         return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)
     if content.what != view.config:
         return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}", near=True)
-    assumes = (AI_28_CONFIG["b" if content.form == "text" else "a"], AI_25_HEADER["n" if content.bare else "s"])
+    assumes = (
+        AI_28_CONFIG["b" if content.form == "text" else "a"],
+        AI_25_HEADER["n" if content.bare else "s"],
+        AI_28_UUID["y" if content.named else "n"],
+        *((AI_27_UUID["b"],) if content.borrowed else ()),
+    )
     told = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
     return (Match(assumes, ((0, 0),) if content.named else (), told),)
+
+
+def sequence(relation: str) -> tuple[Assumption, ...]:
+    """How the uuid in a header compares with the one before: it is another one, or (AI-27.uuid b) the same."""
+    return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
 def may_be_called(server: Server, index: int, word: object) -> bool:

@@ -34,7 +34,9 @@ SHIPPED_SERVER: Mapping[str, str] = {
     "AI-24": "a",
     "AI-24.whole": "w",
     "AI-25.header": "n",
+    "AI-27.uuid": "a",
     "AI-28.config": "b",
+    "AI-28.uuid": "y",
     "AI-31": "b",
     "AI-39": "b",
 }

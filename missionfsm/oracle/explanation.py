@@ -402,11 +402,7 @@ def take(
     channels = explanation.channels
     if step.ends:
         gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.ends and one.name > GONE)}))
-        channels = tuple(
-            _drained(one) if one.topic in step.drains else one
-            for one in channels
-            if one.topic not in step.closes and (one.owed or one.topic not in step.drains)
-        )
+        channels = tuple(one for one in channels if one.topic not in step.closes)
     if step.clears or step.withdraws:
         channels = tuple(_relieved(channel, step) for channel in channels)
     if step.emits:
@@ -421,6 +417,9 @@ def take(
             )
             for channel in channels
         )
+    if step.drains:  # with what the very step has sent
+        channels = tuple(_drained(one) if one.topic in step.drains else one for one in channels)
+        channels = tuple(one for one in channels if one.topic != DRAINED or one.owed)
     if step.opens:
         channels = (
             *channels,

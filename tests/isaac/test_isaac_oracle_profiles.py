@@ -343,6 +343,13 @@ def test_identifiers_that_the_wire_has_and_the_page_does_not_show(
     assert [one.partition(" ")[0] for one in verdict.flagged] == flagged
 
 
+def test_who_comes_after_a_connection_that_an_abort_ends() -> None:
+    """Another that has said the same name is sent the next mission, and loses its connection in the same way."""
+    begun = History().robot(1).robot(2).submit(1).submit(2).sends(2, 1).settles
+    verdict = begun.waits(60).closes(2).sends(1, 2).closes(1).settles.judged()
+    assert (verdict.conforms, verdict.readings["AI-08"]) == (True, ("c",)), str(verdict)
+
+
 def test_what_a_drop_does_may_depend_on_whether_the_mission_was_acknowledged() -> None:
     """What was only sent is queued again, what was acknowledged has failed: two questions, and neither is flagged."""
     begun = History().submit(1).submit(2).robot(1).sends(1, 1).drive("disconnect", connection=1).settles

@@ -80,6 +80,15 @@ def _succeeded(move: Move, gone: Link) -> Moves:
         yield later
 
 
+def inherited(before: Server, move: Move) -> Moves:
+    """A move that may have ended the connection of a robot, with what another of that name becomes then."""
+    ended = [one for one in before.links if one.serves and move.state.link(one.slot) is None]
+    if ended:
+        yield from _succeeded(move, ended[0])
+    else:
+        yield move
+
+
 def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: int | None) -> Moves:
     """A line arrives on a connection; `named` and `header` as in `Report`."""
     if heard.numeric:

@@ -17,6 +17,7 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
+from missionfsm.isaac.server.connections import inherited
 from missionfsm.isaac.server.deciding import merged, split, ways
 from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, urgent
 from missionfsm.isaac.server.independence import Part, parts
@@ -271,8 +272,8 @@ def _strike(here: _Here, part: Part, index: int, clock: Clock, until: int) -> It
     when = (low, max(low, until if clock.hi is None else min(clock.hi, until)))
     aborting, meaningless = strikes(evolve(here.move, at=when), index, clock)
     for one in aborting:
-        for after in _followed(one, part):
-            yield _here(after, low, part, here.looks)
+        for heard in inherited(here.move.state, one):
+            yield from (_here(after, low, part, here.looks) for after in _followed(heard, part))
     if clock.hi is not None and clock.hi <= until:
         for one in meaningless:
             yield from (_here(after, here.low, part, here.looks) for after in _followed(one, part))
@@ -327,7 +328,8 @@ def unseen(state: Server, part: Part) -> Iterator[Move]:
         for clock in state.missions[index].ticking:
             if clock.lo <= 0:
                 for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
-                    yield from (_looking(after, part) for after in _followed(one, part))
+                    for heard in inherited(state, one):
+                        yield from (_looking(after, part) for after in _followed(heard, part))
     for slot in part.slots:
         link = state.link(slot)
         if link is not None and link.look is not None:

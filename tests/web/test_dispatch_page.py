@@ -65,7 +65,10 @@ def test_dispatch_page_json_and_metrics_say_where_all_stands(address: str) -> No
 
 @pytest.mark.parametrize("size", SIZES)
 def test_dispatch_page_shows_the_graph(browser: Any, address: str, size: str) -> None:
-    """Every mission is a box with its status, joined to what it waits for; the page is no wider than the window."""
+    """Every mission is a box with its status, joined to what it waits for; the page is no wider than the window.
+
+    The list says what each waits for, in lines whose head is not broken.
+    """
     width, height = SIZES[size]
     page = browser.new_page(viewport={"width": width, "height": height})
     complaints: list[str] = []
@@ -76,6 +79,9 @@ def test_dispatch_page_shows_the_graph(browser: Any, address: str, size: str) ->
     assert page.locator("svg path").count() == 2
     assert "b<script>" in page.locator("#list").inner_text()
     assert page.locator("#counts").inner_text() == "3 QUEUED"
+    assert page.locator("#list td:last-child").all_inner_texts() == ["its robot", "0", "1"]
+    heights = page.locator("#list tr").evaluate_all("rows => rows.map((row) => row.getBoundingClientRect().height)")
+    assert len(set(map(round, heights))) == 1
     assert not page.evaluate("document.documentElement.scrollWidth > window.innerWidth")
     assert complaints == []
     page.close()

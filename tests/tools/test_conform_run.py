@@ -7,6 +7,7 @@ from typing import Any
 
 import orjson
 import pytest
+from attrs import evolve
 from broken import MISSION
 from commandline import CommandLine
 
@@ -16,6 +17,7 @@ from missionfsm.tools.check.judge import Judge, check
 from missionfsm.tools.check.verdict import PER, RATE
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.coverage import Census, rare
+from missionfsm.tools.conform.narrowing import WIDE
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -163,3 +165,30 @@ def test_a_head_is_read() -> None:
     """The first line of a history that a judge shows is one that makes the same judge."""
     judge = Judge(MISSION, Head("bear.mission", {}, ("goalReached",)))
     assert head(judge.history[0]) == judge.head
+
+
+# Implementations that also move by themselves.
+
+
+class Undriven(ReferenceSubject):
+    """The reference, which declares no drives: whatever they do may happen at any time."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        came = super().exchange(method, params)
+        return evolve(came, result={**came.result, "drives": []}) if method == "initialize" else came
+
+
+@pytest.mark.parametrize(("subject", "waited"), [(Undriven, True), (ReferenceSubject, False)])
+def test_what_may_have_moved_too_far_is_let_settle(subject: type[ReferenceSubject], *, waited: bool) -> None:
+    """Before the next call, where what nobody saw has many explanations; what is driven moves no further."""
+    goals = [{"destinationId": name} for name in ("table-1", "table-2", "table-3")]
+    patrol = {"mission": {"serviMission": {"deliveryPatrolMission": {"goals": goals}}}}
+    run = Run.of(MISSION, subject(MISSION))
+    run.start({})
+    run.act("SubscribeMissionStatus", {})
+    run.act("CreateMissionBatch", {"missions": [patrol, patrol]})
+    run.act("UpdateMission", {"missionCommand": {"missionId": "no-such-mission"}})
+    wide = len(run.conversation.judge.belief.node.explanations)
+    assert run.act("CreateMission", patrol)
+    assert (wide > WIDE, {"settled": True} in run.conversation.heard) == (waited, waited)
+    assert len(run.conversation.judge.belief.node.explanations) <= max(2, wide // 2)

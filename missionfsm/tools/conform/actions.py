@@ -35,7 +35,7 @@ class Action:
     """Something that a tester does.
 
     Attributes:
-        serial: tells it from the others of its conversation.
+        serial: tells it from the others of its conversation; below 0 where the tester only waited, for itself.
         method: a documented call, or ``drive``, ``settle``, ``cancel``.
         params: its JSON, with `ANY_NAME` where `name` goes.
         name: the name that is meant: one that was given, or a text that nothing is called.

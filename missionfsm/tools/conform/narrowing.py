@@ -46,6 +46,11 @@ class Narrowing:
         """Take into account how many explanations a conversation has."""
         self.widest = max(self.widest, len(conversation.judge.belief.node.explanations))
 
+    def is_lost_in(self, conversation: Conversation) -> bool:
+        """Whether an implementation that also moves by itself has more explanations than one can follow at a pace."""
+        driven = self.wide.successors.driven
+        return len(conversation.judge.belief.node.explanations) > WIDE and not driven.issuperset(self.wide.spec.drives)
+
     def choose(self, readings: Mapping[str, tuple[str, ...]], *, at_once: bool = False) -> Automaton:
         """The automaton for the next conversation.
 

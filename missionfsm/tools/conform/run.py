@@ -141,7 +141,7 @@ class Run:
     def act(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> bool:
         """Do something in the conversation that was begun last; False once something is found that is not expected."""
         done = self.conversation.actions
-        return self.perform(Action(done[-1].serial + 1 if done else 1, method, params, name, picks))
+        return self.perform(Action(abs(done[-1].serial) + 1 if done else 1, method, params, name, picks))
 
     def settle(self) -> bool:
         """Wait until all that was caused has been seen; see `act`."""
@@ -154,7 +154,15 @@ class Run:
         return self.act(proposal.method, proposal.params, proposal.name, proposal.picks)
 
     def perform(self, action: Action) -> bool:
-        """Perform an action in the conversation that was begun last; see `act`."""
+        """Perform an action in the conversation that was begun last; see `act`.
+
+        Where the implementation may have done more by itself than one can follow, it is waited for first.
+        """
+        if action.method != SETTLE and self.narrowing.is_lost_in(self.conversation):
+            return self._step(Action(-action.serial, SETTLE)) and self._step(action)
+        return self._step(action)
+
+    def _step(self, action: Action) -> bool:
         if self.over:
             return True
         last = self.conversation

@@ -190,9 +190,9 @@ def test_explore_says_what_it_saw(command_line: CommandLine) -> None:
     found = orjson.loads(ended.out)
     assert (ended.status, found["counterexample"]) == (1 if found["unmet"] else 0, None)
     assert found["bounds"] == {"missions": 1, "goals": 1, "batch": 1}
-    two = command_line("explore", "bear.mission")
-    assert two.status == 0
-    assert two.out.startswith("bear.mission within size 2, goals 2, batch 2: ")
+    told = command_line("explore", "bear.mission", "--missions", 1, "--goals", 1, "--batch", 1)
+    assert told.status == ended.status
+    assert told.out.startswith("bear.mission within size 1, goals 1, batch 1: ")
 
 
 @pytest.mark.parametrize("what", ["rules", "readings"])

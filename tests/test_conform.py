@@ -75,7 +75,7 @@ LONGEST = 22
 def judge(*options: str, examples: int = 30) -> Verdict:
     child = Child([str(NODE), str(SUBJECT), *options])
     try:
-        return conform(MISSION, child, examples=examples, steps=30, seed=1)
+        return conform(MISSION, child, examples=examples, steps=30, seed=1, advice=False)
     finally:
         child.close()
 

@@ -10,7 +10,7 @@ import pytest
 from missionfsm.adapters.stdio import Child
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.conform import Plan, conform
 
 NODE = shutil.which("node")
 SUBJECT = Path(__file__).parent / "subjects" / "bear_mission.mjs"
@@ -72,17 +72,17 @@ LONGEST = 22
 """Lines of the longest history that is needed to show one of them, the first line included."""
 
 
-def judge(*options: str, examples: int = 30) -> Verdict:
+def judge(*options: str, plan: Plan | None = None) -> Verdict:
     child = Child([str(NODE), str(SUBJECT), *options])
     try:
-        return conform(MISSION, child, examples=examples, steps=30, seed=1, advice=False)
+        return conform(MISSION, child, examples=30, steps=30, seed=1, advice=False, plan=plan)
     finally:
         child.close()
 
 
 def test_the_subject_conforms() -> None:
     """A second implementation, written from the pages alone, conforms."""
-    verdict = judge()
+    verdict = judge(plan=Plan(10, 6, 60, 30, 40))
     assert verdict.conforms, str(verdict)
 
 

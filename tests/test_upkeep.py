@@ -20,17 +20,14 @@ MOST = 15
 COMPLEX = {
     # The engine: paths that every event takes, each kept in one piece for its speed (tests/bench).
     "oracle": {
-        "belief.Automaton.arrive",
+        "automaton.Automaton.arrive",
         "belief.Belief.symbol",
+        "explanation._unseen",
         "explanation.take",
-        "lookahead.Lookahead.__init__",
         "lookahead.Lookahead._leading",
-        "lookahead.Lookahead._narrowed",
         "lookahead.Lookahead.narrowed",
-        "transition.TransitionFunction._ended",
         "transition.TransitionFunction._nothing_owed",
         "transition.TransitionFunction._received",
-        "transition._pairings",
     },
     # Parsers of the command line: an option after the other.
     "cli": {"conform.conform", "dispatch.dispatch"},

@@ -105,18 +105,23 @@ class _Subscription:
             monitor = self.missions[robot] = MissionMonitor(robot, strict=self.strict)
         return monitor.feed(message)
 
+    def _robots(self) -> str:
+        robots = self.status.robots if self.status else len(self.missions)
+        return f"{robots} {'robot' if robots == 1 else 'robots'}"
+
     def verdict(self) -> Verdict:
         """The judgement of what came."""
         spec: Spec = STATUS if self.status else MISSION
         checked = CHECKED if self.status else mission_monitor.CHECKED
         monitors = (self.status,) if self.status else tuple(self.missions.values())
-        robots = self.status.robots if self.status else len(self.missions)
-        repeats, redelivered = (sum(getattr(one, name) for one in monitors) for name in ("repeats", "redelivered"))
-        told = f"{robots} {'robot' if robots == 1 else 'robots'}, {repeats} messages that say nothing new"
-        notes = [f"{told}, {self.flagged} tolerated oddities"]
+        redelivered = sum(one.redelivered for one in monitors)
         concerned = _concerned(spec, self.topic)
         unchecked = [rule for rule in concerned if rule not in checked]
-        notes.append(f"not checked, since no bare message can break them: {len(unchecked)} rules")
+        notes = [
+            f"{self._robots()}, {sum(one.repeats for one in monitors)} messages that say nothing new, "
+            f"{self.flagged} tolerated oddities",
+            f"not checked, since no bare message can break them: {len(unchecked)} rules",
+        ]
         if self.problems > 1:
             notes.append(f"{self.problems - 1} more problems in this stream")
         violation = None

@@ -117,8 +117,23 @@ class Lookahead:
         self._showable: dict[Hashable, bool] = {}
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
+        called = self._read(symbols[:horizon], beyond)
+        self._openings = self._opened(called)
+        # Behind the answers that open streams which show something, and what settles.
+        opened_by = [self._answered[call] for _, _, call, _ in self._openings]
+        self._shown_from = max((-1, *opened_by, *self._settled, *self._beyond)) + 1
+        # Calls that will succeed: when each was sent, and what it was.
+        self._successes = [
+            (at, call, request, args)
+            for call, (at, request, args) in called.items()
+            if call in self.answers and self.answers[call][0].code == OK
+        ]
+        self._sent = [at for at, *_ in self._successes]
+
+    def _read(self, symbols: Sequence[Symbol], beyond: Collection[int]) -> dict[int, tuple[int, Hashable, Names]]:
+        """Note what comes; the calls that are sent: each with its position, what it asks for and its names."""
         called: dict[int, tuple[int, Hashable, Names]] = {}
-        for position, (kind, *what) in enumerate(symbols[:horizon]):
+        for position, (kind, *what) in enumerate(symbols):
             if kind is Called:
                 called[what[-1]] = position, *what[:2]
             elif kind is Returned:
@@ -136,23 +151,16 @@ class Lookahead:
                 self._settled.append(position)
             elif kind in (Cancelled, Ended):
                 self._ended.setdefault(what[-1], position)
+        return called
+
+    def _opened(self, called: Mapping[int, tuple[int, Hashable, Names]]) -> list[tuple[int, int, int, Message]]:
+        """Of streams that are opened: when which message came first, when the call was sent, and what it is."""
         opened = ((call, channel) for call, (_, names) in self.answers.items() for channel in names)
         first = ((*self._messages[channel], call) for call, channel in opened if channel in self._messages)
-        # Of streams that are opened: when the call was sent, what it is, and when which message came first.
-        self._openings = sorted(
+        return sorted(
             ((at, called[call][0] if call in called else -1, call, message) for (at, *_), (message, *_), call in first),
             key=operator.itemgetter(0),
         )
-        # Behind the answers that open streams which show something, and what settles.
-        opened_by = [self._answered[call] for _, _, call, _ in self._openings]
-        self._shown_from = max((-1, *opened_by, *self._settled, *self._beyond)) + 1
-        # Calls that will succeed: when each was sent, and what it was.
-        self._successes = [
-            (at, call, request, args)
-            for call, (at, request, args) in called.items()
-            if call in self.answers and self.answers[call][0].code == OK
-        ]
-        self._sent = [at for at, *_ in self._successes]
 
     def answer(self, call: int) -> tuple[Answer, Names] | None:
         """What a call in flight comes back with, and with which names; None where it is not known."""

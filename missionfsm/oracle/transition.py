@@ -443,28 +443,31 @@ class TransitionFunction:
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
                 yield explanation.but(assumed=assumed, channels=channels), channel.topic
 
+    def _may_end(self, here: Explanation, name: int, code: str) -> int:
+        """The readings under which the channels with a name may end so; 0 where they may not."""
+        assumed = here.assumed
+        for topic in (channel.topic for channel in here.channels if channel.name == name):
+            assumes = self.spec.delivery(topic).ends.get(code)
+            if self.spec.transport and (assumes is None or self._lenient):
+                assumes = lenient.ends(code)
+            assumed = self.successors.meet(assumed, assumes) if assumes is not None else 0
+        return assumed
+
     def _ended(self, explanations: Iterable[Explanation], code: str, name: int) -> Iterator[Successor]:
-        # A stream that nothing is known of yet is that of a call whose answer has not come.
         known: list[Explanation] = []
-        unknown: list[Explanation] = []
+        others: list[Explanation] = []
         for explanation in explanations:
-            named = name in _channel_names(explanation)
-            if not named and self.spec.anywhere:  # it was opened before the log began
-                yield Successor(explanation)
-            if not (middle.is_unknown(explanation) and not named):
-                (known if named else unknown).append(explanation)
+            (known if name in _channel_names(explanation) else others).append(explanation)
+        if self.spec.anywhere:  # it was opened before the log began
+            yield from map(Successor, others)
+        # A stream that nothing is known of yet is that of a call whose answer has not come.
+        unknown = [one for one in others if not middle.is_unknown(one)]
         if self.spec.closing is not None:
             yield from self._closed((*known, *unknown), name)
         for successor in (*map(Successor, known), *self.successors.closure(unknown, focus=self._before(ENDED, name))):
             here = successor.explanation
-            names = dict.fromkeys(channel.name for channel in here.channels)
-            for own in (name,) if name in names else [one for one in names if one < GONE]:
-                assumed = here.assumed
-                for topic in (channel.topic for channel in here.channels if channel.name == own):
-                    assumes = self.spec.delivery(topic).ends.get(code)
-                    if self.spec.transport and (assumes is None or self._lenient):
-                        assumes = lenient.ends(code)
-                    assumed = self.successors.meet(assumed, assumes) if assumes is not None else 0
+            for own in _named_so(here, name):
+                assumed = self._may_end(here, own, code)
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
@@ -634,6 +637,12 @@ def _channel_names(explanation: Explanation) -> set[int]:
     return {channel.name for channel in explanation.channels}
 
 
+def _named_so(explanation: Explanation, name: int) -> tuple[int, ...]:
+    """The names under which the channel with an observed name may be known: its own, or any that nobody has seen."""
+    names = dict.fromkeys(channel.name for channel in explanation.channels)
+    return (name,) if name in names else tuple(one for one in names if one < GONE)
+
+
 def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator[list[tuple[int, int]]]:
     """The pairs of names that an unordered answer may mean; none where it says one twice."""
     shared = [name for name in own if name in observed]
@@ -641,8 +650,7 @@ def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator
     if max(left, default=GONE - 1) >= GONE or len(left) != len(set(free)):
         return
     elsewhere = set(mentioned(explanation)) if len(left) > 1 else set()
-    told = [name for name in left if name in elsewhere]
-    rest = [name for name in left if name not in elsewhere]
+    told, rest = ([name for name in left if (name in elsewhere) is known] for known in (True, False))
     for some in itertools.permutations(free, len(told)):
         others = (name for name in free if name not in some)
         yield [

@@ -26,14 +26,14 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.subject import Exchange, GibberishError, Subject, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.actions import Action
-from missionfsm.tools.conform.distinguish import Lab
 from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.tour import play, tour
+from missionfsm.tools.conform.trials import Lab
 from missionfsm.tools.mutate.teeth import Mutant
 from missionfsm.tools.reference.subject import ReferenceSubject
 

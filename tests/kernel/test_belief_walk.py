@@ -151,7 +151,7 @@ SCRIPT = """
 import sys
 sys.path.insert(0, sys.argv[1])
 from test_belief_walk import SYSTEM, walk
-from missionfsm.oracle.belief import Automaton
+from missionfsm.oracle.automaton import Automaton
 automaton = Automaton(SYSTEM.spec)
 print(walk(automaton, 3, 250), automaton.size, sorted(automaton.exercised().items()))
 """

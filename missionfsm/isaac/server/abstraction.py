@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Server, Status
+from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status
 
 
 def shape(server: Server) -> object:
@@ -18,14 +18,17 @@ def _of_robot(server: Server, robot: str | None) -> object:
     under_way = tuple(
         (one.status.value, one.run is not None, one.channel, one.link is None) for one in own if one.status in UNDER_WAY
     )
-    queued = [one for one in own if one.status is Status.QUEUED]
-    ready = min(2, sum(one.ready for one in queued))
-    waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
-    doomed = any(one.doomed for one in queued)
+    queue = _queue([one for one in own if one.status is Status.QUEUED])
     lingers = any(one.lingers for one in own)
     ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
     links = tuple(one.serves for one in server.links if one.name == robot)
-    return under_way, ready, waiting, doomed, lingers, ended, links
+    return under_way, *queue, lingers, ended, links
+
+
+def _queue(queued: list[Mission]) -> tuple[int, tuple[int, ...], bool]:
+    """Whether none, one or more are ready, for how many missions others wait, and whether any is to be cancelled."""
+    waiting = tuple(sorted({len(one.waits) for one in queued if one.waits}))
+    return min(2, sum(one.ready for one in queued)), waiting, any(one.doomed for one in queued)
 
 
 def idle_shape(server: Server) -> object:

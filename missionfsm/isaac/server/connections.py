@@ -143,17 +143,10 @@ def _says_name(move: Move, link: Link, text: str) -> Moves:
 
 def _named(move: Move, link: Link, key: str) -> Moves:
     move = move.to(move.state, rules.NAMED.id)
-    if link.serves:
-        if link.name == key:
-            yield move
-            return
-        ignored, bound = split(move, AI_17, "a")
-        if ignored is not None:
-            yield ignored
-        if bound is not None:
-            for after in lost(bound, link):
-                for free in _succeeded(after.link(link.slot, name=None, serves=False), link):
-                    yield from _claims(free, link, key)
+    if link.serves and link.name != key:
+        yield from _renamed(move, link, key)
+    elif link.serves:
+        yield move
     elif link.name is None:
         yield from _claims(move, link, key)
     elif link.name == key:
@@ -164,16 +157,30 @@ def _named(move: Move, link: Link, key: str) -> Moves:
         if never is not None:
             yield never
     else:
-        # It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q).
-        keeps, without = split(move, AI_16_BACK, "pr")
-        if without is not None:
-            yield from _claims(without, link, key)
-        if keeps is not None:
-            ignored, bound = split(keeps, AI_17, "a")
-            if ignored is not None:
-                yield ignored
-            if bound is not None:
-                yield from _claims(bound, link, key)
+        yield from _named_otherwise(move, link, key)
+
+
+def _renamed(move: Move, link: Link, key: str) -> Moves:
+    """A robot says another name: it keeps its own (AI-17), or takes the other."""
+    ignored, bound = split(move, AI_17, "a")
+    if ignored is not None:
+        yield ignored
+    if bound is not None:
+        for after in lost(bound, link):
+            for free in _succeeded(after.link(link.slot, name=None, serves=False), link):
+                yield from _claims(free, link, key)
+
+
+def _named_otherwise(move: Move, link: Link, key: str) -> Moves:
+    """It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q)."""
+    keeps, without = split(move, AI_16_BACK, "pr")
+    if without is not None:
+        yield from _claims(without, link, key)
+    ignored, bound = (None, None) if keeps is None else split(keeps, AI_17, "a")
+    if ignored is not None:
+        yield ignored
+    if bound is not None:
+        yield from _claims(bound, link, key)
 
 
 def _claims(move: Move, link: Link, key: str) -> Moves:

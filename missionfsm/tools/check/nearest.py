@@ -100,6 +100,7 @@ class Candidate:
         unseen: ids of the rules of what has happened unseen before it would have come.
         owed: the channel and what it owes, where it is a message that is due.
         unusual: how many readings it assumes that are not those of the reference, though those could be followed.
+        code: of an answer, its code.
     """
 
     what: str
@@ -111,6 +112,7 @@ class Candidate:
     unseen: tuple[str, ...] = ()
     owed: tuple[Channel, Owed] | None = None
     unusual: int = 0
+    code: str = ""
 
     @property
     def weight(self) -> int:
@@ -208,7 +210,9 @@ class Nearest:
             for one in assumes
         )
         shown = tuple(map(str, assumes))
-        return Candidate(what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual)
+        return Candidate(
+            what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual, code=answer.code
+        )
 
     def _answered(  # noqa: PLR0913 - what is compared
         self,

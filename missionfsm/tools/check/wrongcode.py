@@ -27,10 +27,8 @@ CONDITIONS = 3
 def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) -> tuple[list[str], list[str]]:
     """Ids of the rules that are broken and why, in words; none of the candidates has the code of the answer."""
     spec, request, code = nearest.spec, nearest.about.request, event.answer.code
-    due = sorted(allowed, key=_likely)
-    refused = _once_each(rule for one in due if not _succeeds(one) for rule in one.rules)
-    done = list(dict.fromkeys(rule for one in due if _succeeds(one) for rule in one.rules))
-    wanted = done if not refused or _succeeds(due[0]) else refused
+    refused, done, is_done = _parted(allowed)
+    wanted = done if is_done else refused
     if code == OK or request is None:
         return refused or wanted, []
     operation = spec.operations[spec.request_operation(request)]
@@ -41,15 +39,26 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
         return wanted, [f"{code} is not documented for {operation.name}"]
     held = _held_last(nearest, event, reasons)
     reasons = [*held, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
-    conditions = "; ".join(list(dict.fromkeys(rule.says for rule in reasons))[:CONDITIONS])
-    note = f"{code} needs a reason, and none holds: {conditions}"
-    if wanted is done:  # what may be done is refused without a reason
+    note = f"{code} needs a reason, and none holds: {_conditions(reasons)}"
+    if is_done:  # what may be done is refused without a reason
         return [reasons[0].id, *done], [note]
     return [*refused, *(rule.id for rule in held[:1])], [note]  # what has to be refused is refused wrongly
 
 
+def _conditions(rules: Iterable[Rule]) -> str:
+    return "; ".join(list(dict.fromkeys(rule.says for rule in rules))[:CONDITIONS])
+
+
+def _parted(allowed: Sequence[Candidate]) -> tuple[list[str], list[str], bool]:
+    """The rules of the refusals that are due and of what may be done instead, and whether that is likelier."""
+    due = sorted(allowed, key=_likely)
+    refused = _once_each(rule for one in due if not _succeeds(one) for rule in one.rules)
+    done = list(dict.fromkeys(rule for one in due if _succeeds(one) for rule in one.rules))
+    return refused, done, not refused or _succeeds(due[0])
+
+
 def _succeeds(candidate: Candidate) -> bool:
-    return candidate.what.startswith(OK)
+    return candidate.code == OK
 
 
 def _likely(candidate: Candidate) -> tuple[int, int, int]:

@@ -108,7 +108,7 @@ KeepaliveSeconds = Annotated[
         metavar="SECONDS",
         min=1,
         max=86_400,
-        help="With --grpc: silence after which a connection is asked whether it is alive; 20 by default.",
+        help="With --grpc: silence after which a connection is asked whether it is alive, if the server permits it.",
     ),
 ]
 

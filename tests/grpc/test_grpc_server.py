@@ -12,18 +12,20 @@ from typing import Any
 import grpc
 import pytest
 from commandline import CommandLine
-from google.protobuf import descriptor_pool, message_factory
+from google.protobuf import descriptor_pool, json_format, message_factory
 from grpc_reflection.v1alpha.proto_reflection_descriptor_database import ProtoReflectionDescriptorDatabase
 
 import missionfsm
 from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.control import Control
-from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
+from missionfsm.adapters.grpc.descriptors import SERVICES, decode, encode, methods, path
 from missionfsm.adapters.grpc.faults import Dice, Faults
 from missionfsm.adapters.grpc.server import Server
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.live import Live
 from missionfsm.app.serve import Cue, Served, read_script, serve
+from missionfsm.bear.wire.fields import PACKAGE
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
@@ -136,21 +138,39 @@ def test_calls_that_are_not_modelled_are_unimplemented(client: Client) -> None:
         assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
 
 
-def test_reflection_is_enough_to_call_every_method(robot: Served) -> None:
-    """A client that knows no definitions finds services and calls by reflection, and calls one."""
-    with grpc.insecure_channel(robot.target) as channel:
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
+def test_reflection_is_enough_to_call_every_method(name: str) -> None:
+    """A client that knows no definitions lists services and calls by reflection, calls each, and reads the answers."""
+    goal = {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}
+    ids = {"selector": {"robotIds": {"ids": ["r1"]}}}
+    said = {"CreateMission": {"mission": goal}, "AppendMission": {"mission": goal}, "GetRobotStatus": {"robotId": "r1"}}
+    world = system(name).alphabet({}, Bounds(1)).worlds[0] if name == "bear.status" else {}
+    with serve(name, world=world) as robot, grpc.insecure_channel(robot.target) as channel:
         database = ProtoReflectionDescriptorDatabase(channel)
-        assert {"bearrobotics.api.v1.services.robot.APIService", "missionfsm.control.v1.Control"} <= set(
-            database.get_services()
-        )
-        pool = descriptor_pool.DescriptorPool(database)
-        service = pool.FindServiceByName("bearrobotics.api.v1.services.robot.APIService")
-        assert {one.name for one in service.methods} == set(methods("bear.mission"))
-        method = service.FindMethodByName("CreateMission")
-        request = message_factory.GetMessageClass(method.input_type)()
-        request.mission.base_mission.navigate_mission.goal.destination_id = "table-1"
-        answer = channel.unary_unary(f"/{service.full_name}/CreateMission")(request.SerializeToString(), timeout=WAIT)
-        assert message_factory.GetMessageClass(method.output_type).FromString(answer).mission_id
+        services = set(database.get_services())
+        full_name = f"{PACKAGE}.{SERVICES[name]}"
+        assert {full_name, "missionfsm.control.v1.Control"} <= services
+        service = descriptor_pool.DescriptorPool(database).FindServiceByName(full_name)
+        assert {one.name for one in service.methods} == set(methods(name))
+        answered = {}
+        for method in sorted(service.methods, key=lambda one: one.name != "CreateMission"):
+            request = said.get(method.name, ids if name == "bear.status" else {})
+            request = json_format.ParseDict(request, message_factory.GetMessageClass(method.input_type)())
+            how = channel.unary_stream if method.server_streaming else channel.unary_unary
+            call = how(f"/{full_name}/{method.name}")
+            try:
+                asked = call(request.SerializeToString(), timeout=WAIT)
+                answer = next(asked) if method.server_streaming else asked
+                message_factory.GetMessageClass(method.output_type).FromString(answer)
+                answered[method.name] = "OK"
+            except grpc.RpcError as error:
+                answered[method.name] = error.code().name
+    refused = {one: code for one, code in answered.items() if code != "OK"}
+    if name == "bear.status":
+        assert refused == {}
+    else:
+        assert set(answered) - set(refused) >= {"CreateMission", "AppendMission", "SubscribeMissionStatus"}
+        assert set(refused.values()) <= {"INVALID_ARGUMENT", "FAILED_PRECONDITION", "NOT_FOUND"}
 
 
 def test_the_control_service_sets_the_scene(robot: Served, client: Client) -> None:

@@ -7,7 +7,6 @@ reset only ends what this tester has begun.
 
 from __future__ import annotations
 
-import contextlib
 import threading
 import time
 import uuid
@@ -18,6 +17,7 @@ import grpc
 from attrs import evolve
 
 from missionfsm.adapters.grpc import control
+from missionfsm.adapters.grpc.begun import Begun
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, methods, path, unknown
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.bear.wire.fields import Method
@@ -25,8 +25,6 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.text import brief
 
-REFUSAL_SECONDS = 0.1
-"""How long a refusal is awaited once empty initial metadata have come."""
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
 MAX_ROUNDS = 100
@@ -84,6 +82,7 @@ class GrpcSubject:
         self._counts = True
         self._serial = 0
         self._created: set[str] = set()
+        self._patience = max(target.settle_most, target.settle)
         self._control = self._described()
         self.unknown: dict[str, int] = {}
         """Fields that the table does not know, by call and path, and how often they came."""
@@ -181,7 +180,7 @@ class GrpcSubject:
         named = ((control.SESSION_KEY, self._session), (control.STREAM_KEY, str(stream)))
         metadata = (*self.target.sent, *(named if self._control else ()))
         call = self._channel.unary_stream(path(method))(request, metadata=metadata)
-        begun = _Begun(call)
+        begun = Begun(call)
         counted = self._control and self._counts  # such a server says by initial metadata that a stream has begun
         begun.wait(self.target.timeout if counted else max(self.target.begin, self.target.settle))
         if begun.refusal is not None:
@@ -194,8 +193,20 @@ class GrpcSubject:
             target=self._listen, args=(method, stream, call), name=f"missionfsm-stream-{stream}", daemon=True
         ).start()
         if not (self._control and self._counts):
-            self._wait(lambda: self._came.get(stream, 1) > 0, self.target.settle)
+            self._first_message(stream)
         return Exchange({"stream": stream})
+
+    def _first_message(self, stream: int) -> None:
+        """Wait for it: every page promises one, and one that is late is none that is missing.
+
+        Where there is none, which may be right, the next one is waited for half as long.
+        """
+        begun = self._clock()
+        self._wait(lambda: self._came.get(stream, 1) > 0, self._patience)
+        if self._clock() - begun >= self._patience:
+            self._patience = max(self._patience / 2, self.target.settle)
+        elif self._clock() - begun > self.target.settle:
+            self._patience = max(self.target.settle_most, self.target.settle)
 
     def _listen(self, method: Method, stream: int, call: Any) -> None:  # noqa: ANN401 - a call of grpc
         try:
@@ -358,29 +369,6 @@ class GrpcSubject:
         if answer.error is not None:
             said = f"{answer.error['status']}: {answer.error.get('message', '')}"
             raise SubjectError(f"the robot cannot be reset: {name} was answered {brief(said)}")
-
-
-class _Begun:
-    """Waits until a stream begins or is refused."""
-
-    def __init__(self, call: Any) -> None:  # noqa: ANN401 - a call of grpc
-        self._call = call
-        self.refusal: grpc.RpcError | None = None
-
-    def wait(self, seconds: float) -> None:
-        """Wait so long at most; a server may say that a stream has begun only with its first message."""
-        thread = threading.Thread(target=self._look, name="missionfsm-begun", daemon=True)
-        thread.start()
-        thread.join(seconds)
-
-    def _look(self) -> None:
-        ended = threading.Event()
-        if self._call.add_callback(ended.set):  # it has not ended yet
-            with contextlib.suppress(grpc.RpcError):
-                if not self._call.initial_metadata():  # a refusal has none, which looks as if they were empty
-                    ended.wait(REFUSAL_SECONDS)
-        if self._call.done() and self._call.code() is not grpc.StatusCode.OK:
-            self.refusal = self._call
 
 
 def _error(error: Any) -> JSON:  # noqa: ANN401 - grpc's errors are calls as well

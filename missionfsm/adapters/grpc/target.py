@@ -27,7 +27,8 @@ class Target:
         settle_most: seconds after which that is so even without silence.
         begin: seconds after which a stream that was not refused has begun, where the server does not say so; one whose
             control service has ``Settle`` does.
-        keepalive: seconds of silence after which a connection is asked whether it is still alive.
+        keepalive: seconds of silence after which a connection is asked whether it is still alive; 0 for never, as gRPC
+            has it: a server that does not permit it ends the connection with ENHANCE_YOUR_CALM, too_many_pings.
     """
 
     address: str
@@ -38,7 +39,7 @@ class Target:
     settle: float = 0.2
     settle_most: float = 5.0
     begin: float = 1.0
-    keepalive: float = 20.0
+    keepalive: float = 0.0
 
     @property
     def sent(self) -> tuple[tuple[str, str], ...]:
@@ -48,8 +49,13 @@ class Target:
     def channel(self) -> grpc.Channel:
         """A connection. Raises OSError for a certificate that cannot be read."""
         options = (
-            ("grpc.keepalive_time_ms", round(1000 * self.keepalive)),
-            ("grpc.keepalive_timeout_ms", KEEPALIVE_TIMEOUT_MS),
+            (
+                ("grpc.keepalive_time_ms", round(1000 * self.keepalive)),
+                ("grpc.keepalive_timeout_ms", KEEPALIVE_TIMEOUT_MS),
+                ("grpc.http2.max_pings_without_data", 0),
+            )
+            if self.keepalive
+            else ()
         )
         credentials = self.credentials()
         if credentials is None:

@@ -72,10 +72,10 @@ LONGEST = 22
 """Lines of the longest history that is needed to show one of them, the first line included."""
 
 
-def judge(*options: str, plan: Plan | None = None) -> Verdict:
+def judge(*options: str, plan: Plan = Plan(30, steps=30)) -> Verdict:  # noqa: B008 - a value
     child = Child([str(NODE), str(SUBJECT), *options])
     try:
-        return conform(MISSION, child, examples=30, steps=30, seed=1, advice=False, plan=plan)
+        return conform(MISSION, child, plan=plan, seed=1, advice=False)
     finally:
         child.close()
 

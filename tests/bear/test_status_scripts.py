@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from attrs import evolve
+
 from missionfsm.bear.status.scripts import APART, SHOWN
+from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.wire.fields import MESSAGES
 from missionfsm.bear.wire.protojson import camel
+from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.subject import Exchange, Notification
+from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.tour import play
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 UNMOVED = {
     "mission.missionType",
@@ -51,3 +60,39 @@ def test_every_field_of_a_status_changes_alone() -> None:
     wanted = {path for part, kind in PARTS.items() if part in APART for path in leaves(part, kind)}
     assert wanted - alone == set()
     assert {part for parts in SHOWN.values() for part in parts} == set(APART)
+
+
+class Shared:
+    """The reference with a fault: what a message says of several robots has the metadata of the first of them."""
+
+    def __init__(self) -> None:
+        self.right = ReferenceSubject(SYSTEM)
+        self.reports: Counter[str] = Counter()
+
+    def exchange(self, method: str, params: JSON) -> Exchange:
+        done = self.right.exchange(method, params)
+        if method == "drive":
+            self.reports[params["robotId"]] += 1
+        first: dict[int, str] = {}
+
+        def shared(said: Notification) -> Notification:
+            [(name, entries)] = said.params["message"].items()
+            robot = first.setdefault(said.params["stream"], next(iter(entries)))
+            number = {"timestamp": "2025-04-01T16:45:00Z", "sequenceNumber": 1 + self.reports[robot]}
+            entries = {name: {**entry, "metadata": number} for name, entry in entries.items()}
+            return Notification(said.method, {**said.params, "message": {name: entries}})
+
+        said = (shared(one) if len(one.params.get("message", ())) == 1 else one for one in done.after)
+        return evolve(done, after=tuple(said))
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+def test_metadata_that_robots_share_are_noticed() -> None:
+    """A robot that is shown with the number of another, which has counted further, is seen to count down."""
+    run = Run.against(SYSTEM, Shared())
+    assert not play(run)
+    assert run.found is not None
+    assert run.found.judge.violation is not None
+    assert [one.id for one in run.found.judge.violation.rules] == ["bear.status/messages/sequence-numbers-grow"]

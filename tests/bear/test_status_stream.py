@@ -476,6 +476,27 @@ def test_a_stream_may_break_down_and_owes_nothing_then() -> None:
     assert not conforms(*lines, battery_message(1, "r1", 9, battery(50)))
 
 
+def test_a_message_without_a_timestamp_is_pointed_out() -> None:
+    """AS-14: that a later message does not say when it was recorded is a departure, on streams of either form."""
+    untimed = battery_message(1, "r1", 6, UNPLUGGED)
+    del untimed["message"]["metadata"]["timestamp"]
+    found = judge([*SUBSCRIBED, report("r1", "battery", UNPLUGGED), untimed, SETTLED])
+    assert (readings(found, "AS-14.timestamp"), len(found.verdict().flagged)) == (("b",), 1)
+
+    online = online_message(2, r1=(3, "STATE_CONNECTED"))
+    del online["message"]["onlineStates"]["r1"]["metadata"]["timestamp"]
+    found = judge([*opened(2, "SubscribeOnlineStatus", by_ids("r1")), online, SETTLED])
+    assert len(found.verdict().flagged) == 1
+
+
+def test_a_state_of_the_type_that_is_left_out_is_pointed_out() -> None:
+    """AS-32: the page's example leaves it out, and its table lists it: accepted, and flagged."""
+    reported = report("r1", "serviState", {"trayStates": {"trayStates": []}})
+    lines = [*opened(1, ROBOT, by_ids("r1")), robot_message(1, "r1", 1, R1["state"]), reported, SETTLED]
+    found = judge(lines)
+    assert (readings(found, "AS-32"), len(found.verdict().flagged)) == (("b",), 1)
+
+
 def test_a_stream_does_not_just_end() -> None:
     """AS-26: a clean end without a cause is a departure from the text, and said to be one."""
     found = judge([*SUBSCRIBED, {"stream": 1, "closed": True}])

@@ -166,12 +166,12 @@ def _without_metadata(robot: JSON, message: dict[str, JSON]) -> tuple[tuple[Mark
     except MalformedError:
         return (), message
     rest = {name: value for name, value in message.items() if name != "metadata"}
-    rest[_STRIPPED] = True
+    rest[_STRIPPED] = found.timestamp is not None
     return ((robot, found.sequence_number),) if isinstance(robot, str) else (), rest
 
 
 _STRIPPED = "(metadata)"
-"""Marks a message whose metadata was there and has been taken out."""
+"""Marks a message whose metadata was there and has been taken out: whether they had a timestamp."""
 
 
 def content(rest: JSON) -> Seen | Malformed:
@@ -194,7 +194,7 @@ def _content(rest: JSON) -> Seen:
             try:
                 if not isinstance(entry, dict):
                     raise MalformedError(f"{brief(entry)} is not an object")
-                return Seen(robot, endpoint, _entry_value(endpoint, _checked(entry)))
+                return Seen(robot, endpoint, _entry_value(endpoint, _checked(entry)), timed=_is_timed(entry))
             except MalformedError as error:
                 raise error.inside(robot).inside(name) from None
     rest = _checked(rest)
@@ -205,9 +205,13 @@ def _content(rest: JSON) -> Seen:
     if len(found) > 1:
         raise MalformedError(f"{SINGLES[found[0]]} and {SINGLES[found[1]]} are fields of different messages")
     if not found:
-        return Seen(robot or "", None)
+        return Seen(robot or "", None, timed=_is_timed(rest))
     value, wrapped = single_value(found[0], field(rest, SINGLES[found[0]]))
-    return Seen(robot or "", found[0], value, wrapped)
+    return Seen(robot or "", found[0], value, wrapped, _is_timed(rest))
+
+
+def _is_timed(stripped: dict[str, JSON]) -> bool:
+    return stripped.get(_STRIPPED) is not False
 
 
 def _checked(message: dict[str, JSON]) -> dict[str, JSON]:

@@ -24,11 +24,13 @@ from missionfsm.bear.status.readings import (
     AS_18,
     AS_25,
     AS_28,
+    AS_32,
 )
 from missionfsm.bear.status.state import (
     LOCALIZATION,
     STATE_PARTS,
     TOPICAL,
+    TYPED,
     Endpoint,
     Fleet,
     Happening,
@@ -223,6 +225,8 @@ def _whole(before: Robot, after: Robot, part: str) -> Iterator[Way]:
     lenient = list(_withheld(before, after, Endpoint.ROBOT))
     if part in AS_13_THROTTLE and before.part(part) is not None and after.part(part) is not None:
         lenient.append(AS_13_THROTTLE[part]["b"])
+    if part in TYPED:
+        lenient.append(AS_32[Endpoint.ROBOT.value]["b"])  # where it is left out, nothing has changed
     yield from _due(after, Endpoint.ROBOT, shown, lenient)
 
 

@@ -29,6 +29,7 @@ from missionfsm.bear.status.readings import (
     AS_29_EMPTY,
     AS_32,
 )
+from missionfsm.bear.status.state import TYPED
 from missionfsm.bear.status.values import (
     difference,
 )
@@ -148,7 +149,7 @@ def _choices(view: View, state: RobotState) -> Iterator[list[tuple[dict[str, Any
         yield [({}, (AS_17_ZERO[call]["a"],)), ({"twist": None}, (AS_17_ZERO[call]["b"],))]
     if state.twist is not None and view.offline:
         yield [({}, (AS_17_OFFLINE[call]["d"],)), ({"twist": None}, (AS_17_OFFLINE[call]["c"],))]
-    typed = next((name for name in ("servi_state", "carti_state") if getattr(state, name) is not None), None)
+    typed = next((name for name in TYPED if getattr(state, name) is not None), None)
     if typed:
         yield [({}, (AS_32[call]["a"],)), ({typed: None}, (AS_32[call]["b"],))]
     for part, empty in _EMPTY_PARTS.items():

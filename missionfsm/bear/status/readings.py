@@ -335,6 +335,14 @@ AS_13_THROTTLE = _asked(
     {"a": "always", "b": "sometimes"},
     "a",
 )
+AS_14 = _asked(
+    SUBSCRIPTIONS,
+    "AS-14.timestamp",
+    "does every message say when it was recorded?",
+    {"a": "yes", "b": "no, the timestamp may be absent"},
+    "a",
+    flagged="b",
+)
 AS_15_FULL = Ambiguity(
     "AS-15.full",
     "What charge does a full battery have, in percent?",
@@ -433,6 +441,7 @@ AS_32 = _asked(
     "is the state that only the robot's type has always in its state?",
     {"a": "yes, if the robot reports it", "b": "it may be left out"},
     "a",
+    flagged="b",
 )
 AS_34 = _asked(
     CALLS,
@@ -466,7 +475,7 @@ WAIVED: Mapping[str, str] = {
     "AS-10": "numbers are compared within one stream and one robot alone, which is right in all three readings",
     "AS-11": "the first number after a restart is free on every stream; that none comes twice is the rule itself",
     "AS-13 latency": "no bound is documented; what has settled is judged",
-    "AS-14": "the published definitions name the field, and protobuf JSON may leave out zeros",
+    "AS-14 a, b": "the published definitions name the field, and protobuf JSON may leave out zeros",
     "AS-15 c to g": "combinations are the robot's own doing; where nobody drives it, those that last are reported",
     "AS-16": "what an emergency stop does to a mission or to wheels cannot be told from what is reported",
     "AS-17 e, f": "the sign of a rotation can be told only by somebody who sees the robot",

@@ -21,7 +21,7 @@ from missionfsm.bear.status.samples import (
     by_ids,
     report,
 )
-from missionfsm.bear.status.state import Endpoint
+from missionfsm.bear.status.state import MAPS, Endpoint
 from missionfsm.kernel.alphabet import ScriptStep
 from missionfsm.kernel.codec import JSON
 
@@ -131,3 +131,22 @@ def scripts(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[Script
             reports = (report(robot, part, value) for robot in robots[::-1] for value in APART[part])
             changes = ((ScriptStep("settle"), ScriptStep("drive", one)) for one in reports)
             yield (ScriptStep(endpoint.value, selection), *itertools.chain.from_iterable(changes))
+    for endpoint, first in itertools.product(MAPS, robots):
+        yield _numbered_apart(endpoint, first, *(one for one in robots if one != first))
+
+
+def _numbered_apart(endpoint: Endpoint, first: str, *others: str) -> tuple[ScriptStep, ...]:
+    """One robot has counted on before a message shows all of them; then the others change.
+
+    Each robot has metadata of its own: who gives one the number of another lets its numbers go down.
+    """
+    (part,) = SHOWN[endpoint]
+    before = (report(first, part, value) for value in (*APART[part], *APART[part]))
+    after = (report(robot, part, value) for robot in others for value in APART[part][::-1])
+    settled = ((ScriptStep("drive", one), ScriptStep("settle")) for one in after)
+    return (
+        *(ScriptStep("drive", one) for one in before),
+        ScriptStep(endpoint.value, by_ids(first, *others)),
+        ScriptStep("settle"),
+        *itertools.chain.from_iterable(settled),
+    )

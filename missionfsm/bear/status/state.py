@@ -69,6 +69,8 @@ STATE_PARTS = (
 )
 """The fields of RobotState that the page defines."""
 
+TYPED = ("servi_state", "carti_state")
+"""The parts of which a robot has one, by its type."""
 PARTS = (*STATE_PARTS, LOCALIZATION, WIFI)
 """What a robot can report."""
 

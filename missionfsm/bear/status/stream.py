@@ -13,6 +13,7 @@ from missionfsm.bear.status.messages import (
 )
 from missionfsm.bear.status.parts import whole, whole_shown
 from missionfsm.bear.status.readings import (
+    AS_14,
     AS_15_FULL,
     AS_18,
     AS_19,
@@ -92,7 +93,8 @@ def matches(view: View, content: Seen | Malformed) -> tuple[Match, ...] | Mismat
     if isinstance(found, Mismatch):
         return found
     rules = (UPDATES.id, SELECTED.id, WELL_FORMED.id, VALUES[view.endpoint.value].id, *exercised(value))
-    return tuple(Match(assumes, (), rules) for assumes in found)
+    untimed = () if content.timed else (AS_14[view.endpoint.value]["b"],)
+    return tuple(Match((*assumes, *untimed), (), rules) for assumes in found)
 
 
 def answers(promised: object, given: object) -> tuple[Match, ...] | Mismatch:

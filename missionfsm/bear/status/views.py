@@ -123,12 +123,14 @@ class Seen:
         endpoint: None where it carries nothing that would tell.
         value: as in `View`; what is absent has its default.
         wrapped: the goals of the mission are wrapped (AS-22); None where there are none.
+        timed: whether the metadata says when it was recorded (AS-14).
     """
 
     robot: str
     endpoint: Endpoint | None
     value: Value = None
     wrapped: bool | None = None
+    timed: bool = True
 
     def __str__(self) -> str:
         return brief_value(self.value)

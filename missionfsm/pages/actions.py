@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from attrs import field, frozen
 
@@ -14,12 +13,9 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Incident, Request, State
 from missionfsm.pages.naming import TEXT, Writer, dumped, put
 from missionfsm.tools.placeholders import kind_of, slots
-
-State = Any
-Request = Any
-Event = Any
 
 CALL, DRIVE, ITSELF = "call", "drive", "itself"
 FIXED = -1
@@ -84,7 +80,7 @@ class _Asked:
 
 @frozen
 class _Event:
-    event: Event
+    event: Incident
     filled: _Filled
     words: str
     made: dict[tuple[str, ...], Doing] = field(factory=dict)

@@ -21,7 +21,8 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.system import System
-from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Request, State, Tried
+from missionfsm.kernel.terms import Request, State
+from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Tried
 from missionfsm.pages.naming import PLACES, TEXT, Shared, Writer, dumped
 from missionfsm.tools.check.phrases import answer_words
 

@@ -14,6 +14,7 @@ from attrs import frozen
 from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.readings import Ambiguity, meet
 from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.terms import Request
 from missionfsm.oracle.automaton import Node
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation, InFlight
@@ -34,7 +35,7 @@ class Elimination:
 
     spec: Spec
     event: Event
-    request: Any
+    request: Request
     at: int = 0
     before: Node | None = None
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import difflib
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
 
 from attrs import evolve, frozen
 
@@ -20,6 +19,7 @@ from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Mismatch, Step
+from missionfsm.kernel.terms import Content, Request
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError, Successor
@@ -44,7 +44,7 @@ PASSING = 1
 class Call:
     """A call that was answered: what was asked about which names, and the answer."""
 
-    request: Any
+    request: Request
     about: tuple[Name, ...]
     answer: Answer
     names: tuple[Name, ...]
@@ -64,7 +64,7 @@ class Circumstances:
         recent: the calls that were answered last, the latest last.
     """
 
-    request: Any = None
+    request: Request = None
     rulings: Mapping[tuple[str, str], Elimination] = {}
     recent: tuple[Call, ...] = ()
 
@@ -125,7 +125,7 @@ class _Message:
     """A message that came: the event, its content, its names and its channel as the oracle numbers them."""
 
     event: Received
-    content: Any
+    content: Content
     given: Names
     number: int
 

@@ -12,6 +12,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, choose, meet
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import View
 from missionfsm.tools.check.verdict import PER, RATE
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import recognised
@@ -149,7 +150,7 @@ class Census:
             yield from rules
 
 
-def _rules_of(system: System, view: Any, count: int) -> Iterator[str]:  # noqa: ANN401 - of any system
+def _rules_of(system: System, view: View, count: int) -> Iterator[str]:
     names = tuple(f"n{number}" for number in range(count))
     for matches in recognised(system, view, names, choose(system.spec.ambiguities)):
         if not isinstance(matches, Mismatch):

@@ -19,6 +19,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Incident, Request
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.successors import Successors
 from missionfsm.tools.conform.actions import CANCEL, Bindings, NameRef
@@ -72,7 +73,7 @@ class Call:
     """A prompt without stand-ins but perhaps for one name, and what it says."""
 
     prompt: Input
-    request: Any
+    request: Request
     named: bool
 
 
@@ -234,7 +235,7 @@ class Guide:
         conversation: Conversation,
         here: Explanation,
         shape: Hashable,
-        request: Any,  # noqa: ANN401 - of any system
+        request: Request,
         refs: tuple[int | None, ...],
         *,
         exact: bool = False,
@@ -264,7 +265,7 @@ class Guide:
         self,
         here: Explanation,
         shape: Hashable,
-        event: Any,  # noqa: ANN401 - of any system
+        event: Incident,
         refs: tuple[int | None, ...] = (),
         *,
         exact: bool = False,

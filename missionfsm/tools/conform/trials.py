@@ -14,6 +14,7 @@ from missionfsm.kernel.history import Name
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import View
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.verdict import Experiment
@@ -298,7 +299,7 @@ class _Search:
         sent = tuple((one.channel, self._text(model, one.view, one.names)) for one in reply.sent)
         return reply.happened, reply.answer, reply.names, sent
 
-    def _text(self, model: Reference, view: Any, names: tuple[Name, ...]) -> str:  # noqa: ANN401 - of any system
+    def _text(self, model: Reference, view: View, names: tuple[Name, ...]) -> str:
         key = (view, names, model.choice)
         text = self._written.get(key)
         if text is None:

@@ -6,7 +6,6 @@ A system is drawn settled: a step is followed by everything urgent, so that what
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 from attrs import frozen
 
@@ -16,9 +15,9 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import State
 from missionfsm.tools.explore.explore import Labels, bindings
 
-State = Any
 BY_ITSELF = "by itself"
 
 

@@ -16,9 +16,9 @@ from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Invariant, Spec
 from missionfsm.kernel.step import ONCE_HAD, Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import State
 from missionfsm.tools.placeholders import fill, slots
 
-State = Any
 Free = tuple[bool, ...]
 """Of each name of a request or an event, whether it may be any that the state has."""
 

@@ -19,6 +19,7 @@ from missionfsm.kernel.history import Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Request
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import Reference, Reply, Snapshot
 
@@ -168,14 +169,14 @@ class _Search:
                 if reply.happened and after.state != here.state:
                     yield self._system.spec.describe(event), after
 
-    def _says(self, request: Any, reply: Reply) -> str:  # noqa: ANN401 - of any system
+    def _says(self, request: Request, reply: Reply) -> str:
         code = reply.answer.code if reply.answer is not None else OK
         return f"{self._system.spec.describe(request)} → {code}"
 
     def _retry(
         self,
         place: _Place,
-        request: Any,  # noqa: ANN401 - of any system
+        request: Request,
         names: tuple[Name, ...],
         done: Snapshot,
         reply: Reply,
@@ -208,7 +209,7 @@ class _Search:
                     seen.add(situation(after.state))
                     todo.append(_Place(after, (*one.path, says)))
 
-    def _repeated(self, operation: str, code: str, request: Any, names: tuple[Name, ...], place: _Place) -> None:  # noqa: ANN401
+    def _repeated(self, operation: str, code: str, request: Request, names: tuple[Name, ...], place: _Place) -> None:
         after, reply = self._model.call(place.here, request, names)
         answer = reply.answer.code if reply.answer is not None else OK
         done = AGAIN if after.state == place.here.state else TWICE

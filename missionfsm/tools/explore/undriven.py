@@ -17,6 +17,7 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Request, State
 from missionfsm.tools.explore.explore import Labels, bindings
 
 BOUNDS, NEAR = Bounds(2, goals=2, batch=2), Bounds(1, goals=2, batch=1)
@@ -27,8 +28,6 @@ NOTHING_NEW = 10
 """After how many situations in a row that show no other rule no more are looked at."""
 MOST_UNSEEN = 200
 """How many states the system may come to unseen from each of them, at most."""
-
-State = Any
 
 
 @frozen
@@ -158,7 +157,7 @@ class _Look:
                 break
         return found
 
-    def _can_succeed(self, state: State, request: Any, refs: tuple[int | None, ...]) -> bool:  # noqa: ANN401
+    def _can_succeed(self, state: State, request: Request, refs: tuple[int | None, ...]) -> bool:
         key = (state, request, refs)
         if key not in self._succeeds:
             steps = self._possible(self.spec.outcomes(*key))

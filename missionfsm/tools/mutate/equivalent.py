@@ -18,6 +18,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.step import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Request
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import Reference, recognised
 
@@ -75,7 +76,7 @@ class ReferenceSteps:
     def answers(
         self,
         here: Any,  # noqa: ANN401 - of any system
-        request: Any,  # noqa: ANN401 - of any system
+        request: Request,
         refs: tuple[int | None, ...],
     ) -> tuple[Step, Options, frozenset[str]]:
         """The reference's own answer in a state, ways to explain it, and the rules of all allowed answers."""
@@ -259,7 +260,7 @@ class _Explorer:
         """Whether a state of the model does not last."""
         return self.model.twist(here, self.honest.urgent(here)[1]) is not None
 
-    def _asked(self, here: Any, request: Any, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
+    def _asked(self, here: Any, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
         own, options, rules = self.honest.answers(here, request, refs)
         self.came_up = self.came_up or self.rule in rules
         try:
@@ -335,7 +336,7 @@ def shown(
 def _explaining(  # noqa: PLR0913 - a step and where it is taken
     system: System,
     here: Any,  # noqa: ANN401 - of any system
-    request: Any,  # noqa: ANN401 - of any system
+    request: Request,
     allowed: tuple[Step, ...],
     taken: Step,
     *,

@@ -31,6 +31,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.subject import Exchange, GibberishError
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import State
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
@@ -326,7 +327,7 @@ def _coded(code: str) -> Callable[[Any, Step], Step]:
     return lambda _, step: evolve(step, answer=Answer(code)) if step.answer is not None else step
 
 
-def _without_effect(state: Any, step: Step) -> Step | None:  # noqa: ANN401 - a state of any system
+def _without_effect(state: State, step: Step) -> Step | None:
     if step.answer is None:
         return None
     return evolve(step, after=state, names=None, emits=(), opens=())

@@ -17,6 +17,7 @@ from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Incident, State, View
 
 MAX_REMEMBERED = 1_000
 """How many steps a model remembers; states that list all that has ended are large."""
@@ -37,7 +38,7 @@ class Sent:
     channel: Name
     topic: Hashable
     number: int
-    view: Any
+    view: View
     names: tuple[Name, ...]
 
 
@@ -53,7 +54,7 @@ class Snapshot:
         gone: those that the state has no more, if it matters (see `Spec.recalls`).
     """
 
-    state: Any
+    state: State
     names: tuple[Name, ...] = ()
     channels: tuple[Open, ...] = ()
     minted: int = 0
@@ -92,7 +93,7 @@ def straight(_: Any, step: Step | None) -> Step | None:  # noqa: ANN401 - a stat
 
 def recognised(
     system: System,
-    view: Any,  # noqa: ANN401 - of any system
+    view: View,
     names: tuple[Name, ...],
     choice: int,
     bend: Callable[[JSON], JSON] = lambda message: message,
@@ -150,7 +151,7 @@ class Reference:
         after, sent = self._settle(after, sent)
         return after, Reply(step.answer, mentioned, tuple(sent), step.rules)
 
-    def outcome(self, state: Any, request: object, refs: tuple[int | None, ...] = ()) -> Step:  # noqa: ANN401
+    def outcome(self, state: State, request: object, refs: tuple[int | None, ...] = ()) -> Step:
         """What the reference answers in a state: the first outcome that its readings allow."""
         key = (state, request, refs)
         step = self._chosen.get(key)
@@ -164,7 +165,7 @@ class Reference:
             self._chosen[key] = step
         return step
 
-    def drive(self, here: Snapshot, event: Any, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:  # noqa: ANN401
+    def drive(self, here: Snapshot, event: Incident, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
         """Make something happen; the reply says whether it applied."""
         step = self.happening(here.state, event, tuple(map(here.ref, names)))
         if step is None:
@@ -182,11 +183,11 @@ class Reference:
             names = (*names, (kinds[-len(names) - 1], here.minted))
         return here, names
 
-    def urgent(self, state: Any) -> Step | None:  # noqa: ANN401 - of any system
+    def urgent(self, state: State) -> Step | None:
         """What the reference does by itself at once, if anything."""
         return self._choose(state, self.system.spec.urgent(state))
 
-    def happening(self, state: Any, event: Any, refs: tuple[int | None, ...]) -> Step | None:  # noqa: ANN401
+    def happening(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
         """How something that the environment does comes about; None where it does not apply."""
         return self._choose(state, self.system.spec.drives[event.name].steps(state, event, refs))
 
@@ -194,7 +195,7 @@ class Reference:
         """Give a stream up; one that does not exist is no error."""
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
-    def _choose(self, state: Any, steps: tuple[Step, ...]) -> Step | None:  # noqa: ANN401 - of any system
+    def _choose(self, state: State, steps: tuple[Step, ...]) -> Step | None:
         return self.twist(state, next((step for step in steps if meet(self.choice, step.assumes)), None))
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:

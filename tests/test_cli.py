@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import subprocess
 import sys
@@ -12,8 +13,10 @@ import pytest
 from commandline import CommandLine
 
 from missionfsm import systems
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.middle import MIDDLE
 from missionfsm.kernel.transport import TRANSPORT
+from missionfsm.tools.explore import explore as visiting
 
 FIRST = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 DELIVERY = {"mission": {"serviMission": {"deliveryMission": {"goals": [{"destinationId": "table-1"}]}}}}
@@ -193,6 +196,18 @@ def test_explore_says_what_it_saw(command_line: CommandLine) -> None:
     told = command_line("explore", "bear.mission", "--missions", 1, "--goals", 1, "--batch", 1)
     assert told.status == ended.status
     assert told.out.startswith("bear.mission within size 1, goals 1, batch 1: ")
+
+
+def test_what_takes_minutes_is_said_before_it_begins(
+    command_line: CommandLine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where a system has too many states within bounds, a line on stderr says so, and what is quicker."""
+    one = functools.partial(visiting.explore, bounds=Bounds(0))
+    monkeypatch.setattr(visiting, "explore", lambda explored, _, **how: one(explored, **how))
+    said = "missionfsm: explore isaac.server: this takes minutes; --missions 1 takes seconds\n"
+    assert command_line("explore", "isaac.server").err == said
+    assert command_line("explore", "isaac.server", "--missions", 1).err == ""
+    assert command_line("explore", "isaac.robot").err == ""
 
 
 @pytest.mark.parametrize("what", ["rules", "readings"])

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from missionfsm.cli.common import BAD_INPUT, DONE, FAILED, choice, profiled, refuse_outputs, stop, the_system
+from missionfsm.cli.common import BAD_INPUT, DONE, FAILED, choice, complain, profiled, refuse_outputs, stop, the_system
 from missionfsm.cli.helping import SystemName
 from missionfsm.cli.options import ProfileName, Readings
 from missionfsm.cli.pages import HtmlFile, write_explorer
@@ -50,6 +50,8 @@ def explore(  # noqa: PLR0913 - options of the command
         told(retries(explored, bounds, readings), json).end(DONE)
     if forget_ended and html is not None:
         stop("--forget-ended: it has no effect on the page of --html, which shows every state", BAD_INPUT)
+    if explored.minutes_at is not None and missions >= explored.minutes_at:
+        complain(f"explore {system}: this takes minutes; --missions {explored.minutes_at - 1} takes seconds")
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
     troubles = told(found, json)
     with troubles.kept():

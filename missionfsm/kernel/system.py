@@ -63,6 +63,8 @@ class System:
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
         matrix: in which situations what should have been asked; None where nobody says so.
+        minutes_at: the size of states, as `Bounds` has it, from which it takes minutes to visit them all; None where
+            nobody has found one.
         profiles: choices of readings by name: ambiguity id to the letters that are left.
     """
 
@@ -79,6 +81,7 @@ class System:
     shapes: Callable[[], Shapes] = Shapes
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
     matrix: Matrix | None = None
+    minutes_at: int | None = None
 
     def chosen(self, profile: str | None, readings: Mapping[str, str]) -> Mapping[str, str]:
         """The readings of a profile, if one is named, but for those that are given. ValueError for one that is not."""

@@ -179,4 +179,5 @@ SYSTEM = System(
     plans=PLANS,
     shapes=shapes,
     profiles=PROFILES,
+    minutes_at=2,
 )

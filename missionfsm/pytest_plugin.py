@@ -76,7 +76,7 @@ class HistoryItem(pytest.Item):
         except UnreadableError as error:
             raise UnexplainedError(str(error)) from None
         wrong = [
-            f"{printable(robot) + ': ' if robot else ''}{_told(verdict)}"
+            f"{printable(robot) + ': ' if robot else ''}{_text(verdict)}"
             for robot, verdict in verdicts
             if not verdict.conforms
         ]
@@ -94,7 +94,7 @@ class HistoryItem(pytest.Item):
         return self.path, None, f"history {self.name}"
 
 
-def _told(verdict: Verdict) -> str:
+def _text(verdict: Verdict) -> str:
     """A verdict with the story before it; the story of a long history is left out, since its beginning is not kept."""
     from attrs import evolve  # noqa: PLC0415 - see above
 

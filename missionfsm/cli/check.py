@@ -269,4 +269,4 @@ class _Reports:
 
 def _headed(path: str, robot: str | None, verdict: Verdict, *, verbose: bool) -> str:
     """The verdict with what it is about."""
-    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict.told(verbose=verbose)}"
+    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict.text(verbose=verbose)}"

@@ -15,7 +15,7 @@ from missionfsm.adapters.outputs import STDOUT, refuse_unwritable, same_file, to
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.text import shown
+from missionfsm.kernel.text import clipped
 from missionfsm.systems import system
 
 DONE, FAILED, BAD_INPUT, ADAPTER_FAILED = 0, 1, 2, 3
@@ -27,7 +27,7 @@ def complain(says: str) -> None:
     """Say what is wrong, in one line on stderr."""
     if sys.stderr is not None:  # print would take stdout instead
         with contextlib.suppress(OSError):
-            print(f"missionfsm: {shown(says)}", file=sys.stderr, flush=True)  # noqa: T201 - the command line speaks
+            print(f"missionfsm: {clipped(says)}", file=sys.stderr, flush=True)  # noqa: T201 - the command line speaks
 
 
 def stop(says: str, status: int) -> NoReturn:
@@ -158,4 +158,4 @@ def say(text: str, *, json: str | None = None) -> None:
 
 def say_shown(text: str, *, json: str | None) -> None:
     """Print what may hold texts from elsewhere: no terminal obeys them, and no line is longer than people read."""
-    say("\n".join(map(shown, text.split("\n"))), json=json)
+    say("\n".join(map(clipped, text.split("\n"))), json=json)

@@ -21,7 +21,7 @@ from missionfsm.isaac.runtime.log import Entry, Level
 from missionfsm.isaac.runtime.missionfile import MissionFile
 from missionfsm.isaac.runtime.missions import Status
 from missionfsm.isaac.runtime.robot import Did
-from missionfsm.kernel.text import printable, shown
+from missionfsm.kernel.text import clipped, printable
 
 _STYLES: Final = {Status.SUCCESS: "green", Status.RUNNING: "cyan", Status.STARTED: "cyan"}
 _ACTIVE: Final = (Status.STARTED, Status.RUNNING)
@@ -39,12 +39,12 @@ class LogFormat(enum.StrEnum):
 def written(entry: Entry, style: LogFormat, time: dt.datetime) -> str:
     """An entry as one line: its text alone, its text after time and level, or all of it as JSON."""
     if style is LogFormat.PLAIN:
-        return shown(entry.text)
+        return clipped(entry.text)
     stamp = time.astimezone(dt.UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
     level = entry.level.name.lower()
     if style is LogFormat.TEXT:
         mission = f" ({entry.fields['uuid']})" if "uuid" in entry.fields else ""
-        return f"{stamp} {level:<7} {shown(entry.text)}{mission}"
+        return f"{stamp} {level:<7} {clipped(entry.text)}{mission}"
     line = {"time": stamp, "level": level, "event": entry.event, **entry.fields, "text": entry.text}
     return orjson.dumps(line).decode()
 

@@ -17,7 +17,7 @@ from attrs import frozen
 from missionfsm.adapters.outputs import STDOUT, to_stdout
 from missionfsm.cli.common import Troubles, readable, say, say_shown, write_json
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.text import shown
+from missionfsm.kernel.text import clipped
 from missionfsm.tools.check.verdict import Verdict
 
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
@@ -84,7 +84,7 @@ def say_verdict(text: str, *, json: str | None) -> None:
     with to_stdout():
         console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
         columns = shutil.get_terminal_size().columns
-        for number, line in enumerate(map(shown, text.split("\n"))):
+        for number, line in enumerate(map(clipped, text.split("\n"))):
             folded = Text("\n".join(wrapped(line, columns)))
             if not number:
                 for pattern, style in _WORST_FIRST:
@@ -122,18 +122,18 @@ def say_annotations(lines: list[str], *, json: str | None) -> None:
             say(line)
 
 
-class Found(Protocol):
+class Result(Protocol):
     """What a command has found: a text for people, and JSON."""
 
     def to_json(self) -> JSON:
         """As it is written for programs."""
 
 
-def told(found: Found, json: str | None, *, verbose: bool = False) -> Troubles:
+def told(found: Result, json: str | None, *, verbose: bool = False) -> Troubles:
     """Tell what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():
-        say_verdict(found.told(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
+        say_verdict(found.text(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
     with troubles.kept():
         write_json(json, stamped(found.to_json()))
     return troubles

@@ -12,8 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from missionfsm.cli.common import say_shown
-from missionfsm.kernel.text import shown
-from missionfsm.tools.check.summary import Found, summed_up
+from missionfsm.kernel.text import clipped
+from missionfsm.tools.check.summary import Tally, summed_up
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
 MAX_ROWS = {"broken": 5, "flagged": 3, "inconclusive": 2}
@@ -66,7 +66,7 @@ def _folder(paths: Sequence[str]) -> str:
     return f"{above}/" if above else ""
 
 
-def _table(title: str, rows: Sequence[Found]) -> list[str]:
+def _table(title: str, rows: Sequence[Tally]) -> list[str]:
     """What was found, a line each, however wide a line is."""
     table = Table(box=None, pad_edge=False)
     table.add_column(title, no_wrap=True)
@@ -74,7 +74,7 @@ def _table(title: str, rows: Sequence[Found]) -> list[str]:
     table.add_column("first", no_wrap=True)
     most = MAX_ROWS[title]
     for one in rows[:most]:
-        table.add_row(*(Text(shown(cell)) for cell in (one.what, f"{one.times:,}", one.first)))
+        table.add_row(*(Text(clipped(cell)) for cell in (one.what, f"{one.times:,}", one.first)))
     console = Console(file=io.StringIO(), width=WIDEST, color_system=None)
     console.print(table)
     drawn = [line.rstrip() for line in console.file.getvalue().splitlines()]  # type: ignore[attr-defined]

@@ -319,7 +319,7 @@ class Robot:
     @property
     def status(self) -> MissionStates:
         """What a subscriber would be shown now: all listed missions, and which of them is active."""
-        return self._shown(listing(self._here.state), self._here.names)
+        return self._message(listing(self._here.state), self._here.names)
 
     def mission(self, mission_id: str) -> MissionState:
         """One listed mission as a subscriber would be shown it. Raises KeyError if it is not listed."""
@@ -330,7 +330,7 @@ class Robot:
         message = f"no mission {mission_id!r} is listed; listed: {listed}"
         raise KeyError(message)
 
-    def _shown(self, view: Listing, names: tuple[Name, ...]) -> MissionStates:
+    def _message(self, view: Listing, names: tuple[Name, ...]) -> MissionStates:
         return show(view, tuple(map(str, names)), self._model.choice)
 
     def _deliver(self, reply: Reply, opened: Updates | None = None) -> None:
@@ -353,7 +353,7 @@ class Robot:
         message = SYSTEM.codec.write_message(
             sent.view, sent.names, self._model.choice, sent.number, self._seconds(sent.number)
         )
-        return MissionStatus(read(EventMetadata, message["metadata"]), self._shown(sent.view, sent.names))
+        return MissionStatus(read(EventMetadata, message["metadata"]), self._message(sent.view, sent.names))
 
     def _give_up(self) -> None:
         """Close the subscriptions that were cancelled."""

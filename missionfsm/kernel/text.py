@@ -19,7 +19,7 @@ def printable(text: str) -> str:
     return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
-def shown(text: str) -> str:
+def clipped(text: str) -> str:
     """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
     if len(text) > MAX_CHARACTERS:
         half = MAX_CHARACTERS // 2

@@ -109,10 +109,10 @@ class Graph:
                     moves[self._doings.number(tried.doing), effect, to] = None
             words = self.spec.describe(here)
             self._alike.setdefault(words, set()).add(counted(here))
-            states.append([words, self._shown(here, kinds[here]), [*_flat(moves)]])
-        return self._told(states)
+            states.append([words, self._views_of(here, kinds[here]), [*_flat(moves)]])
+        return self._summary(states)
 
-    def _told(self, states: list[JSON]) -> JSON:
+    def _summary(self, states: list[JSON]) -> JSON:
         spec, bounds = self.spec, self.bounds
         asked = {assumption.ambiguity.id for combined in self._assumptions.values for assumption in combined}
         rules = [spec.rules_by_id[rule] for rule in self._rules.values]
@@ -267,7 +267,7 @@ class Graph:
                 places = tuple(writer.place(kinds[ref], ref) for ref in refs)
                 yield codec.write_message(owed.view, places, self.choice, 1, 0.0)
 
-    def _shown(self, here: State, kinds: tuple[str, ...]) -> list[int | None]:
+    def _views_of(self, here: State, kinds: tuple[str, ...]) -> list[int | None]:
         first = (next(self._seen(here, kinds, method, request), None) for method, request in self._looks.items())
         return [None if one is None else self._parts.json(json.loads(self._writer.text(one))) for one in first]
 

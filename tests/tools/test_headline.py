@@ -56,7 +56,7 @@ def skipped(path: Path) -> Path:
 def test_a_log_without_drives_conforms_in_part(tmp_path: Path) -> None:
     """Where two creates succeed in a row the robot may have failed unseen in between, and the verdict says so."""
     ((_, verdict),) = check_file(str(two_creates(tmp_path / "log")))
-    first, *basis = verdict.told().splitlines()[:4]
+    first, *basis = verdict.text().splitlines()[:4]
     assert first == "conforms in part: bear.mission, 4 events"
     assert basis == [
         f"  calls: 1 of 10 succeeded; not tried: {', '.join(OTHERS[:4])} and 5 more",
@@ -153,8 +153,8 @@ def test_what_departs_from_the_text_stands_in_the_headline() -> None:
         "readings still open:",
         "  Q-2 = a or b",
     ]
-    assert verdict.told().splitlines() == [*folded, "-v shows what decided 2 readings"]
-    assert verdict.told(verbose=True).splitlines() == [*folded, "", "readings followed:", "  Q-1 = b", "  Q-3 = a"]
+    assert verdict.text().splitlines() == [*folded, "-v shows what decided 2 readings"]
+    assert verdict.text(verbose=True).splitlines() == [*folded, "", "readings followed:", "  Q-1 = b", "  Q-3 = a"]
     assert readings_line({}, ()) == "readings: none departs from the text; none mattered"
 
 
@@ -199,10 +199,10 @@ def test_rules_of_what_was_met_before_it_was_made_short_are_told_as_such(tmp_pat
     ((_, verdict),) = check_file(str(skipped(tmp_path / "log")))
     assert verdict.violation is not None
     other = evolve(verdict, violation=evolve(verdict.violation, listed=("bear.mission/other/rule",)))
-    lines = other.told().splitlines()
+    lines = other.text().splitlines()
     at = lines.index("  as it was met before it was made short, and as --expect-violations takes it:")
     assert lines[at + 1] == "    bear.mission/other/rule"
-    assert "  as --expect-violations takes it:" in verdict.told().splitlines()
+    assert "  as --expect-violations takes it:" in verdict.text().splitlines()
 
 
 def test_what_is_written_says_how_it_was_made(command_line: CommandLine, tmp_path: Path) -> None:

@@ -64,8 +64,8 @@ def test_a_verdict_has_no_line_of_an_implementation(broken: str) -> None:
     """Names, versions, drives, worlds, ids, codes and messages are text that is shown, whatever is in them."""
     verdict = conform(MISSION, Hostile(broken), examples=2, tours=8, steps=20, seed=1, advice=False)
     assert not verdict.conforms
-    assert "forged" in verdict.told(verbose=True)
-    assert forged(verdict.told(verbose=True)) == []
+    assert "forged" in verdict.text(verbose=True)
+    assert forged(verdict.text(verbose=True)) == []
 
 
 def recorded(*lines: JSON) -> Verdict:
@@ -96,4 +96,4 @@ def test_a_record_has_no_line_of_an_implementation_in_its_verdict() -> None:
         ),
     ):
         verdict = recorded(*lines)
-        assert forged(verdict.told(verbose=True)) == [], verdict
+        assert forged(verdict.text(verbose=True)) == [], verdict

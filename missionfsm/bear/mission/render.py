@@ -48,7 +48,7 @@ def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
     indices = current_index(view)
     index = next(value for value, assumes in indices.items() if meet(choice, assumes))
     missions = tuple(
-        _shown(view, mission, mission_id, choice, pointed=position == index)
+        _mission_state(view, mission, mission_id, choice, pointed=position == index)
         for position, (mission, mission_id) in enumerate(zip(view.missions, ids, strict=True))
     )
     return MissionStates(missions, index)
@@ -58,7 +58,7 @@ def _pick(choice: int, cases: Mapping[Assumption, Any]) -> Any:  # noqa: ANN401 
     return next(value for assumption, value in cases.items() if meet(choice, (assumption,)))
 
 
-def _shown(view: Listing, mission: Mission, mission_id: str, choice: int, *, pointed: bool) -> MissionState:
+def _mission_state(view: Listing, mission: Mission, mission_id: str, choice: int, *, pointed: bool) -> MissionState:
     state = mission.state
     if state is State.STATE_DEFAULT:
         state = _pick(choice, {AM_08[letters]: one for one, letters in waiting_as(pointed=pointed).items()})

@@ -361,7 +361,7 @@ def _goals(mission: Mission, message: MissionState) -> None:
             any_one if goal == RETURN_POINT else goal for goal, any_one in zip(wanted, message.goals, strict=True)
         )
     if not _same_goals(wanted, message.goals):
-        raise _WrongError(GOALS.id, f"has the goals {_told(message.goals)}, expected {_told(wanted)}")
+        raise _WrongError(GOALS.id, f"has the goals {_goal_names(message.goals)}, expected {_goal_names(wanted)}")
 
 
 def has_goals(mission: Mission, message: MissionState) -> bool:
@@ -394,7 +394,7 @@ def _same_goal(wanted: Goal, shown: Goal) -> bool:
     return all(abs(one - other) <= FLOAT_STEP * max(1.0, abs(one)) for one, other in pairs)
 
 
-def _told(goals: tuple[Goal, ...]) -> str:
+def _goal_names(goals: tuple[Goal, ...]) -> str:
     return "[" + ", ".join(str(goal) for goal in goals) + "]"
 
 

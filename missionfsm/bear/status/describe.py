@@ -17,7 +17,7 @@ def describe(value: object) -> str:
         fault = ", a fault armed" if value.fault else ""
         return f"{len(value.robots)} robots at {len(value.locations)} locations{fault}"
     if isinstance(value, View):
-        return f"{value.robot}: {_shown(value)}"
+        return f"{value.robot}: {_view(value)}"
     if isinstance(value, Seen):
         return f"{value.robot}: {brief_value(value.value)}"
     if isinstance(value, Promised):
@@ -27,7 +27,7 @@ def describe(value: object) -> str:
     return str(value)
 
 
-def _shown(value: View) -> str:
+def _view(value: View) -> str:
     if value.unheard:
         return "any state"
     return "UNKNOWN values" if value.value == BLANK.get(value.endpoint) else brief_value(value.value)

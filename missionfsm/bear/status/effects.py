@@ -34,7 +34,7 @@ from missionfsm.bear.status.state import (
     Robot,
 )
 from missionfsm.bear.status.stream import shows
-from missionfsm.bear.status.views import Assumed, Promised, Seen, Told, Topic, View, blank, view
+from missionfsm.bear.status.views import About, Assumed, Promised, Seen, Topic, View, blank, view
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
@@ -187,7 +187,7 @@ def _firsts(
 
 def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Iterator[Emission]:
     """What a new stream shows first of a robot, as its question is read: a, without one."""
-    topic = Told(endpoint, robot.id, robot.location)
+    topic = About(endpoint, robot.id, robot.location)
     shown = view(robot, endpoint)
     if fleet.unheard:
         anything = View(robot.id, endpoint, unheard=True)
@@ -205,7 +205,7 @@ def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Itera
         yield Emission(topic, shown, ())
 
 
-def _blank(topic: Told, robot: Robot, endpoint: Endpoint) -> Emission:
+def _blank(topic: About, robot: Robot, endpoint: Endpoint) -> Emission:
     """UNKNOWN values; of a stuck state only if AS-18 is read so."""
     only = AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else None
     return Emission(topic, blank(robot, endpoint), (), only=only)

@@ -40,7 +40,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import UPDATES
 from missionfsm.bear.status.values import clamped
-from missionfsm.bear.status.views import Assumed, Told, View, blank, each, view
+from missionfsm.bear.status.views import About, Assumed, View, blank, each, view
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.step import Emission, Step
 
@@ -66,7 +66,7 @@ def _forgotten(fleet: Fleet, alone: str | None) -> Step:
     """Any robot may report anything from now on: every stream may show it any number of times."""
     after = evolve(fleet, unheard=True)
     emits = tuple(
-        Emission(Told(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
+        Emission(About(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
         for endpoint, robot in each(one for one in fleet.robots if one.owned and alone in (None, one.id))
     )
     return Step(after, emits=emits, label="robots report by themselves")
@@ -155,7 +155,7 @@ def _addressed(  # noqa: PLR0913 - an emission's own fields
     question = AS_25[endpoint.value]
     return [
         (
-            (Emission(Told(endpoint, robot.id, robot.location, followed), shown, (), only, optional, stays),),
+            (Emission(About(endpoint, robot.id, robot.location, followed), shown, (), only, optional, stays),),
             (question["b" if followed else "a"],) if robot.moved else (),
         )
         for followed in ((False, True) if robot.moved else (False,))
@@ -282,7 +282,7 @@ def moved(fleet: Fleet, event: Happening, _: tuple[int | None, ...]) -> tuple[St
         return (Step(fleet, label="move"),)
     emits = tuple(
         Emission(
-            Told(endpoint, after.id, after.location, followed=True), shown, (), AS_25[endpoint.value]["b"], stays=True
+            About(endpoint, after.id, after.location, followed=True), shown, (), AS_25[endpoint.value]["b"], stays=True
         )
         for endpoint in Endpoint
         if robot.owned and (shown := _anything(fleet, after, endpoint))

@@ -67,10 +67,10 @@ def _of_request(fleet: Fleet, streams: Streams, asked: Request) -> Iterator[str]
 @functools.lru_cache(maxsize=100)
 def _outline(fleet: Fleet) -> Fleet:
     """All of a fleet that decides whom a request is about."""
-    return Fleet(tuple(map(_told, fleet.robots)), fleet.locations)
+    return Fleet(tuple(map(_as_known, fleet.robots)), fleet.locations)
 
 
-def _told(robot: Robot) -> Robot:
+def _as_known(robot: Robot) -> Robot:
     said = RobotState(connection=robot.state.connection or RobotConnection()) if robot.seen else RobotState()
     return Robot(robot.id, robot.location, robot.owned, said)
 
@@ -120,7 +120,7 @@ def _of_event(fleet: Fleet, streams: Streams, event: Happening) -> str:
     offline = OFFLINE if robot.offline and topics else ""
     if event.name != "report":
         return f"{event.name} of {whose}{offline}"
-    if not any(event.part in _shown(one.endpoint) for one in topics):
+    if not any(event.part in _parts_of(one.endpoint) for one in topics):
         return f"{whose} reports what is not shown"
     change = _change(robot.part(event.part), event.value)
     whole = any(one.endpoint is Endpoint.ROBOT for one in topics)
@@ -136,7 +136,7 @@ def _follows(topic: Topic, robot: Robot) -> bool:
     return topic.member if topic.location is None else topic.member or topic.location == robot.location
 
 
-def _shown(endpoint: Endpoint) -> tuple[str, ...]:
+def _parts_of(endpoint: Endpoint) -> tuple[str, ...]:
     return (TOPICAL[endpoint],) if endpoint in TOPICAL else STATE_PARTS
 
 
@@ -162,7 +162,7 @@ def _forgets(*parts: str) -> tuple[ScriptStep, ...]:
 def _ways() -> Iterator[tuple[str, tuple[tuple[ScriptStep, ...], ...]]]:
     yield NOBODY, ((), (_OFF, _SETTLE))
     for endpoint in Endpoint:
-        shown = _shown(endpoint)
+        shown = _parts_of(endpoint)
         others = tuple(part for part in shown if part != "connection")
         for whom, selection in _SELECTIONS.items():
             begun = (ScriptStep(endpoint.value, selection), _SETTLE)

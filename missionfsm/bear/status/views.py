@@ -53,7 +53,7 @@ class Topic:
 
 
 @frozen(cache_hash=True)
-class Told:
+class About:
     """What an emission is about: one robot, where it is, and whether streams follow it there (AS-25)."""
 
     endpoint: Endpoint

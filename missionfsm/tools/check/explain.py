@@ -64,7 +64,7 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
     )
 
 
-Found = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]
+Accusation = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]
 """What could have come, the rules that are broken, and why, in words."""
 
 
@@ -100,7 +100,7 @@ def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
 # An answer.
 
 
-def _against_answer(nearest: Nearest, event: Returned) -> Found:
+def _against_answer(nearest: Nearest, event: Returned) -> Accusation:
     candidates = list(nearest.answers(event))
     lightest = _lightest(candidates)
     if not lightest or lightest[0].weight < CODE:
@@ -146,7 +146,7 @@ def _accused(problem: Problem, candidate: Candidate) -> list[str]:
 # A message.
 
 
-def _against_message(nearest: Nearest, event: Received) -> Found:
+def _against_message(nearest: Nearest, event: Received) -> Accusation:
     wrong = _wrong_mark(nearest, event)
     if wrong is not None:
         return (), [wrong.rule], [wrong.says]
@@ -213,7 +213,7 @@ def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
     return [(channel, due[-1]) for channel, due in owed if due]
 
 
-def _still_due(nearest: Nearest) -> Found:
+def _still_due(nearest: Nearest) -> Accusation:
     """Things have settled, and something that is due has not come: in the explanations in which least is due."""
     ways = [(one, _due(one.explanation)) for one in nearest.ways()]
     ways = [(one, due) for one, due in ways if due]
@@ -244,7 +244,7 @@ def _called(nearest: Nearest, channel: Channel) -> str:
 # An end, and a drive.
 
 
-def _against_end(nearest: Nearest, event: Ended) -> Found:
+def _against_end(nearest: Nearest, event: Ended) -> Accusation:
     """The rules that are broken by the end of a channel: those of its topic, or of a channel that is not open."""
     spec = nearest.spec
     (_, _, number), _ = nearest.belief.symbol(event)
@@ -262,7 +262,7 @@ def _against_end(nearest: Nearest, event: Ended) -> Found:
     return (), [rule for way in ways for rule in way.unending or way.unowed], [note]
 
 
-def _against_drive(nearest: Nearest, event: Event) -> Found:
+def _against_drive(nearest: Nearest, event: Event) -> Accusation:
     drive = nearest.spec.drives[event.event.name] if isinstance(event, Driven) else None  # type: ignore[attr-defined]
     states = dict.fromkeys(described(nearest.spec, one.state) for one in nearest.belief.node.explanations)
     note = f"it cannot happen in {' or '.join(list(states)[:2])}"

@@ -24,7 +24,7 @@ def story(system: System, history: tuple[JSON, ...]) -> str:
 
     A world that is not the usual one stands before them.
     """
-    lines = [f"{number:>3}. {line}" for number, line in enumerate(_told(system, history), 1)]
+    lines = [f"{number:>3}. {line}" for number, line in enumerate(_lines_of(system, history), 1)]
     unusual = _unusual(system, history[0].get("world") or {}) if history else ""
     return "\n".join([f"  0. in the world {unusual}", *lines] if unusual else lines)
 
@@ -60,7 +60,7 @@ def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:
         yield from transcript.read(line)
 
 
-def _told(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
+def _lines_of(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
     """The lines of a story; time that passes stands before what comes next, unless that is that all has settled."""
     passing: Driven | None = None
     for words, event in _lines(system, history):

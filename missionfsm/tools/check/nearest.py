@@ -253,7 +253,7 @@ class Nearest:
                 one
                 for channel in here.channels
                 if channel.name == number or (channel.name < GONE and self._is_new(here, number))
-                for one in self._shown(here, channel, message, before)
+                for one in self._showing(here, channel, message, before)
             )
             for one in itertools.chain(found, self._undriven(here, message)):
                 yield evolve(one, unseen=successor.rules)
@@ -265,7 +265,7 @@ class Nearest:
             if not isinstance(right, Mismatch):
                 yield from self._readings(here, right)
 
-    def _shown(
+    def _showing(
         self, here: Explanation, channel: Channel, message: _Message, before: tuple[Problem, ...]
     ) -> Iterator[Candidate]:
         delivery = self.spec.delivery(channel.topic)

@@ -11,7 +11,7 @@ from missionfsm.tools.check.verdict import Outcome, Verdict
 
 
 @frozen
-class Found:
+class Tally:
     """Something that several verdicts say.
 
     Attributes:
@@ -39,9 +39,9 @@ class Summary:
 
     outcomes: dict[Outcome, int]
     events: int
-    broken: tuple[Found, ...]
-    flagged: tuple[Found, ...]
-    undecided: tuple[Found, ...]
+    broken: tuple[Tally, ...]
+    flagged: tuple[Tally, ...]
+    undecided: tuple[Tally, ...]
 
 
 def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
@@ -67,7 +67,9 @@ def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
         for reading in dict.fromkeys(map(_reading, verdict.flagged)):
             flagged[reading] += 1
             first.setdefault(reading, where)
-    return Summary(dict(outcomes), events, _found(broken, first), _found(flagged, first), _found(undecided, first))
+    return Summary(
+        dict(outcomes), events, _tallied(broken, first), _tallied(flagged, first), _tallied(undecided, first)
+    )
 
 
 def _reading(line: str) -> str:
@@ -76,8 +78,8 @@ def _reading(line: str) -> str:
     return reading if departs else line.partition(",")[0]
 
 
-def _found(counted: Counter[str], first: dict[str, str]) -> tuple[Found, ...]:
-    return tuple(Found(what, times, first[what]) for what, times in counted.most_common())
+def _tallied(counted: Counter[str], first: dict[str, str]) -> tuple[Tally, ...]:
+    return tuple(Tally(what, times, first[what]) for what, times in counted.most_common())
 
 
-__all__ = ["Found", "Summary", "summed_up"]
+__all__ = ["Summary", "Tally", "summed_up"]

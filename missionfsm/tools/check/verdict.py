@@ -272,9 +272,9 @@ class Verdict:
         return tuple(filter(None, lines))
 
     def __str__(self) -> str:
-        return self.told(verbose=True)
+        return self.text(verbose=True)
 
-    def told(self, *, verbose: bool = False) -> str:
+    def text(self, *, verbose: bool = False) -> str:
         """The verdict for people, what is worst first.
 
         Args:
@@ -336,7 +336,7 @@ class Verdict:
         for title, some in (("readings still open:", left_open), ("readings followed:", decided)):
             if some and (verbose or some is left_open):
                 lines += ["", title]
-                lines += [f"  {name} = {self._told(name, letters)}" for name, letters in some.items()]
+                lines += [f"  {name} = {self._reading_text(name, letters)}" for name, letters in some.items()]
         return lines
 
     def _folded(self) -> str:
@@ -366,7 +366,7 @@ class Verdict:
         lines += [f"  {rule}, {self.exercised.get(rule, 0)} times: {self.rare[rule]}" for rule in least[:MOST_RARE]]
         return lines
 
-    def _told(self, name: str, letters: tuple[str, ...]) -> str:
+    def _reading_text(self, name: str, letters: tuple[str, ...]) -> str:
         """The readings of an ambiguity that are left, and what ruled out the others."""
         events: dict[str, list[str]] = {}
         for letter, event in self.ruled_out.get(name, {}).items():

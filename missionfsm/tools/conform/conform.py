@@ -229,7 +229,7 @@ def verdict_of(
         _untested(run, left_out),
         story_of(run.system, violation) if violation else "",
         by_ambiguity(spec.ambiguities, ledger.rulings),
-        tuple(trial.told(run.system) for trial in proposed(run)) if advised else (),
+        tuple(trial.experiment(run.system) for trial in proposed(run)) if advised else (),
         rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advised else {},
         known={rule: times for rule, times in known.met.items() if times},
         notes=tuple(ledger.notes),

@@ -53,7 +53,7 @@ class Trial:
     actions: tuple[Action, ...]
     history: tuple[JSON, ...]
 
-    def told(self, system: System) -> Experiment:
+    def experiment(self, system: System) -> Experiment:
         """The experiment as a verdict shows it."""
         says = story(system, self.history)
         return Experiment(self.ambiguity.id, self.follows, self.against, says, self.history)

@@ -96,7 +96,7 @@ class _Explorer:
             if source is not None:
                 nodes.setdefault(source)
             for number, label, step in self._steps(here):
-                for way in self._settled(_Way(step.after, self._shown(step))):
+                for way in self._settled(_Way(step.after, self._rendered(step))):
                     if not self._sketch.within(way.after):
                         continue
                     if way.after not in found:
@@ -142,13 +142,13 @@ class _Explorer:
             steps = tuple(self._possible(self._spec.urgent(here.after)))
             if not steps:
                 found.setdefault(_Way(simple(here.after, self._assumed), here.shows))
-            ways = (_Way(step.after, here.shows + self._shown(step)) for step in reversed(steps))
+            ways = (_Way(step.after, here.shows + self._rendered(step)) for step in reversed(steps))
             fresh = [way for way in ways if way.after not in seen]
             seen.update(way.after for way in fresh)
             todo += fresh
         return tuple(found)
 
-    def _shown(self, step: Step) -> tuple[str, ...]:
+    def _rendered(self, step: Step) -> tuple[str, ...]:
         """What of a step has to be sent, as far as the sketch shows it."""
         due = (
             one.view

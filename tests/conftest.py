@@ -22,6 +22,33 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
+MANY = 10
+"""A test with more parameters than this goes through a list, of which `--part` takes a part."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """``--part 1/2``: of each test that goes through a long list only every second parameter, from the second on."""
+    parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th parameter of long lists, from K on")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is not of the part that is asked for."""
+    first, _, every = config.getoption("--part").partition("/")
+    lists: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("long"):
+            lists.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    left_out = {
+        item
+        for found in lists.values()
+        if len(found) > MANY
+        for number, item in enumerate(found)
+        if number % int(every) != int(first) % int(every)
+    }
+    if left_out:
+        config.hook.pytest_deselected(items=list(left_out))
+        items[:] = [item for item in items if item not in left_out]
+
 
 @pytest.fixture
 def command_line(monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]) -> CommandLine:

@@ -307,7 +307,8 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
             if wrong and judge.violation is not None:
                 verdict = judge.verdict()
                 page.told(verdict, over=False)
-                say(Judged(str(verdict), conforms=False))
+                said = [line.strip() for line in str(verdict).splitlines() if line.strip()]
+                say(Judged("; ".join(said[:2]), conforms=False))  # a line; all of it comes at the end
         if not wrong:
             page.so_far(first.system, judge.read)
         if batches.qsize() > MAX_WAITING_BATCHES:

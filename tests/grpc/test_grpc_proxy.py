@@ -300,7 +300,8 @@ def test_what_breaks_is_told_before_the_end() -> None:
     """A violation is told as soon as its line is there; lines that follow are recorded all the same."""
     recorder, told = record([*GOOD, *BAD])
     assert eventually(lambda: told)
-    assert told[0].startswith("violates: bear.mission")
+    assert told[0].startswith("violates: bear.mission, ")
+    assert told[0].endswith("; CreateMission(base navigate to 'table-1') was answered NOT_FOUND")
     recorder.record({"settled": True})
     judged = recorder.close()
     assert judged is not None

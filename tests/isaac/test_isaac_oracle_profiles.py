@@ -343,6 +343,15 @@ def test_identifiers_that_the_wire_has_and_the_page_does_not_show(
     assert [one.partition(" ")[0] for one in verdict.flagged] == flagged
 
 
+def test_a_pass_may_send_on_a_connection_that_another_took_over_from_before_it_dropped() -> None:
+    """As shipped, of a server that sends first: it has noticed neither the other name nor the drop."""
+    begun = History().submit(1).robot(1).settles.waits(1.3).settles.robot(2).drive("disconnect", connection=1)
+    begun = begun.settles.shows("QUEUED").waits(1.3).sends(1, 1).settles.shows("FAILED_DISCONNECTED")
+    chosen = {**SERVER.profiles["as-shipped"], "AI-25.header": "s", "AI-39.order": "s"}
+    verdict = begun.judged(readings=chosen)
+    assert verdict.conforms, str(verdict)
+
+
 def test_who_comes_after_a_connection_that_an_abort_ends() -> None:
     """Another that has said the same name is sent the next mission, and loses its connection in the same way."""
     begun = History().robot(1).robot(2).submit(1).submit(2).sends(2, 1).settles

@@ -212,7 +212,8 @@ def closed(move: Move, link: Link, *, seen: bool = False) -> Moves:
         if one.slot != link.slot
     )
     gone = state.gone
-    if link.serves and "b" in state.letters(AI_39) and "s" in state.letters(AI_39_ORDER):
+    served = link.serves or any(one.over == link.slot for one in state.links)  # as far as a pass has noticed
+    if served and "b" in state.letters(AI_39) and "s" in state.letters(AI_39_ORDER):
         until = state.next_pass(move.at[1]) + state.tolerance
         slot = link.slot if seen else min((0, *(one.slot for one in gone))) - 1
         gone = (*gone, Link(slot, link.name, serves=True, fresh=until))

@@ -10,6 +10,7 @@ from attrs import define, field
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle import memory
+from missionfsm.oracle.calls import FEW, is_of_calls_alone
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.memory import MEMORY
 from missionfsm.oracle.subsumption import surviving_names
@@ -92,6 +93,7 @@ class Automaton:
         self.transitions = TransitionFunction(self.successors, eager=eager)
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
+        self._has_calls_alone = not spec.drives and not any(one.streaming for one in spec.operations.values())
         self.bytes = 0
         self._rules: dict[tuple[str, ...], int] = {}
         self.tally: Tally = defaultdict(int)
@@ -124,7 +126,13 @@ class Automaton:
     def edge(self, node: Node, symbol: Symbol) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
         kind, *what = symbol
-        edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
+        successors = self.successors
+        if self._has_calls_alone and not successors.live and all(map(is_of_calls_alone, node.explanations)):
+            successors.most = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
+        try:
+            edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
+        finally:
+            successors.most = successors.budget
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += memory.ENTRY

@@ -16,9 +16,10 @@ from attrs import define, field
 from missionfsm.kernel.history import Called, Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED
+from missionfsm.oracle.calls import CallSearch, Node, OtherwiseError, are_calls_alone
 from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead, Message
-from missionfsm.oracle.memory import MEMORY, explanation_bytes
+from missionfsm.oracle.memory import ENTRY, MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, point, weight
 from missionfsm.oracle.symbols import Symbol
@@ -90,8 +91,8 @@ class Search:
     Attributes:
         whole: whether no events come after those of the window.
         width: how many explanations are followed at once.
-        layers: the explanations that were found: at position n of the first n events.
         reached: how many events were explained that have some more behind them in mind.
+        calls_alone: whether it looks at nothing but which calls took effect (see `missionfsm.oracle.calls`).
         beyond: the positions of events that the system itself does not explain; what lies between it and the recording
             is asked for them.
     """
@@ -121,9 +122,24 @@ class Search:
         self._bytes = 0
         self.whole = False
         self.width = WIDTH
-        self.layers: list[Layer] = []
+        self._layers: list[Layer] = []
+        self._end: tuple[CallSearch, Node] | None = None
         self.reached = 0
         self.beyond: set[int] = set()
+        self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
+
+    @property
+    def layers(self) -> list[Layer]:
+        """The explanations that were found: at position n of the first n events."""
+        if self._end is not None:
+            search, end = self._end
+            # Other orders may explain it as well; none of them was looked at.
+            self.layers = [Layer((one,), rules, more=iter(())) for one, rules in search.explanations(end)]
+        return self._layers
+
+    @layers.setter
+    def layers(self, layers: list[Layer]) -> None:
+        self._layers, self._end = layers, None
 
     def explain(self, horizon: int) -> bool:
         """Whether the first events up to a horizon are explained.
@@ -131,6 +147,11 @@ class Search:
         Raises:
             ExhaustedError: it costs more than the budget.
         """
+        if self.calls_alone:
+            try:
+                return self._spending_on_calls(horizon)
+            except OtherwiseError:
+                self.calls_alone = False
         last = self.whole and horizon == len(self._symbols)
         self._ahead = Lookahead(
             self.transitions.spec,
@@ -148,6 +169,25 @@ class Search:
         self._tried: list[dict[Place, list[_Tried]]] = [{} for _ in range(horizon + 1)]
         self.successors.reset()
         return self._spending(self._explain)
+
+    def _spending_on_calls(self, horizon: int) -> bool:
+        """The same for a window of calls alone. Raises OtherwiseError where something else can happen."""
+        successors = self.successors
+        budget = successors.budget
+        successors.budget = successors.most = min(self._budget, self._memory // ENTRY)
+        successors.reset()
+        try:
+            self.layers = []
+            for start in self._start:
+                search = CallSearch(successors, self._symbols, horizon, start)
+                end = search.path()
+                self.reached = max(self.reached, search.reached)
+                if end:
+                    self._end = search, end
+                    return True
+        finally:
+            successors.budget = successors.most = budget
+        return False
 
     def _spending(self, work: Callable[[], T]) -> T:
         """Do some work on the budget of the search."""
@@ -309,4 +349,4 @@ class Search:
     @property
     def exact(self) -> bool:
         """Whether the last layer has every explanation there is."""
-        return not any(layer.unfinished for layer in self.layers[:-1])
+        return self._end is None and not any(layer.unfinished for layer in self.layers[:-1])

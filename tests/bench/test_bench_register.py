@@ -112,7 +112,9 @@ def history(load: Load, seed: int = 1) -> list[Event]:
 
 def verdict(events: list[Event]) -> str:
     """What comes of a history, judged as ``check`` judges one: what is too dear waits for what follows."""
-    belief = Belief(Automaton(REGISTER, budget=PATIENCE), 0)
+    automaton = Automaton(REGISTER, budget=PATIENCE)
+    automaton.successors.live = False
+    belief = Belief(automaton, 0)
     held: Held | None = None
     try:
         for at, event in enumerate(events):

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from test_belief_bruteforce import ALPHABETS, Alphabet, Conversation, choices
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
+from test_bench_register import Load
+from test_bench_register import history as race
+from toys import REGISTER
 
 from missionfsm.kernel import history
 from missionfsm.oracle.automaton import Automaton
@@ -80,3 +88,28 @@ def test_a_search_finds_what_the_belief_finds(alphabet: Alphabet) -> None:
         compare(alphabet, automaton, data)
 
     run()
+
+
+def first_unexplained(events: list[history.Event], cut: int, *, calls_alone: bool) -> tuple[int | None, list[bool]]:
+    """What a search finds from an event on, and whether it was one of calls alone, with a belief before it."""
+    belief = Belief(Automaton(REGISTER), 0)
+    assert all(map(belief.observe, events[:cut]))
+    window, search = searched(belief, events[cut:], 1, whole=True)
+    was = search.calls_alone
+    search.calls_alone = calls_alone
+    found = search.first_unexplained()
+    if found is None:
+        window.close(search)
+        return None, [was]
+    return window.positions[found], [was]
+
+
+@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("wrong", [False, True])
+def test_a_search_through_calls_finds_what_any_search_finds(seed: int, *, wrong: bool) -> None:
+    """Calls that race, some of them lost, are explained up to the same event, with a memo of their own and without."""
+    events = race(Load(3 + seed % 3, 24, 2.5, lost=seed % 4, wrong=wrong), seed)
+    cut = seed % 7
+    alone, any_other = (first_unexplained(events, cut, calls_alone=one) for one in (True, False))
+    assert alone == any_other
+    assert alone[1] == [True]

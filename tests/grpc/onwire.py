@@ -109,18 +109,22 @@ class Searcher:
         info = handshake(self.system, subject)
         return Run.with_guide(offered(self.system, info), subject, info, self.automaton, self.guide.fresh())
 
-    def break_shown(self, mutant: Mutant) -> Had | None:
+    def break_shown(self, mutant: Mutant) -> tuple[Had, ...]:
         """The conversation in which a break shows where only binary requests are asked.
 
-        None if it shows in none, or first in an answer that no message is, which binary cannot say.
+        Several where only together they follow no readings; none where it shows in none, or first in an answer that no
+        message is, which binary cannot say.
         """
+        found: list[Had] = []
         run = self.run(Binary(mutant.subject(self.system)))
+        run.progress = lambda run: found.append((run.conversation.world, tuple(run.conversation.actions)))
         try:
             if tour(run, random.Random(0), CONVERSATIONS, STEPS, mutant.favour) and play(run):
-                return None
+                return ()
         except GibberishError:
-            return None
-        return run.conversation.world, tuple(run.conversation.actions)
+            return ()
+        last = run.conversation.world, tuple(run.conversation.actions)
+        return (last,) if run.conversation.judge.violation is not None else (*found, last)
 
     def usual(self) -> list[Had]:
         """The conversations of a search through the reference."""
@@ -136,12 +140,16 @@ class Searcher:
         trials = Lab(self.guide, info, self.automaton, {}, EFFORT).trials(ambiguity, tuple(ambiguity.readings))
         return {trial.follows: (trial.world, trial.actions) for trial in reversed(trials)}
 
-    def violation(self, subject: Subject, had: Had) -> Violation | str | None:
-        """What is wrong in a conversation that is had with a subject; None if nothing is."""
+    def violation(self, subject: Subject, had: Iterable[Had]) -> Violation | str | None:
+        """What is wrong in conversations that are had with a subject; None if nothing is."""
+        run = self.run(subject)
         try:
-            return self.run(subject).replay(*had).judge.violation
+            for one in had:
+                if not run.have(*one):
+                    return run.conversation.judge.violation or "the readings contradict one another"
         except GibberishError as error:
             return str(error)
+        return None
 
 
 def asked(of: System, had: Iterable[Had]) -> list[Asked]:
@@ -224,7 +232,7 @@ def breaks_carried(of: System, mutants: Iterable[Mutant], every: int) -> Looked:
     for mutant in sampled(tuple(mutants), every):
         found.every += 1
         had = searcher.break_shown(mutant)
-        if had is None:
+        if not had:
             found.hidden.append(mutant.name)
             continue
         found.shown += 1
@@ -253,7 +261,7 @@ def readings_accepted(of: System, every: int) -> Looked:
             with serve(of.name, readings={ambiguity.id: letter}) as robot:
                 for proxied in (False, True):
                     with connected(of, robot.target, proxied=proxied) as subject:
-                        violation = searcher.violation(subject, shown.get(letter, usual))
+                        violation = searcher.violation(subject, [shown.get(letter, usual)])
                         if violation is not None:
                             found.wrong.append(f"{name}{' through a proxy' * proxied}: {violation}")
     return found

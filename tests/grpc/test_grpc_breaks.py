@@ -50,6 +50,13 @@ def test_a_sample_of_all_breaks_is_found_over_grpc(name: str) -> None:
 
 
 @pytest.mark.long
+def test_a_break_that_only_several_conversations_show_is_found_over_grpc() -> None:
+    """Each of them is explained by some reading, and no reading explains all."""
+    found = breaks_carried(system("bear.mission"), [mutant("bear.mission/UpdateMission/finish has no effect")], 1)
+    assert (found.hidden, found.wrong, found.shown) == ([], [], 1)
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_sample_of_all_readings_is_accepted_over_grpc(name: str) -> None:
     """The reference under every reading of every sixtieth ambiguity conforms, alone and through a proxy."""
@@ -62,7 +69,7 @@ def test_a_break_is_asked_for_by_its_rule() -> None:
     """A rule's id alone breaks it in the first way that there is."""
     broken, of = mutant(BREAKS[1]), system("bear.mission")
     had = searcher("bear.mission").break_shown(broken)
-    assert had is not None
+    assert had
     with serve("bear.mission", broken=broken.rule) as robot, connected(of, robot.target) as subject:
         violation = searcher("bear.mission").violation(subject, had)
     assert isinstance(violation, Violation)

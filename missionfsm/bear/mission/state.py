@@ -239,6 +239,8 @@ class Op(enum.Enum):
     ARM = "the armed fault"
     WORLD = "the world"
 
+    __hash__ = object.__hash__  # each is one object; the hash that an enum has by itself is slow
+
 
 Edit = tuple[tuple[Op, Any], ...]
 """A change of a robot, said without the missions that it leaves alone."""

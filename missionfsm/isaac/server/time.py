@@ -324,12 +324,8 @@ def _noticed(move: Move, link: Link, time: int) -> Move:
 
 def unseen(state: Server, part: Part) -> Iterator[Move]:
     """What may have happened in a part by now though it need not: clocks that have struck, passes that have come."""
-    for index in part.missions:
-        for clock in state.missions[index].ticking:
-            if clock.lo <= 0:
-                for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
-                    for heard in inherited(state, one):
-                        yield from (_looking(after, part) for after in _followed(heard, part))
+    for struck in _struck(state, part):
+        yield from (_looking(after, part) for after in _followed(struck, part))
     for slot in part.slots:
         link = state.link(slot)
         if link is not None and link.look is not None:
@@ -340,6 +336,15 @@ def unseen(state: Server, part: Part) -> Iterator[Move]:
             yield from (_looking(after, part) for after in _followed(one, part))
     for older, link in _overlooked(state, part):
         yield from (_looking(after, part) for after in _sent_before(Move(state, at=(-LOOK, 0)), older, link))
+
+
+def _struck(state: Server, part: Part) -> Iterator[Move]:
+    """A clock has struck by now."""
+    for index in part.missions:
+        for clock in state.missions[index].ticking:
+            if clock.lo <= 0:
+                for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
+                    yield from inherited(state, one)
 
 
 def _looking(move: Move, part: Part) -> Move:

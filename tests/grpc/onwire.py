@@ -22,6 +22,7 @@ from missionfsm.adapters.grpc.server import Server
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.live import Live
 from missionfsm.app.serve import serve
+from missionfsm.bear.wire.fields import METHODS, Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.subject import Exchange, GibberishError, Subject, SubjectError
@@ -76,19 +77,38 @@ def served(of: System, implementation: Subject) -> Iterator[str]:
         yield server.target
 
 
-@frozen
+@define
 class Binary:
-    """A subject that is asked for nothing that binary protobuf cannot carry."""
+    """A subject that is asked for nothing that binary protobuf cannot carry, and heard as far as that can carry it."""
 
     subject: Subject
+    streams: dict[int, Method] = Factory(dict)
 
     def exchange(self, method: str, params: JSON) -> Exchange:
-        """What the subject answers."""
+        """What the subject answers. Raises GibberishError for what has no binary form."""
         answer = self.subject.exchange(method, params)
-        return evolve(answer, result={**answer.result, "requests": "binary"}) if method == "initialize" else answer
+        if method == "initialize":
+            return evolve(answer, result={**answer.result, "requests": "binary"})
+        called = next((one for one in METHODS if one.name == method), None)
+        if called is not None and answer.error is None:
+            if not called.streams:
+                _encoded(called, answer.result)
+            elif isinstance(answer.result.get("stream"), int):
+                self.streams[answer.result["stream"]] = called
+        for one in (*answer.earlier, *answer.before, *answer.after):
+            if one.method == "message" and one.params["stream"] in self.streams:
+                _encoded(self.streams[one.params["stream"]], one.params["message"])
+        return answer
 
     def close(self) -> None:
         """Nothing is held."""
+
+
+def _encoded(method: Method, value: JSON) -> None:
+    try:
+        encode(method.response, value)
+    except NotOnTheWireError as error:
+        raise GibberishError(str(error)) from None
 
 
 @frozen

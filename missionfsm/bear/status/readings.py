@@ -250,18 +250,23 @@ AS_09_UNKNOWN = Question(
             f"{call}: what does a new stream show first of a robot of which nothing is known that it could show?",
             {**_NOTHING_KNOWN, "e": "STATE_DISCONNECTED"} if call == ONLINE else _NOTHING_KNOWN,
             default="b",
-            alike="AS-09.unknown",
         )
         for call in (BATTERY, ERRORS, NAVIGATION, ONLINE, ROBOT)
     }
 )
-AS_09_GONE = _asked(
-    (BATTERY, ERRORS, NAVIGATION, ROBOT),
-    "AS-09.gone",
-    "what does a new stream show first of an offline robot of which nothing is known that it could show?",
-    _NOTHING_KNOWN,
-    "b",
+AS_09_GONE = Question(
+    {
+        call: Ambiguity(
+            f"AS-09.gone.{call}",
+            f"{call}: what does a new stream show first of an offline robot of which nothing is known that it could "
+            "show?",
+            _NOTHING_KNOWN,
+            default="b",
+        )
+        for call in (BATTERY, ERRORS, NAVIGATION, ROBOT)
+    }
 )
+"""As with `AS_09_UNKNOWN`, what is shown of what was never reported may differ by topic: the calls are not alike."""
 _UNREPORTED = {"a": "it is left out", "c": "with UNKNOWN values"}
 AS_09_PART: Mapping[str, Question] = {
     part: _asked(

@@ -62,7 +62,7 @@ def test_a_sample_of_all_readings_is_accepted_over_grpc(name: str) -> None:
     """The reference under every reading of every sixtieth ambiguity conforms, alone and through a proxy."""
     found = readings_accepted(system(name), 60)
     assert found.wrong == []
-    assert found.shown > 2
+    assert found.shown > 1
 
 
 def test_a_break_is_asked_for_by_its_rule() -> None:

@@ -8,7 +8,7 @@ import orjson
 import pytest
 from attrs import evolve
 from busy import Habits, busy
-from traffic import MISSION, readings_at_random
+from traffic import MISSION, SUBSCRIBE, Recorder, navigate, readings_at_random
 
 from missionfsm.app.recorded import check_file
 
@@ -40,6 +40,22 @@ def test_a_busy_log_that_is_cut_anywhere_is_no_violation(tmp_path: Path, seed: i
         if verdict.violation is not None:
             wrong[cut] = str(verdict)
     assert wrong == {}
+
+
+@pytest.mark.parametrize("missions", [3, 6])
+def test_a_robot_may_get_far_ahead_of_its_stream(tmp_path: Path, missions: int) -> None:
+    """Each mission is created once the one before has ended, which the stream shows only after the last answer."""
+    robot = Recorder(drives=False)
+    for number in range(missions):
+        robot.call("CreateMission", navigate("table-1"))
+        if number == 0:
+            robot.call(SUBSCRIBE)
+        robot.drive(event="goalReached")
+    late = sorted(robot.history, key=lambda line: "message" in line)
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in late))
+    ((_, verdict),) = check_file(str(path), strict=True)
+    assert (verdict.conforms, verdict.flagged) == (True, ()), str(verdict)
 
 
 LAGGING = Habits(lost=0, late=0, ends=0)

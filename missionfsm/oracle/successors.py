@@ -413,11 +413,18 @@ class Successors:
 
         Where it is known what comes, or where that can be asked for, one of them suffices: a slow one hides nothing
         that a quick one shows. Live, all of them have to be: what each may come to show multiplies.
+
+        Raises:
+            ExhaustedError: they are not near enough, and what they show next can be asked for.
         """
         if self.ahead:
             return not explanation.channels or any(self.ahead.lag(channel) < LAG for channel in explanation.channels)
         near = (len(channel.owed) < LAG for channel in explanation.channels)
-        return all(near) if self.live else any(near) or not explanation.channels
+        if self.live:
+            return all(near)
+        if explanation.channels and not any(near):
+            raise ExhaustedError
+        return True
 
     def _after(self, explanation: Explanation, step: Step, besides: int | None = None) -> Iterator[Successor]:
         self.spend(weight(explanation) - 1)

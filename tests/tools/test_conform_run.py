@@ -183,7 +183,7 @@ def test_what_may_have_moved_too_far_is_let_settle(subject: type[ReferenceSubjec
     """Before the next call, where what nobody saw has many explanations; what is driven moves no further."""
     goals = [{"destinationId": name} for name in ("table-1", "table-2", "table-3")]
     patrol = {"mission": {"serviMission": {"deliveryPatrolMission": {"goals": goals}}}}
-    run = Run.of(MISSION, subject(MISSION))
+    run = Run.against(MISSION, subject(MISSION))
     run.start({})
     run.act("SubscribeMissionStatus", {})
     run.act("CreateMissionBatch", {"missions": [patrol, patrol]})

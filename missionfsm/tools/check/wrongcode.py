@@ -36,7 +36,8 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
         return _failed_wrongly(nearest, event, wanted)
     reasons = [rule for rule in operation.refusals if rule.code == code]
     if not reasons:
-        return wanted, [f"{code} is not documented for {operation.name}"]
+        # It refuses: what may be refused comes first, also where some reading would have it done.
+        return [*refused, *(done if is_done else ())], [f"{code} is not documented for {operation.name}"]
     held = _held_last(nearest, event, reasons)
     reasons = [*held, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
     note = f"{code} needs a reason, and none holds: {_conditions(reasons)}"

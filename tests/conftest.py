@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import signal
 import sys
+from pathlib import Path
 
 import pytest
 from commandline import CommandLine, Ended
@@ -22,6 +23,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
+WEB = Path(__file__).parent / "web"
 MANY = 10
 """A test with more parameters than this goes through a list, of which `--part` takes a part."""
 
@@ -45,6 +47,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for number, item in enumerate(found)
         if number % int(every) != int(first) % int(every)
     }
+    # What takes longest is begun first, so that nobody waits for it at the end.
+    items.sort(key=lambda item: not Path(item.path).is_relative_to(WEB))
     if left_out:
         config.hook.pytest_deselected(items=list(left_out))
         items[:] = [item for item in items if item not in left_out]

@@ -353,7 +353,7 @@ def test_what_is_shown_is_recognised(lab: Lab) -> None:
 
 # A violation says what is broken.
 
-SAMPLED = {"bear.mission": 400, "bear.status": 400, "isaac.server": 24, "isaac.robot": 4}
+SAMPLED = {"bear.mission": 400, "bear.status": 400, "isaac.server": 48, "isaac.robot": 4}
 """Of how many mutants of a system one is looked at where not all are."""
 MANY = {"bear.mission": 60, "bear.status": 60, "isaac.server": 9, "isaac.robot": 2}
 """The same for a run that takes its time."""

@@ -33,7 +33,7 @@ def sources(*folders: str) -> set[str]:
     return {str(path) for path in own if not unwanted & set(path.parts) and not any(p[0] == "." for p in path.parts)}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_built_is_whole_and_works_where_nothing_else_is(tmp_path: Path) -> None:
     """The sdist has tests, pages and specifications, and the wheel made from it is installed and does the main job."""
     assert MAIN is not None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browsing import Opener, missionfsm
+from filelock import FileLock
 
 from missionfsm import systems
 from missionfsm.pages.graph import MOST_STATES
@@ -37,16 +39,32 @@ async ([seed, steps]) => {
 """
 
 
+class Explorers:
+    """The explorer of every system, as the command line writes it when it is first asked for.
+
+    Args:
+        folder: where all processes of the run find them.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def __getitem__(self, name: str) -> Path:
+        path = self._folder / f"{name}.html"
+        with FileLock(f"{path}.lock"):
+            if not path.exists():
+                ended = missionfsm("explore", name, "--missions", MISSIONS[name], "--batch", 1, "--html", path)
+                assert (ended.status in (0, 1), ended.err) == (True, "")
+        return path
+
+
 @pytest.fixture(scope="session")
-def explorers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The explorer of every system, as the command line writes it."""
-    folder = tmp_path_factory.mktemp("explorers")
-    found = {}
-    for name in systems.names():
-        found[name] = folder / f"{name}.html"
-        ended = missionfsm("explore", name, "--missions", MISSIONS[name], "--batch", 1, "--html", found[name])
-        assert (ended.status in (0, 1), ended.err) == (True, "")
-    return found
+def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
+    """The explorer of every system."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "explorers"
+    folder.mkdir(exist_ok=True)
+    return Explorers(folder)
 
 
 def _press(page: Any, group: str, asked: str, answer: str) -> None:
@@ -84,7 +102,7 @@ AFTER = ["mission-1 paused serving table-1 table-2", "mission-2 waiting navigate
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", ["desktop", "phone"])
 @pytest.mark.parametrize("name", systems.names())
-def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: dict[str, Path], open_page: Opener) -> None:
+def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: Explorers, open_page: Opener) -> None:
     """At the start and on the way, folded and unfolded, the page is as wide as the window."""
     seen = open_page(explorers[name], size, scheme)
     assert not seen.overflows()
@@ -93,7 +111,7 @@ def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: dict[s
     assert not seen.overflows()
 
 
-def test_it_is_clicked_through(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_it_is_clicked_through(explorers: Explorers, open_page: Opener) -> None:
     """Steps lead on, a refusal changes nothing and says why, and the way can be gone back and forth."""
     page = open_page(explorers["bear.mission"]).page
     assert page.locator("#path .nothing").is_visible()
@@ -118,7 +136,7 @@ def test_it_is_clicked_through(explorers: dict[str, Path], open_page: Opener) ->
     _comes_to(page)
 
 
-def test_the_buttons_of_the_browser_work(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_the_buttons_of_the_browser_work(explorers: Explorers, open_page: Opener) -> None:
     """Every step is an entry of the browser's own history."""
     page = open_page(explorers["bear.mission"]).page
     _walked(page)
@@ -128,7 +146,7 @@ def test_the_buttons_of_the_browser_work(explorers: dict[str, Path], open_page: 
     _comes_to(page, *AFTER)
 
 
-def test_a_link_restores_the_position(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_a_link_restores_the_position(explorers: Explorers, open_page: Opener) -> None:
     """A copied link shows the same state, the same way there and the same switches; a foreign one says so."""
     page = open_page(explorers["bear.mission"]).page
     _walked(page)
@@ -150,7 +168,7 @@ def test_a_link_restores_the_position(explorers: dict[str, Path], open_page: Ope
         assert "leads to the start" in stray.locator("#told").inner_text()
 
 
-def test_a_reading_that_is_switched_off_hides_its_answers(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_a_reading_that_is_switched_off_hides_its_answers(explorers: Explorers, open_page: Opener) -> None:
     """Only answers under readings that are on are there, and those that are hidden are counted."""
     page = open_page(explorers["bear.mission"]).page
     _press(page, "CreateMission", "servi delivery to", "OK")
@@ -174,7 +192,7 @@ def test_a_reading_that_is_switched_off_hides_its_answers(explorers: dict[str, P
     assert set(asked_alone) == {1}
 
 
-def test_a_reading_is_explained(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_a_reading_is_explained(explorers: Explorers, open_page: Opener) -> None:
     """The name of a reading beside an answer leads to its words, also on a phone, also where they are folded away."""
     page = open_page(explorers["bear.mission"], "phone").page
     page.locator("#readings-card > summary").click()
@@ -187,7 +205,7 @@ def test_a_reading_is_explained(explorers: dict[str, Path], open_page: Opener) -
     assert 0 <= top < page.evaluate("innerHeight")
 
 
-def test_a_step_rules_readings_out(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_a_step_rules_readings_out(explorers: Explorers, open_page: Opener) -> None:
     """After a step that assumes a reading the others of its ambiguity cannot be switched on any more."""
     page = open_page(explorers["bear.mission"]).page
     _press(page, "UpdateMission", "COMMAND_CANCEL", "FAILED_PRECONDITION")
@@ -197,20 +215,20 @@ def test_a_step_rules_readings_out(explorers: dict[str, Path], open_page: Opener
 
 
 @pytest.mark.parametrize("name", systems.names())
-def test_what_was_clicked_conforms(name: str, explorers: dict[str, Path], open_page: Opener, tmp_path: Path) -> None:
+def test_what_was_clicked_conforms(name: str, explorers: Explorers, open_page: Opener, tmp_path: Path) -> None:
     """The history of any walk, under whatever readings it assumed, is one that the oracle explains."""
     page = open_page(explorers[name]).page
-    for seed in (1, 2, 3):
-        assert page.evaluate(WANDER, [seed, 30]) == 30
+    for seed in (1, 2):
+        assert page.evaluate(WANDER, [seed, 20]) == 20
         page.get_by_role("button", name="Copy as a history").click()
         copied = tmp_path / f"{seed}.jsonl"
         copied.write_text(page.evaluate("window.clipped"))
         page.get_by_role("button", name="Start again").click()
-    checked = missionfsm("check", *(tmp_path / f"{seed}.jsonl" for seed in (1, 2, 3)))
+    checked = missionfsm("check", *(tmp_path / f"{seed}.jsonl" for seed in (1, 2)))
     assert (checked.status, checked.err) == (0, ""), checked.out
 
 
-def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_the_copied_test_passes(explorers: Explorers, open_page: Opener) -> None:
     """What was clicked can be copied as a test, which passes, and fails once the history is another."""
     page = open_page(explorers["bear.mission"]).page
     _walked(page)
@@ -227,7 +245,7 @@ def test_the_copied_test_passes(explorers: dict[str, Path], open_page: Opener) -
             copied()
 
 
-def test_the_numbers_are_those_of_the_command_line(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_the_numbers_are_those_of_the_command_line(explorers: Explorers, open_page: Opener) -> None:
     """The page says what `explore` prints, and within which bounds; where it holds less than that, it says so."""
     told = missionfsm("explore", "isaac.robot", "--missions", 1, "--batch", 1).out.splitlines()[0]
     counts = told.partition(": ")[2]
@@ -243,9 +261,7 @@ def _shapes(page: Any, kind: str) -> list[str]:
     return names
 
 
-def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(
-    explorers: dict[str, Path], open_page: Opener
-) -> None:
+def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(explorers: Explorers, open_page: Opener) -> None:
     """Shapes are called what the program calls them; one that is next leads on, one that was before leads back."""
     page = open_page(explorers["bear.mission"]).page
     assert (_shapes(page, "past"), _shapes(page, "here")) == ([], ["[no mission]"])
@@ -260,7 +276,7 @@ def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(
     assert _shapes(page, "here") == ["[no mission]"]
 
 
-def test_several_ways_to_a_shape_are_shown_alone(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_several_ways_to_a_shape_are_shown_alone(explorers: Explorers, open_page: Opener) -> None:
     """Where more than one step leads to a shape, only those are left to choose from, until all are wanted again."""
     page = open_page(explorers["bear.mission"]).page
     every = page.locator(".answer").count()
@@ -272,7 +288,7 @@ def test_several_ways_to_a_shape_are_shown_alone(explorers: dict[str, Path], ope
     assert page.locator(".answer").count() == every
 
 
-def test_readings_are_painted_on_the_map(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_readings_are_painted_on_the_map(explorers: Explorers, open_page: Opener) -> None:
     """What comes about under a reading alone is painted so and names it, and goes when the reading is switched off."""
     page = open_page(explorers["bear.mission"]).page
     _walked(page)
@@ -284,7 +300,7 @@ def test_readings_are_painted_on_the_map(explorers: dict[str, Path], open_page: 
     under.first.wait_for(state="detached")
 
 
-def test_all_shapes_hold_all_states(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_all_shapes_hold_all_states(explorers: Explorers, open_page: Opener) -> None:
     """The map of all shapes names every one once, and their states are those of the page."""
     page = open_page(explorers["bear.mission"]).page
     page.get_by_role("button", name="All shapes").click()
@@ -311,9 +327,7 @@ CROSSINGS = """
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])
 @pytest.mark.parametrize("name", systems.names())
-def test_no_line_of_the_map_crosses_a_shape(
-    name: str, size: str, explorers: dict[str, Path], open_page: Opener
-) -> None:
+def test_no_line_of_the_map_crosses_a_shape(name: str, size: str, explorers: Explorers, open_page: Opener) -> None:
     """Wherever one stands no line runs through a shape, no shape covers another, and at most ten ways are next."""
     page = open_page(explorers[name], size).page
     for seed in range(1, 6):
@@ -323,7 +337,7 @@ def test_no_line_of_the_map_crosses_a_shape(
         assert 1 <= lines <= 10 + 2
 
 
-def test_the_map_is_moved_and_zoomed(explorers: dict[str, Path], open_page: Opener) -> None:
+def test_the_map_is_moved_and_zoomed(explorers: Explorers, open_page: Opener) -> None:
     """It follows the mouse, the keys and the buttons, and fits again when that is wanted."""
     page = open_page(explorers["bear.mission"]).page
     placed = "[view.x, view.y, view.scale]"

@@ -67,6 +67,7 @@ def _lines(sections: tuple[Section, ...]) -> Iterator[tuple[str, ClauseLine]]:
         yield from _lines(section.sections)
 
 
+@pytest.mark.long
 def test_pages_are_the_same_under_any_hash_seed() -> None:
     """The explorer of every system is the same text whatever the hash seed is."""
     found = set()

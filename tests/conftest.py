@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import signal
 import sys
 from pathlib import Path
@@ -31,6 +32,11 @@ MANY = 10
 def pytest_addoption(parser: pytest.Parser) -> None:
     """``--part 1/2``: of each test that goes through a long list only every second parameter, from the second on."""
     parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th parameter of long lists, from K on")
+
+
+def pytest_xdist_auto_num_workers() -> int:
+    """``-n auto``: one more than there are processors, as tests wait for the programs that they start."""
+    return 1 + (os.cpu_count() or 1)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

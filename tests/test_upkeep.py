@@ -22,6 +22,8 @@ COMPLEX = {
     "oracle": {
         "automaton.Automaton.arrive",
         "belief.Belief.symbol",
+        "calls.CallSearch._found",
+        "calls.CallSearch.path",
         "explanation._unseen",
         "explanation.take",
         "lookahead.Lookahead._leading",

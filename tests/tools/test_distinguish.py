@@ -86,7 +86,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     """
     told = {other for trial in trials(name) if trial.follows == letter for other in trial.against}
     subject = ReferenceSubject(MISSION, {name: letter})
-    automaton = Automaton(MISSION.spec, bench().automaton.moves.driven)
+    automaton = Automaton(MISSION.spec, bench().automaton.successors.driven)
     run = Run.with_guide(MISSION, subject, handshake(MISSION, subject), automaton, bench().guide.fresh())
     ambiguity = next(one for one in MISSION.spec.ambiguities if one.id == name)
     run.ledger.readings[name] = tuple(ambiguity.readings)

@@ -322,7 +322,9 @@ def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int
     """The line that sends a mission."""
     time = round(at * 1e9)
     uuid = Uuid.of(names[0][1])  # type: ignore[index]
-    own = uuid if meet(choice, (AI_27_UUID["b"],)) else Uuid.of(new_uuid(number)[1])  # type: ignore[index]
+    # The message's own is no mission's, whatever names those are given, and another one for each that an event causes.
+    message_uuid = Uuid.of(new_uuid(number + (uuid.value << 40))[1])  # type: ignore[index]
+    own = uuid if meet(choice, (AI_27_UUID["b"],)) else message_uuid
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     told = uuid if meet(choice, (AI_28_UUID["y"],)) else None
     header = Header(view.channel, time, time, own)

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+if TYPE_CHECKING:
+    from relay import Relay
+
+    from missionfsm.app.serve import Served
 
 collect_ignore_glob = [] if find_spec("grpc_reflection") else ["test_*.py"]
 
@@ -23,3 +30,28 @@ def tls(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     command = ["openssl", *made.split(), "-keyout", str(key), "-out", str(certificate)]
     subprocess.run(command, check=True, capture_output=True, timeout=60)
     return str(certificate), str(key)
+
+
+@pytest.fixture
+def robot() -> Iterator[Served]:
+    """The reference as a robot."""
+    from missionfsm.app.serve import serve  # noqa: PLC0415 - without the extra nobody asks for it
+
+    with serve("bear.mission") as served:
+        yield served
+
+
+@pytest.fixture
+def lines() -> list[Any]:
+    """What a proxy before the robot records."""
+    return []
+
+
+@pytest.fixture
+def relay(robot: Served, lines: list[Any]) -> Iterator[Relay]:
+    """A proxy before the robot."""
+    from relay import Relay  # noqa: PLC0415 - as above
+
+    found = Relay(robot.target, lines.append)
+    yield found
+    found.close()

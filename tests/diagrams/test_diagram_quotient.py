@@ -225,7 +225,10 @@ def test_pictures_are_small(name: str, sketch: Sketch) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "which", "names"), [("bear.mission", "queue", 3), ("isaac.server", "dispatch", 3)])
+@pytest.mark.parametrize(
+    ("name", "which", "names"),
+    [("bear.mission", "queue", 3), pytest.param("isaac.server", "dispatch", 3, marks=pytest.mark.long)],
+)
 def test_what_stands_for_a_state_does_as_it_does(name: str, which: str, names: int) -> None:
     """The picture is the same where no state stands for another (in a part of it that is small enough)."""
     system = systems.system(name)

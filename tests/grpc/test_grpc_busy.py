@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from pathlib import Path
 
+import pytest
 from busyclients import Ran, run
 
 from missionfsm.app.recorded import check_file
@@ -21,6 +22,7 @@ def lost(ran: Ran) -> list[str]:
     return found + [f"{numbers}: not in order" for numbers in recorded if numbers != sorted(set(numbers))]
 
 
+@pytest.mark.long
 def test_ten_busy_clients_are_recorded_whole_and_nothing_is_wrong(tmp_path: Path) -> None:
     """Every call and message of ten clients stands in the record once; nothing is wrong, to the proxy and to ``check``.
 

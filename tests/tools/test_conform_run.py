@@ -152,6 +152,7 @@ def test_time_bounds_a_run(command_line: CommandLine) -> None:
     assert (ended.status, told["verdict"], len(told["notes"])) == (0, "conforms", 1)
 
 
+@pytest.mark.long
 def test_the_same_seed_asks_the_same() -> None:
     """Two runs with the same seed come to the same verdict."""
     first, second = (

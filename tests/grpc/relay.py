@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from typing import Any
 
 from missionfsm.adapters.grpc.descriptors import decode, encode, methods, path
@@ -16,6 +17,17 @@ from missionfsm.kernel.codec import JSON
 WAIT = 10.0
 """Seconds after which an answer that does not come fails a test."""
 METHODS = methods("bear.mission")
+NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+
+
+def eventually(holds: Any) -> bool:
+    """Whether something comes to hold within the time."""
+    end = time.monotonic() + WAIT
+    while time.monotonic() < end:
+        if holds():
+            return True
+        time.sleep(0.01)
+    return False
 
 
 def as_they_are() -> Any:

@@ -6,15 +6,13 @@ import asyncio
 import contextlib
 import socket
 import ssl
-import time
-from typing import Any
 
 import grpc
 import pytest
 from grpc import aio
 from hpack import Encoder
 from hyperframe.frame import DataFrame, HeadersFrame, SettingsFrame
-from relay import METHODS, WAIT, Relay
+from relay import METHODS, NAVIGATE, WAIT, Relay, eventually
 
 from missionfsm.adapters.grpc.descriptors import encode, path
 from missionfsm.adapters.grpc.http2 import PREFACE, Data, Direction, Headers
@@ -25,7 +23,6 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import check
 
-NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 CREATE, SUBSCRIBE = METHODS["CreateMission"], METHODS["SubscribeMissionStatus"]
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
@@ -34,15 +31,6 @@ def connect(relay: Relay) -> socket.socket:
     found = socket.create_connection(("127.0.0.1", relay.proxy.port))
     found.settimeout(WAIT)
     return found
-
-
-def eventually(holds: Any) -> bool:
-    end = time.monotonic() + WAIT
-    while time.monotonic() < end:
-        if holds():
-            return True
-        time.sleep(0.01)
-    return False
 
 
 def conforms(lines: list[JSON]) -> bool:

@@ -7,13 +7,12 @@ import json
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import Any
 
 import grpc
 import pytest
-from relay import METHODS, WAIT, Relay, as_they_are
+from relay import METHODS, NAVIGATE, WAIT, Relay, as_they_are, eventually
 
 from missionfsm.adapters.grpc.client import GrpcSubject
 from missionfsm.adapters.grpc.descriptors import decode, path
@@ -27,22 +26,11 @@ from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 
-NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
 
 def without_times(lines: list[JSON]) -> list[JSON]:
     return [{key: value for key, value in line.items() if key != "at"} for line in lines]
-
-
-def eventually(holds: Any) -> bool:
-    """Whether something comes to hold within the time."""
-    end = time.monotonic() + WAIT
-    while time.monotonic() < end:
-        if holds():
-            return True
-        time.sleep(0.01)
-    return False
 
 
 def test_an_answer_and_a_refusal_pass_as_they_are(relay: Relay, lines: list[JSON]) -> None:

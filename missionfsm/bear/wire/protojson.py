@@ -41,6 +41,8 @@ _ANY_TIMESTAMP = re.compile(
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 T = TypeVar("T")
+_Key = TypeVar("_Key")
+_Found = TypeVar("_Found")
 
 
 class MalformedError(ValueError):
@@ -238,16 +240,20 @@ def _knowing(hook: Callable[[object, object], Any]) -> Callable[[object, object]
     known: dict[str, Any] = {}
 
     def structure(value: object, kind: object) -> Any:  # noqa: ANN401 - a message
-        text = repr(value)
-        found = known.get(text)
-        if found is None:
-            found = hook(value, kind)
-            if len(known) >= MAX_KNOWN:
-                known.clear()
-            known[text] = found
-        return found
+        return _recalled(known, repr(value), lambda: hook(value, kind))
 
     return structure
+
+
+def _recalled(known: dict[_Key, _Found], key: _Key, work_out: Callable[[], _Found]) -> _Found:
+    """What is known for a key, worked out where it is not; no more than `MAX_KNOWN` are remembered."""
+    found = known.get(key)
+    if found is None:
+        found = work_out()
+        if len(known) >= MAX_KNOWN:
+            known.clear()
+        known[key] = found
+    return found
 
 
 def _converter() -> cattrs.Converter:
@@ -333,11 +339,4 @@ _ITEMS: dict[tuple[type, str], tuple[str, ...]] = {}
 
 def _unknown_of_item(kind: type, item: object) -> tuple[str, ...]:
     """See `unknown_fields`, whose answers for items of lists are remembered."""
-    key = kind, repr(item)
-    found = _ITEMS.get(key)
-    if found is None:
-        found = unknown_fields(kind, item)
-        if len(_ITEMS) >= MAX_KNOWN:
-            _ITEMS.clear()
-        _ITEMS[key] = found
-    return found
+    return _recalled(_ITEMS, (kind, repr(item)), lambda: unknown_fields(kind, item))

@@ -1,6 +1,7 @@
 """A bare echo server of grpcio in a process of its own; with a port as its argument, a bare relay to the server there.
 
-The first line that it prints is its port.
+The first line that it prints is its port. What a robot does for its subscribers it does as barely as grpcio lets it: a
+call whose name ends in ``Tell`` is answered with nothing, and everybody who called ``Subscribe`` is sent its request.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import sys
+from collections.abc import AsyncIterator
 from typing import Any
 
 import grpc
@@ -15,13 +17,34 @@ from grpc import aio
 
 
 class Echo(grpc.GenericRpcHandler):
-    """Answers every unary call with its request."""
+    """Answers every unary call with its request, or sends that to all who subscribed."""
 
-    def service(self, _: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler:
-        async def echo(request: bytes, _: Any) -> bytes:
-            return request
+    def __init__(self) -> None:
+        self._subscribers: list[asyncio.Queue[bytes]] = []
 
-        return grpc.unary_unary_rpc_method_handler(echo)
+    def service(self, details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler:
+        if details.method.endswith("Subscribe"):
+            return grpc.unary_stream_rpc_method_handler(self._subscribe)
+        return grpc.unary_unary_rpc_method_handler(self._tell if details.method.endswith("Tell") else self._echo)
+
+    @staticmethod
+    async def _echo(request: bytes, _: Any) -> bytes:
+        return request
+
+    async def _tell(self, request: bytes, _: Any) -> bytes:
+        for one in self._subscribers:
+            one.put_nowait(request)
+        return b""
+
+    async def _subscribe(self, request: bytes, _: Any) -> AsyncIterator[bytes]:
+        mine: asyncio.Queue[bytes] = asyncio.Queue()
+        self._subscribers.append(mine)
+        try:
+            yield request
+            while True:
+                yield await mine.get()
+        finally:
+            self._subscribers.remove(mine)
 
 
 class Relay(grpc.GenericRpcHandler):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 import math
 import random
 import struct
@@ -9,17 +11,21 @@ from typing import Any, get_args
 
 import attrs
 import pytest
-from google.protobuf import timestamp_pb2
+from google.protobuf import json_format, timestamp_pb2
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from wirevalues import NOT_MODELLED, TOLERATED, laxities, message, mutated
+from wirevalues import NOT_MODELLED, TOLERATED, laxities, message, mutated, usually
 
-from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode
+from missionfsm.adapters.grpc import usual
+from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, message_class, methods, pool
+from missionfsm.app.live import Live
 from missionfsm.bear.status import messages as status
 from missionfsm.bear.wire import messages as wire
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES
+from missionfsm.bear.wire.fields import ENUMS, MESSAGES, Method
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, unknown_fields, write
 from missionfsm.kernel.codec import JSON
+from missionfsm.systems import system
+from missionfsm.tools.conform.run import BOUNDS
 
 ROBOT, CLOUD = "services.robot", "services.cloud"
 ROOTS: dict[str, type] = {
@@ -196,6 +202,59 @@ def test_the_model_and_protobuf_agree_on_much_more(seed: int) -> None:
     chance = random.Random(seed)
     for _ in range(100):
         mutants(chance)
+
+
+@given(st.randoms(use_true_random=False))
+@settings(max_examples=300)
+def test_what_is_written_as_usual_has_the_bytes_of_protobufs_own_json(chance: random.Random) -> None:
+    """Whatever is read the fast way, whole or mutated, protobuf's own JSON reads as well, and gives the same bytes."""
+    name = chance.choice(sorted(MESSAGES))
+    value: JSON = usually(name, message(chance, name))
+    for _ in range(4):
+        data = at_once(name, value)
+        assert data is None or data == by_its_own_json(name, value), (name, value)
+        value = mutated(chance, value)
+
+
+def at_once(name: str, value: JSON) -> bytes | None:
+    """The bytes that the fast way makes; None where it makes none."""
+    try:
+        return message_class(name)(**usual.fields(name, value)).SerializeToString(deterministic=True)
+    except (ValueError, TypeError):
+        return None
+
+
+def by_its_own_json(name: str, value: JSON) -> bytes:
+    """The bytes that protobuf's own JSON makes."""
+    found = json_format.ParseDict(value, message_class(name)(), descriptor_pool=pool())
+    return found.SerializeToString(deterministic=True)
+
+
+@pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
+def test_what_the_model_writes_is_written_as_usual(name: str) -> None:
+    """All that a reference answers and shows, in a conversation of its alphabet, takes the fast way."""
+    served = system(name)
+    live = Live(served, clock=itertools.count().__next__)
+    world = served.alphabet({}, BOUNDS).worlds[0]
+    live.reset(world)
+    seen: list[str] = []
+
+    def take(method: Method, shown: JSON) -> None:
+        assert at_once(method.response, shown) is not None, (method.name, shown)
+        seen.append(method.name)
+
+    alphabet = served.alphabet(world, BOUNDS)
+    for prompt in (one for one in alphabet.inputs if served.codec.carries(one.method, one.params)):
+        method = methods(name)[prompt.method]
+        if method.streams:
+            live.subscribe(prompt.method, prompt.params, functools.partial(take, method))
+        else:
+            answered = live.call(prompt.method, prompt.params)
+            if answered.error is None:
+                take(method, answered.result)
+        for drive in alphabet.drives[:3]:
+            live.drive(drive)
+    assert len(set(seen)) > 3
 
 
 @pytest.mark.parametrize("name", sorted(MAPS))

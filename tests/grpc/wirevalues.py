@@ -95,6 +95,27 @@ def _content(chance: random.Random, field: Field, depth: int) -> JSON:
     return [one() for _ in range(chance.randint(0, 3))] if field.label == "repeated" else one()
 
 
+def usually(name: str, value: JSON) -> JSON:
+    """The same message with every name in lowerCamelCase, and enums by name where they have one."""
+    if name in ENUMS:
+        return next((one for one, number in ENUMS[name].items() if number == value), value)
+    if name not in MESSAGES:
+        return value
+    found = {}
+    for field in MESSAGES[name]:
+        content = value.get(field.name, value.get(camel(field.name)))
+        if content is None:
+            continue
+        if field.label == "map":
+            content = {key: usually(field.type, one) for key, one in content.items()}
+        elif field.label == "repeated":
+            content = [usually(field.type, one) for one in content]
+        else:
+            content = usually(field.type, content)
+        found[camel(field.name)] = content
+    return found
+
+
 def _places(value: JSON, place: Place = ()) -> Iterator[Place]:
     yield place
     if isinstance(value, dict):

@@ -14,6 +14,7 @@ from typing import Any, NewType
 from google.protobuf import any_pb2, descriptor_pb2, descriptor_pool, json_format, message_factory, timestamp_pb2
 from google.protobuf.message import DecodeError, Message
 
+from missionfsm.adapters.grpc import usual
 from missionfsm.bear.wire.fields import ENUMS, MESSAGES, METHODS, PACKAGE, Field, Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import brief
@@ -199,6 +200,10 @@ def encode(name: str, value: JSON) -> Wire:
     """
     if not isinstance(value, dict):
         raise NotOnTheWireError(f"{brief(value)} is no message")
+    try:
+        return Wire(message_class(name)(**usual.fields(name, value)).SerializeToString())
+    except (ValueError, TypeError):
+        pass  # it is not written as usual, or it is no message
     try:
         message = json_format.ParseDict(value, message_class(name)(), descriptor_pool=pool())
         return Wire(message.SerializeToString())

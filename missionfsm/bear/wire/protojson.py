@@ -282,14 +282,21 @@ def _writer(kind: type) -> Callable[[Any], dict[str, Any]]:
     names = [(attribute.name, camel(attribute.name)) for attribute in attrs.fields(kind)]
 
     def unstructure(value: Any) -> dict[str, Any]:  # noqa: ANN401 - a message
-        present = ((json, getattr(value, name)) for name, json in names)
-        return {json: _write(content) for json, content in present if content is not None}
+        return {
+            json: content if content.__class__ in _AS_THEY_ARE else _write(content)
+            for name, json in names
+            if (content := getattr(value, name)) is not None
+        }
 
     return unstructure
 
 
+_AS_THEY_ARE = frozenset((str, int, bool))
+"""Types whose JSON they are themselves."""
+
+
 def _write(content: Any) -> Any:  # noqa: ANN401 - any field
-    return [_write(one) for one in content] if isinstance(content, tuple) else CONVERTER.unstructure(content)
+    return [_write(one) for one in content] if content.__class__ is tuple else CONVERTER.unstructure(content)
 
 
 CONVERTER = _converter()

@@ -153,16 +153,10 @@ class Reference:
 
     def outcome(self, state: State, request: object, refs: tuple[int | None, ...] = ()) -> Step:
         """What the reference answers in a state: the first outcome that its readings allow."""
-        key = (state, request, refs)
-        step = self._chosen.get(key)
+        step = self._remembered((state, request, refs), lambda: self.system.spec.outcomes(state, request, refs))
         if step is None:
-            step = self._choose(state, self.system.spec.outcomes(state, request, refs))
-            if step is None:
-                message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
-                raise AssertionError(message)
-            if len(self._chosen) >= MAX_REMEMBERED:
-                self._chosen.clear()
-            self._chosen[key] = step
+            message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
+            raise AssertionError(message)
         return step
 
     def drive(self, here: Snapshot, event: Incident, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
@@ -185,18 +179,25 @@ class Reference:
 
     def urgent(self, state: State) -> Step | None:
         """What the reference does by itself at once, if anything."""
-        return self._choose(state, self.system.spec.urgent(state))
+        return self._remembered((state,), lambda: self.system.spec.urgent(state))
 
     def happening(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
         """How something that the environment does comes about; None where it does not apply."""
-        return self._choose(state, self.system.spec.drives[event.name].steps(state, event, refs))
+        steps = self.system.spec.drives[event.name].steps
+        return self._remembered((state, "drive", event, refs), lambda: steps(state, event, refs))
 
     def cancel(self, here: Snapshot, channel: Name) -> Snapshot:
         """Give a stream up; one that does not exist is no error."""
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
-    def _choose(self, state: State, steps: tuple[Step, ...]) -> Step | None:
-        return self.twist(state, next((step for step in steps if meet(self.choice, step.assumes)), None))
+    def _remembered(self, key: tuple[Hashable, ...], steps: Callable[[], tuple[Step, ...]]) -> Step | None:
+        """The first of some steps that the readings allow; `key` begins with the state, and says which steps."""
+        if key not in self._chosen:
+            allowed = next((step for step in steps() if meet(self.choice, step.assumes)), None)
+            if len(self._chosen) >= MAX_REMEMBERED:
+                self._chosen.clear()
+            self._chosen[key] = self.twist(key[0], allowed)
+        return self._chosen[key]
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
         """Take everything urgent at once."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Defect, Request, Wanted
 from missionfsm.bear.mission.state import Family, Fault, Kind, World
 from missionfsm.bear.mission.stream import MORE, Seen
@@ -276,14 +276,14 @@ def test_a_world_has_defaults() -> None:
 
 
 DRIVES = (
-    Happening("goalReached"),
-    Happening("world", (("blocked", True), ("occupied", ("table-1",)))),
-    Happening("fault", Fault("INTERNAL", applied=True)),
+    Event("goalReached"),
+    Event("world", (("blocked", True), ("occupied", ("table-1",)))),
+    Event("fault", Fault("INTERNAL", applied=True)),
 )
 
 
 @pytest.mark.parametrize("event", DRIVES, ids=[one.name for one in DRIVES])
-def test_a_drive_is_written_and_read_again(event: Happening) -> None:
+def test_a_drive_is_written_and_read_again(event: Event) -> None:
     """What is written for an event of the environment is read as that event."""
     assert CODEC.drive(CODEC.write_drive(event, ())) == (event, ())
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from toys import TICKETS, Event
 
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event as RobotEvent
 from missionfsm.bear.mission.inputs import Request, Wanted
 from missionfsm.bear.mission.state import Kind, World
 from missionfsm.bear.mission.system import SYSTEM
@@ -36,7 +36,7 @@ REQUESTS = (
     Request("SkipGoal"),
     *(Request("UpdateMission", command=command) for command in COMMANDS),
 )
-HAPPENINGS = ("goalReached", "goalReached", "missionSucceeded", "missionFailed")
+EVENTS = ("goalReached", "goalReached", "missionSucceeded", "missionFailed")
 
 
 def robot(seed: int) -> Iterator[history.Event]:
@@ -61,7 +61,7 @@ def robot(seed: int) -> Iterator[history.Event]:
         here, reply = model.call(here, request, names)
         yield from seen(reply)
         for _ in range(chance.randrange(3)):
-            here, reply = model.drive(here, Happening(chance.choice(HAPPENINGS)))
+            here, reply = model.drive(here, RobotEvent(chance.choice(EVENTS)))
             yield from seen(reply)
         if not chance.randrange(4):
             yield Settled()
@@ -113,7 +113,7 @@ def test_what_is_remembered_takes_about_what_is_counted() -> None:
         create, name = Called(("call", number), Request("CreateMission", (NAVIGATE,))), f"mission {number}"
         assert here.observe(create)
         assert here.observe(Returned(create.call, Answer(OK), (name,)))
-        assert here.observe(Driven(Happening("goalReached")))
+        assert here.observe(Driven(RobotEvent("goalReached")))
     taken, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     counted = automaton.bytes + automaton.successors.bytes

@@ -9,7 +9,7 @@ from typing import Any
 
 import attrs
 
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import show, with_bare_feedback
 from missionfsm.bear.mission.request_codec import REQUESTS, request, split, write_request
@@ -292,40 +292,40 @@ def write_world(one: World) -> JSON:
     }
 
 
-def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
+def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive."""
     if not isinstance(given, dict) or not isinstance(given.get("event"), str):
         message = f"drive: {brief(given)} names no event"
         raise UnreadableError(message)
-    event, fields = given["event"], {name: value for name, value in given.items() if name != "event"}
-    if event == "world":
+    name, fields = given["event"], {key: value for key, value in given.items() if key != "event"}
+    if name == "world":
         changed = _world_fields(fields)
         if "family" in changed:
             message = "drive.family: the family changes only with reset"
             raise UnreadableError(message)
-        return Happening("world", tuple(sorted(changed.items()))), ()
-    if event == "fault":
+        return Event("world", tuple(sorted(changed.items()))), ()
+    if name == "fault":
         status, applied = fields.get("status"), fields.get("applied", False)
         if status not in (INTERNAL, DEADLINE_EXCEEDED) or not isinstance(applied, bool):
             wanted = "status INTERNAL or DEADLINE_EXCEEDED and applied true or false"
             message = f"drive: a fault has {wanted}, not {brief(fields)}"
             raise UnreadableError(message)
-        return Happening("fault", Fault(status, applied)), ()
-    if event not in ("goalReached", "missionSucceeded", "missionFailed"):
-        message = f"drive.event: {brief(event)} is not a drive of bear.mission"
+        return Event("fault", Fault(status, applied)), ()
+    if name not in ("goalReached", "missionSucceeded", "missionFailed"):
+        message = f"drive.event: {brief(name)} is not a drive of bear.mission"
         raise UnreadableError(message)
-    return Happening(event), ()
+    return Event(name), ()
 
 
-def write_drive(happening: Happening, _: tuple[Name, ...] = ()) -> JSON:
+def write_drive(event: Event, _: tuple[Name, ...] = ()) -> JSON:
     """The JSON of a drive."""
-    what = happening.what
+    what = event.what
     if isinstance(what, Fault):
         return {"event": "fault", "status": what.status, "applied": what.applied}
     fields = {}
     if isinstance(what, tuple):
         fields = {camel(name): list(value) if isinstance(value, tuple) else value for name, value in what}
-    return {"event": happening.name, **fields}
+    return {"event": event.name, **fields}
 
 
 STREAMS = tuple(name for name, operation in OPERATIONS.items() if operation.streaming)

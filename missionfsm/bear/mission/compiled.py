@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from missionfsm.bear.mission.effects import outcomes
-from missionfsm.bear.mission.events import Happening, by_itself, due, happens
+from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
 from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.state import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
@@ -42,7 +42,7 @@ class Shortcut:
     def __init__(
         self,
         requests: Iterable[tuple[Request, tuple[bool, ...]]],
-        events: Iterable[Happening],
+        events: Iterable[Event],
         assumed: int,
         most: int,
         *,
@@ -210,15 +210,15 @@ def forget_ended(robot: Robot) -> Robot:
     return Robot(robot.world, done, robot.active, robot.pending, robot.halted, robot.fresh, robot.fault)
 
 
-def _edits(robot: Situation, calls: Iterable[Call], happenings: Iterable[Happening], assumed: int) -> Iterator[Edit]:
+def _edits(robot: Situation, calls: Iterable[Call], events: Iterable[Event], assumed: int) -> Iterator[Edit]:
     for call in calls:
         if call.target is not None and not _possible(robot, call.target):
             continue
         for outcome in outcomes(OPERATIONS[call.request.operation], robot, call):
             if meet(assumed, outcome.assumes):
                 yield outcome.edit
-    for happening in happenings:
-        for edit, assumes in happens(robot, happening):
+    for event in events:
+        for edit, assumes in apply_event(robot, event):
             if meet(assumed, assumes):
                 yield edit
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Request, Wanted
 from missionfsm.bear.mission.state import NOT_CHOSEN, Fault, Mission, Robot
 from missionfsm.bear.mission.stream import Listing, Seen
@@ -22,8 +22,8 @@ def describe(value: object) -> str:
     if isinstance(value, Seen):
         shown = ", ".join(map(_message, value.states.missions))
         return f"[{shown}], current_mission_index {value.states.current_mission_index}"
-    if isinstance(value, Happening):
-        return _happening(value)
+    if isinstance(value, Event):
+        return _event(value)
     return str(value)
 
 
@@ -65,13 +65,13 @@ def _request(request: Request) -> str:
     return f"{request.operation}({'; '.join(parts)})"
 
 
-def _happening(happening: Happening) -> str:
-    what = happening.what
+def _event(event: Event) -> str:
+    what = event.what
     if isinstance(what, Fault):
         return f"fault {what.status}, {'applied' if what.applied else 'not applied'}"
     if isinstance(what, tuple):
-        return f"{happening.name} " + ", ".join(f"{name} {_plain(value)}" for name, value in what)
-    return happening.name
+        return f"{event.name} " + ", ".join(f"{name} {_plain(value)}" for name, value in what)
+    return event.name
 
 
 def _plain(value: object) -> str:

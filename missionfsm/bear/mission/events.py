@@ -108,7 +108,7 @@ def _alone(world: World, mission: Mission, *, queued: bool) -> Situation:
 
 
 @value(cache_hash=True)
-class Happening:
+class Event:
     """Something that the environment does: the name of a drive and what it takes."""
 
     name: str
@@ -174,14 +174,14 @@ def fault_armed(_: Situation, fault: Fault) -> Iterable[Way]:
 
 
 @functools.lru_cache(maxsize=100_000)
-def happens(robot: Situation, happening: Happening) -> tuple[Way, ...]:
+def apply_event(robot: Situation, event: Event) -> tuple[Way, ...]:
     """The ways in which something that the environment does comes about; none where it does not apply."""
     return tuple(
         {
             "goalReached": lambda: goal_reached(robot),
             "missionSucceeded": lambda: mission_succeeded(robot),
             "missionFailed": lambda: mission_failed(robot),
-            "world": lambda: world_changes(robot, happening.what),  # type: ignore[arg-type]
-            "fault": lambda: fault_armed(robot, happening.what),  # type: ignore[arg-type]
-        }[happening.name]()
+            "world": lambda: world_changes(robot, event.what),  # type: ignore[arg-type]
+            "fault": lambda: fault_armed(robot, event.what),  # type: ignore[arg-type]
+        }[event.name]()
     )

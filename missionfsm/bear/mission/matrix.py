@@ -6,7 +6,7 @@ import functools
 from collections.abc import Iterator, Mapping
 
 from missionfsm.bear.mission.effects import target
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Defect, Request, Target, Wanted
 from missionfsm.bear.mission.samples import CANCEL, PAUSE, TABLES
 from missionfsm.bear.mission.scripts import APPENDED, CREATED, call, commanded, drive
@@ -63,9 +63,9 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
 }
 
 
-def columns(robot: Robot, _: object, asked: Request | Happening, refs: tuple[int | None, ...]) -> tuple[str, ...]:
+def columns(robot: Robot, _: object, asked: Request | Event, refs: tuple[int | None, ...]) -> tuple[str, ...]:
     """The kinds of actions that a request or an event is an example of, to a robot."""
-    if isinstance(asked, Happening):
+    if isinstance(asked, Event):
         return _of_event(asked)
     if asked.command is not None and not asked.defects:
         at = target(robot, refs[0]) if refs else Target.UNKNOWN
@@ -83,7 +83,7 @@ def _of_request(world: World, asked: Request) -> tuple[str, ...]:
     return () if asked.defects else (asked.operation,)
 
 
-def _of_event(event: Happening) -> tuple[str, ...]:
+def _of_event(event: Event) -> tuple[str, ...]:
     if isinstance(event.what, Fault):
         return (f"{event.what.status} {'after' if event.what.applied else 'instead of'} its effect",)
     if event.name == "world":

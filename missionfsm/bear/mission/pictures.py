@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.bear.mission.compiled import forget_ended
-from missionfsm.bear.mission.events import Happening
+from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import ANY_NAME, Input
@@ -59,8 +59,8 @@ def _node(robot: Robot) -> str:
     return "all have ended" if robot.done else "no mission"
 
 
-def _label(robot: Robot, what: Request | Happening, refs: Refs) -> str | None:
-    if isinstance(what, Happening):
+def _label(robot: Robot, what: Request | Event, refs: Refs) -> str | None:
+    if isinstance(what, Event):
         return _HAPPENS[what.name]
     if what.command is None:
         return what.operation

@@ -11,7 +11,7 @@ from attrs import evolve
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
 from missionfsm.bear.mission.describe import describe
 from missionfsm.bear.mission.effects import UNLISTED_CODES, call_of, failing, outcomes, target
-from missionfsm.bear.mission.events import Happening, by_itself, due, happens
+from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
@@ -241,9 +241,9 @@ _JUSTIFIED = {
 }
 
 
-def _drive(robot: Robot, happening: Happening, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    rules = _JUSTIFIED.get(happening.name, ())
-    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in happens(situation(robot), happening))
+def _drive(robot: Robot, event: Event, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+    rules = _JUSTIFIED.get(event.name, ())
+    return tuple(_step(robot, edit, assumes, rules) for edit, assumes in apply_event(situation(robot), event))
 
 
 _CHANGED = {TYPE_CHANGED: TYPE.id, GOALS_CHANGED: GOALS.id}
@@ -365,7 +365,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         drives={
             one.name: one
             for one in (
-                *(Drive(name, _drive, (Happening(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
+                *(Drive(name, _drive, (Event(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
                 # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
                 Drive("world", _drive),
                 Drive("fault", _drive, waits=lambda robot: robot.fault is not None),

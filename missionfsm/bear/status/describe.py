@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.status.state import GET, Fleet, Happening, Request
+from missionfsm.bear.status.state import GET, Event, Fleet, Request
 from missionfsm.bear.status.values import brief_value
 from missionfsm.bear.status.views import BLANK, Promised, Seen, View
 from missionfsm.bear.wire.protojson import camel
@@ -22,8 +22,8 @@ def describe(value: object) -> str:
         return f"{value.robot}: {brief_value(value.value)}"
     if isinstance(value, Promised):
         return str(value)
-    if isinstance(value, Happening):
-        return _happening(value)
+    if isinstance(value, Event):
+        return _event(value)
     return str(value)
 
 
@@ -49,14 +49,14 @@ def _request(request: Request) -> str:
     return f"{request.operation}({'; '.join(parts)})"
 
 
-def _happening(happening: Happening) -> str:
-    if happening.name == "report":
-        return f"{happening.robot} reports {camel(happening.part)} {brief_value(happening.value)}"
-    if happening.name == "move":
-        return f"{happening.robot} moves to {happening.value}"
-    if happening.name == "fault":
-        return f"fault {happening.value}"
-    return f"{happening.robot} restarts"
+def _event(event: Event) -> str:
+    if event.name == "report":
+        return f"{event.robot} reports {camel(event.part)} {brief_value(event.value)}"
+    if event.name == "move":
+        return f"{event.robot} moves to {event.value}"
+    if event.name == "fault":
+        return f"fault {event.value}"
+    return f"{event.robot} restarts"
 
 
 __all__ = ["describe"]

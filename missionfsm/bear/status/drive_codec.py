@@ -13,7 +13,7 @@ from missionfsm.bear.status.state import (
     LOCALIZATION,
     PARTS,
     WIFI,
-    Happening,
+    Event,
     Location,
     Robot,
     Value,
@@ -135,22 +135,22 @@ def write_world(one: World) -> JSON:
     }
 
 
-def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
+def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive."""
     if not isinstance(given, dict) or not isinstance(given.get("event"), str):
         raise _refuse(f"drive: {brief(given)} names no event")
-    event = given["event"]
-    if event == "fault":
+    name = given["event"]
+    if name == "fault":
         if given.get("status") != INTERNAL:
             raise _refuse(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
-        return Happening("fault", value=INTERNAL), ()
-    if event not in ("report", "restart", "move"):
-        raise _refuse(f"drive.event: {brief(event)} is not a drive of bear.status")
+        return Event("fault", value=INTERNAL), ()
+    if name not in ("report", "restart", "move"):
+        raise _refuse(f"drive.event: {brief(name)} is not a drive of bear.status")
     robot = _text(given, "robotId", "drive")
-    if event == "restart":
-        return Happening("restart", robot), ()
-    if event == "move":
-        return Happening("move", robot, value=_text(given, "locationId", "drive")), ()
+    if name == "restart":
+        return Event("restart", robot), ()
+    if name == "move":
+        return Event("move", robot, value=_text(given, "locationId", "drive")), ()
     named = given.get("part")
     part = _PARTS.get(named) if isinstance(named, str) else None
     if part is None:
@@ -159,19 +159,19 @@ def drive(given: JSON) -> tuple[Happening, tuple[Name, ...]]:
         value = part_value(part, given.get("value"))
     except MalformedError as error:
         raise _refuse(f"drive.value: {error}") from None
-    return Happening("report", robot, part, value), ()
+    return Event("report", robot, part, value), ()
 
 
-def write_drive(happening: Happening, _: tuple[Name, ...] = ()) -> JSON:
+def write_drive(event: Event, _: tuple[Name, ...] = ()) -> JSON:
     """The JSON of a drive."""
-    if happening.name == "fault":
-        return {"event": "fault", "status": happening.value}
-    if happening.name == "restart":
-        return {"event": "restart", "robotId": happening.robot}
-    if happening.name == "move":
-        return {"event": "move", "robotId": happening.robot, "locationId": happening.value}
-    value: Any = None if happening.value is None else write(happening.value)
-    return {"event": "report", "robotId": happening.robot, "part": camel(happening.part), "value": value}
+    if event.name == "fault":
+        return {"event": "fault", "status": event.value}
+    if event.name == "restart":
+        return {"event": "restart", "robotId": event.robot}
+    if event.name == "move":
+        return {"event": "move", "robotId": event.robot, "locationId": event.value}
+    value: Any = None if event.value is None else write(event.value)
+    return {"event": "report", "robotId": event.robot, "part": camel(event.part), "value": value}
 
 
 def field(message: Mapping[str, JSON], name: str) -> JSON:

@@ -12,8 +12,8 @@ from missionfsm.bear.status.state import (
     STATE_PARTS,
     TOPICAL,
     Endpoint,
+    Event,
     Fleet,
-    Happening,
     Request,
     Robot,
 )
@@ -42,9 +42,7 @@ def situation(_: Fleet, streams: Streams) -> str:
     return f"{topics[0].endpoint.value} to {whom}"
 
 
-def columns(
-    fleet: Fleet, streams: Streams, asked: Request | Happening, _: tuple[int | None, ...] = ()
-) -> tuple[str, ...]:
+def columns(fleet: Fleet, streams: Streams, asked: Request | Event, _: tuple[int | None, ...] = ()) -> tuple[str, ...]:
     """The kinds of actions that a request or an event is an example of."""
     if isinstance(asked, Request):
         return tuple(_of_request(fleet, streams, asked))
@@ -109,7 +107,7 @@ def _situation(robot: Robot) -> str:
     return OFFLINE if robot.offline else "" if robot.seen else " that never reported anything"
 
 
-def _of_event(fleet: Fleet, streams: Streams, event: Happening) -> str:
+def _of_event(fleet: Fleet, streams: Streams, event: Event) -> str:
     robot = fleet.robot(event.robot)
     if robot is None:
         return event.name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.status.state import GET, Endpoint, Fleet, Happening, Request
+from missionfsm.bear.status.state import GET, Endpoint, Event, Fleet, Request
 from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Sketch
@@ -33,7 +33,7 @@ def _node(fleet: Fleet) -> str:
     return f"{connection}, a failure is armed" if fleet.fault else connection
 
 
-def _label(_: Fleet, what: Request | Happening, __: Refs) -> str:
+def _label(_: Fleet, what: Request | Event, __: Refs) -> str:
     if isinstance(what, Request):
         return f"{what.operation}{_ASKED[what.ids[0] if what.ids else '']}"
     if what.name == "fault":

@@ -31,8 +31,8 @@ from missionfsm.bear.status.state import (
     STATUS,
     SYSTEM,
     Endpoint,
+    Event,
     Fleet,
-    Happening,
     Request,
     World,
     initial,
@@ -40,8 +40,9 @@ from missionfsm.bear.status.state import (
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, WELL_FORMED, answers, matches
 from missionfsm.bear.status.values import faults
 from missionfsm.bear.status.views import Topic, concerns
+from missionfsm.kernel import history
 from missionfsm.kernel.abstraction import Abstraction
-from missionfsm.kernel.history import Called, Driven, Event, Received
+from missionfsm.kernel.history import Called, Driven, Received
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation, Waiver
 from missionfsm.kernel.spec import Delivery, Drive, Invariant, Middle, Parting, Spec
@@ -104,7 +105,7 @@ WAIVERS = (
 """What the page says and no rule checks in a history, with the calls in whose use it could have shown."""
 
 
-def _renumbered(event: Happening) -> tuple[str, ...]:
+def _renumbered(event: Event) -> tuple[str, ...]:
     return (event.robot,)
 
 
@@ -199,12 +200,12 @@ def _parts(world: World, driven: frozenset[str]) -> tuple[str, ...]:
     return () if "fault" in driven else tuple(robot.id for robot in world.robots)
 
 
-def _whose(event: Event) -> str | None:
+def _whose(event: history.Event) -> str | None:
     if isinstance(event, Received):
         return getattr(event.content, "robot", "")
     if isinstance(event, Driven):
-        happening: Happening = event.event  # type: ignore[assignment]  # of this system
-        return happening.robot if happening.name in ("report", "restart") else None
+        driven: Event = event.event  # type: ignore[assignment]  # of this system
+        return driven.robot if driven.name in ("report", "restart") else None
     if isinstance(event, Called):
         request: Request = event.request  # type: ignore[assignment]  # of this system
         return request.ids[0] if request.operation == GET and request.ids else None

@@ -279,7 +279,7 @@ def initial(world: World) -> Fleet:
 
 
 @frozen(cache_hash=True)
-class Happening:
+class Event:
     """Something that the environment does: the name of a drive, the robot, and what it takes.
 
     `part` and `value` are those of a report; of a move the value is the location; of a fault it is the status.
@@ -291,7 +291,7 @@ class Happening:
     value: Value = None
 
 
-FORGET = Happening("report")
+FORGET = Event("report")
 """Nobody drives the reports: from now on any robot may have reported anything."""
 
 

@@ -281,7 +281,7 @@ class _Search:
         first: Step | None = None
         for position, (model, here) in enumerate(zip(self.models, node.here, strict=True)):
             refs = tuple(map(here.ref, move.names))
-            step = (model.happening if move.driven else model.outcome)(here.state, move.what, refs)
+            step = (model.driven if move.driven else model.outcome)(here.state, move.what, refs)
             if position and step is not first:
                 return False
             if step is not None and step.after is not here.state and (move.plain or move.driven):

@@ -161,7 +161,7 @@ class Reference:
 
     def drive(self, here: Snapshot, event: Incident, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
         """Make something happen; the reply says whether it applied."""
-        step = self.happening(here.state, event, tuple(map(here.ref, names)))
+        step = self.driven(here.state, event, tuple(map(here.ref, names)))
         if step is None:
             return here, Reply(None, happened=False)
         here, names = self._brought(here, step, names)
@@ -181,7 +181,7 @@ class Reference:
         """What the reference does by itself at once, if anything."""
         return self._remembered((state,), lambda: self.system.spec.urgent(state))
 
-    def happening(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
+    def driven(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
         """How something that the environment does comes about; None where it does not apply."""
         steps = self.system.spec.drives[event.name].steps
         return self._remembered((state, "drive", event, refs), lambda: steps(state, event, refs))

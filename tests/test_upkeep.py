@@ -31,8 +31,6 @@ COMPLEX = {
         "transition.TransitionFunction._nothing_owed",
         "transition.TransitionFunction._received",
     },
-    # Parsers of the command line: an option after the other.
-    "cli": {"conform.conform", "dispatch.dispatch"},
 }
 """For each package what is above it, and why it may be. Whoever takes one apart strikes it out."""
 

@@ -8,10 +8,11 @@ import math
 import secrets
 import sys
 import time
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import define
+from attrs import define, frozen
 
 from missionfsm.cli.common import (
     BAD_INPUT,
@@ -58,7 +59,11 @@ from missionfsm.cli.reports import annotate, known_violations, write_junit, writ
 from missionfsm.kernel.system import System
 
 if TYPE_CHECKING:
+    from missionfsm.adapters.stdio import Trace
+    from missionfsm.app.bridged import Bridged, Sockets
     from missionfsm.kernel.subject import Subject
+    from missionfsm.tools.check.verdict import Verdict
+    from missionfsm.tools.conform.conform import Plan
 
 
 GRPC_EXAMPLES = 20
@@ -94,7 +99,7 @@ class TimeLimit:
         return self.seconds if self.began is None else max(0.0, self.began + self.seconds - time.monotonic())
 
 
-def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they do
+def conform(  # noqa: PLR0913 - options of the command, and what they do
     system: SystemName,
     command: Annotated[
         list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")
@@ -181,23 +186,16 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     verbose: Verbose = False,
 ) -> None:
     """Judge an implementation behind the adapter protocol."""
-    from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
-    from missionfsm.adapters.tracefile import tracing  # noqa: PLC0415
-    from missionfsm.app.bridged import Sockets, bridged  # noqa: PLC0415
+    from missionfsm.adapters.tracefile import tracing  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.bridged import Sockets  # noqa: PLC0415
     from missionfsm.cli.signals import interruptible  # noqa: PLC0415
-    from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415
-    from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415
 
     judged = the_system(system)
     readings = profiled(profile, choice(reading), judged)
-    calls: dict[str, Any] = {
-        option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))
-    }
+    calls = {option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))}
     known = known_violations(expect_violations, judged=judged)
     outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit, "--trace": trace}
     refuse_outputs(outputs, (expect_violations, missions))
-    limit = TimeLimit(seconds)
-    own = [sys.executable, "-m", "missionfsm", "adapter", system]
     sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
     over_grpc = {
         "world": world,
@@ -214,54 +212,31 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
     wire = _wire(grpc, over_grpc)
     if wire is not None:
         judged = wire.system(system, readings)
-        refuse_options(
-            {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command, "--trace": trace},
-            "where --grpc says which server is judged",
-        )
-    if sockets.wanted:
-        refuse_options(
-            {"--only": only, "--without": without, "--trace": trace, "--distinguish": distinguish}, "over TCP"
-        )
-    else:
-        refuse_options({"--tolerance": tolerance}, "without --tcp or --tcp-listen")
+    own_sockets = {"--tcp": tcp, "--tcp-listen": tcp_listen, "--missions": missions, "COMMAND": command}
+    asking = {"--only": only, "--without": without, "--trace": trace, "--distinguish": distinguish}
+    _refuse_without_effect(sockets, wire, own_sockets, asking, tolerance)
+    limit = TimeLimit(seconds)
     with one_line_errors(), interruptible() as interruption, tracing(trace) as traced:
-
-        def enough() -> bool:
-            return interruption.asked or limit.reached()
-
+        way = _Way(judged, system, sockets, wire, command, examples, timeout)
+        reached = way.reached(limit, traced, lambda: interruption.asked)
+        plan = reached.plan(steps)
         try:
-            bridge = bridged(judged, sockets, command, examples, timeout) if sockets.wanted else None
-        except ValueError as error:
-            stop(str(error), BAD_INPUT)
-        if wire is not None:
-            child: Subject = wire.subject(system, timeout)
-            examples = examples or GRPC_EXAMPLES
-        elif bridge:
-            child = bridge.subject
-            bridge.subject.left = limit.left
-        else:
-            child = Child(command or own, timeout, stopped=lambda: interruption.asked or limit.over, trace=traced)
-        plan = Plan(steps=steps) if examples is None else Plan.sharing(examples, steps)
-        try:
-            with Bar("conversations", bridge.conversations if bridge else plan.conversations(judged)) as bar:
+            with Bar("conversations", reached.conversations(plan)) as bar:
                 asked: dict[str, Any] = {
                     "seed": secrets.randbits(32) if seed is None else seed,
                     "readings": readings,
                     "no_flagged": no_flagged,
                     "expected": known,
-                    "enough": enough,
+                    "enough": lambda: interruption.asked or limit.reached(),
                     "progress": bar.conversation,
                 }
-                if bridge:
-                    verdict = bridge.judge(steps, **asked)
-                else:
-                    # What nobody is told need not be thought about: it takes as long as a third of the run.
-                    advice = verbose or json is not None or html is not None
-                    verdict = judge(judged, child, plan=plan, distinguish=distinguish, advice=advice, **calls, **asked)
+                # What nobody is told need not be thought about: it takes as long as a third of the run.
+                advice = verbose or json is not None or html is not None
+                verdict = reached.judge(plan, asked, {"distinguish": distinguish, "advice": advice, **calls})
         except ValueError as error:
             stop(str(error), BAD_INPUT)
         finally:
-            child.close()
+            reached.subject.close()
     troubles = told(verdict, json, verbose=verbose)
     for write in (
         functools.partial(annotate, github, [(None, "", verdict)], json),
@@ -273,6 +248,89 @@ def conform(  # noqa: PLR0913, PLR0915 - options of the command, and what they d
             write()
     status = DONE if verdict.conforms else FAILED
     troubles.end(INTERRUPTED if interruption.asked and verdict.violation is None else status)
+
+
+@frozen
+class _Reached:
+    """An implementation that can be talked to.
+
+    Attributes:
+        system: the system that it is judged by.
+        bridge: how it is judged in real time; None where it is asked through an adapter or gRPC.
+        examples: how many conversations are asked for; None where nobody said.
+    """
+
+    system: System
+    subject: Subject
+    bridge: Bridged | None = None
+    examples: int | None = None
+
+    def plan(self, steps: int) -> Plan:
+        """How many conversations of which kind are had."""
+        from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415 - commands load what they need
+
+        return Plan(steps=steps) if self.examples is None else Plan.sharing(self.examples, steps)
+
+    def conversations(self, plan: Plan) -> int:
+        """How many there will be, for the progress bar."""
+        return self.bridge.conversations if self.bridge else plan.conversations(self.system)
+
+    def judge(self, plan: Plan, asked: dict[str, Any], asked_without_sockets: dict[str, Any]) -> Verdict:
+        """The verdict; the options are those of `conform`, some of which judging over sockets does not have."""
+        from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415 - commands load what they need
+
+        if self.bridge:
+            verdict: Verdict = self.bridge.judge(plan.steps, **asked)
+            return verdict
+        return judge(self.system, self.subject, plan=plan, **asked_without_sockets, **asked)
+
+
+@frozen
+class _Way:
+    """How the implementation that is judged is reached, as the options say it."""
+
+    judged: System
+    name: str
+    sockets: Sockets
+    wire: Wire | None
+    command: list[str] | None
+    examples: int | None
+    timeout: float
+
+    def reached(self, limit: TimeLimit, traced: Trace, interrupted: Callable[[], bool]) -> _Reached:
+        """The implementation, started. Bad input ends the command; raises SubjectError where it does not start."""
+        from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - commands load what they need
+        from missionfsm.app.bridged import bridged  # noqa: PLC0415
+
+        if self.wire is not None:
+            subject = self.wire.subject(self.name, self.timeout)
+            return _Reached(self.judged, subject, examples=self.examples or GRPC_EXAMPLES)
+        if self.sockets.wanted:
+            try:
+                bridge = bridged(self.judged, self.sockets, self.command, self.examples, self.timeout)
+            except ValueError as error:
+                stop(str(error), BAD_INPUT)
+            bridge.subject.left = limit.left
+            return _Reached(self.judged, bridge.subject, bridge, self.examples)
+        command = self.command or [sys.executable, "-m", "missionfsm", "adapter", self.name]
+        child = Child(command, self.timeout, stopped=lambda: interrupted() or limit.over, trace=traced)
+        return _Reached(self.judged, child, examples=self.examples)
+
+
+def _refuse_without_effect(
+    sockets: Sockets,
+    wire: Wire | None,
+    own_sockets: Mapping[str, object],
+    asking: Mapping[str, object],
+    tolerance: float | None,
+) -> None:
+    """End the command where an option is given that has no effect on the way in which the implementation is reached."""
+    if wire is not None:
+        refuse_options({**own_sockets, "--trace": asking["--trace"]}, "where --grpc says which server is judged")
+    if sockets.wanted:
+        refuse_options(asking, "over TCP")
+    else:
+        refuse_options({"--tolerance": tolerance}, "without --tcp or --tcp-listen")
 
 
 def _wire(grpc: str | None, options: dict[str, Any]) -> Wire | None:

@@ -3,16 +3,23 @@
 Plain functions for typer; what takes long to import is imported inside them.
 """
 
+from __future__ import annotations
+
 import enum
 import signal
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from missionfsm.cli.common import BAD_INPUT, complain, refuse_given, stop
 from missionfsm.kernel.codec import UnreadableError
+
+if TYPE_CHECKING:
+    from missionfsm.app.dispatch import Dispatch, Settings
+    from missionfsm.isaac.runtime.missionfile import MissionFile
+    from missionfsm.isaac.runtime.profile import Profile
 
 
 class ProfileName(enum.StrEnum):
@@ -81,17 +88,10 @@ def dispatch(  # noqa: PLR0913 - the options
     Exit status: 0 if all succeeded, 1 if not, 2 if the file or the address cannot be used, 130 and 143 if a signal
     ended it.
     """
-    import asyncio  # noqa: PLC0415
-
-    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415
-    from missionfsm.adapters.isaac.journal import JournalError  # noqa: PLC0415
-    from missionfsm.adapters.isaac.lines import address  # noqa: PLC0415
+    from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
     from missionfsm.adapters.isaac.secrets import server_tls, tokens  # noqa: PLC0415
-    from missionfsm.app.dispatch import Dispatch, JournalMismatchError, Settings  # noqa: PLC0415
+    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
-    from missionfsm.cli.isaac_view import LogFormat, view_for  # noqa: PLC0415
-    from missionfsm.isaac.runtime.log import Level  # noqa: PLC0415
-    from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415
     from missionfsm.isaac.runtime.profile import PROFILES  # noqa: PLC0415
 
     if journal is None:
@@ -107,26 +107,47 @@ def dispatch(  # noqa: PLR0913 - the options
         tls = None if tls_cert is None else server_tls(str(tls_cert), str(tls_key))
     except UnreadableError as error:
         stop(str(error), BAD_INPUT)
+    missions = _missions(file, text, readings, line_limit)
+    kept = None if journal is None else str(journal)
+    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value, names, tls, http)
+    work = Dispatch(missions, settings)
+    _run(work, settings, log, log_level)
+    if work.ended_by is None:
+        raise typer.Exit(0 if work.succeeded == len(missions.missions) else 1)
+    left = f"{work.unfinished} of {len(missions.missions)} missions had not ended"
+    stop(f"{said(work.ended_by)}: {left}", 128 + work.ended_by)
+
+
+def _missions(file: Path, text: bytes, readings: Profile, line_limit: int) -> MissionFile:
+    """The missions of a file; what is odd about them is said, and what is wrong ends the command."""
+    from missionfsm.isaac.runtime.missionfile import MissionFile, parse  # noqa: PLC0415 - commands load what they need
+
     missions = parse(text, readings, line_limit=line_limit)
     for odd in missions.warnings if isinstance(missions, MissionFile) else missions:
         complain(f"{file}: {odd}")
     if not isinstance(missions, MissionFile):
         raise typer.Exit(BAD_INPUT)
-    kept = None if journal is None else str(journal)
-    settings = Settings(host, port, name_channel, readings, line_limit, kept, resume.value, names, tls, http)
-    work = Dispatch(missions, settings)
+    return missions
+
+
+def _run(work: Dispatch, settings: Settings, log: LogName | None, level: LevelName) -> None:
+    """Serve until all missions have ended, or a signal comes; bad input where the address or the journal is no good."""
+    import asyncio  # noqa: PLC0415 - commands load what they need
+
+    from missionfsm.adapters.isaac.journal import JournalError  # noqa: PLC0415
+    from missionfsm.adapters.isaac.lines import address  # noqa: PLC0415
+    from missionfsm.app.dispatch import JournalMismatchError  # noqa: PLC0415
+    from missionfsm.cli.isaac_view import LogFormat, view_for  # noqa: PLC0415
+    from missionfsm.isaac.runtime.log import Level  # noqa: PLC0415
+
     style = None if log is None else LogFormat(log.value)
     try:
-        with view_for(work, style, Level[log_level.name]) as view:
+        with view_for(work, style, Level[level.name]) as view:
             asyncio.run(work.run(view.tell))
     except KeyboardInterrupt:  # before or after the event loop
         work.ended_by = signal.SIGINT
     except OSError as error:
-        stop(f"cannot listen on {address((host, port))}: {error.strerror or error}", BAD_INPUT)
+        stop(f"cannot listen on {address((settings.host, settings.port))}: {error.strerror or error}", BAD_INPUT)
     except (JournalError, JournalMismatchError) as error:
-        which = f"{journal}: " if isinstance(error, JournalMismatchError) else ""
+        which = f"{settings.journal}: " if isinstance(error, JournalMismatchError) else ""
         stop(f"--journal: {which}{error}", BAD_INPUT)
-    if work.ended_by is None:
-        raise typer.Exit(0 if work.succeeded == len(missions.missions) else 1)
-    left = f"{work.unfinished} of {len(missions.missions)} missions had not ended"
-    stop(f"{said(work.ended_by)}: {left}", 128 + work.ended_by)

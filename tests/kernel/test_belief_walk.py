@@ -36,7 +36,7 @@ REQUESTS = (
     Request("SkipGoal"),
     *(Request("UpdateMission", command=command) for command in COMMANDS),
 )
-EVENTS = ("goalReached", "goalReached", "missionSucceeded", "missionFailed")
+DRIVES = ("goalReached", "goalReached", "missionSucceeded", "missionFailed")
 
 
 def robot(seed: int) -> Iterator[history.Event]:
@@ -61,7 +61,7 @@ def robot(seed: int) -> Iterator[history.Event]:
         here, reply = model.call(here, request, names)
         yield from seen(reply)
         for _ in range(chance.randrange(3)):
-            here, reply = model.drive(here, RobotEvent(chance.choice(EVENTS)))
+            here, reply = model.drive(here, RobotEvent(chance.choice(DRIVES)))
             yield from seen(reply)
         if not chance.randrange(4):
             yield Settled()

@@ -8,7 +8,7 @@ from __future__ import annotations
 import gzip
 import io
 import zlib
-from typing import IO, Any
+from typing import IO, Any, Protocol
 
 from missionfsm.kernel.codec import UnreadableError
 
@@ -22,10 +22,20 @@ _FED = 1 << 10
 """Compressed bytes that are taken at a time; they may stand for thirty thousand times as many."""
 
 
+class Readable(Protocol):
+    """What bytes are read from."""
+
+    def read(self, size: int = -1, /) -> bytes:
+        """So many bytes at most; none where there are no more."""
+
+    def close(self) -> None:
+        """Read no more."""
+
+
 class _Ahead(io.RawIOBase):
     """A source whose first bytes were looked at, and are read all the same."""
 
-    def __init__(self, source: Any, *, stays_open: bool = False) -> None:  # noqa: ANN401 - whatever has `read`
+    def __init__(self, source: Readable, *, stays_open: bool = False) -> None:
         self._stays_open = stays_open
         self._read = getattr(source, "read1", source.read)
         self._source = source
@@ -101,7 +111,7 @@ class _Zstandard(io.RawIOBase):
         super().close()
 
 
-def decompressed(source: Any, *, stays_open: bool = False) -> IO[bytes]:  # noqa: ANN401 - whatever has `read`
+def decompressed(source: Readable, *, stays_open: bool = False) -> IO[bytes]:
     """What a source stands for, without its compression and its byte order mark.
 
     The source is closed with what is returned, unless it is to stay open.

@@ -10,6 +10,7 @@ from missionfsm.kernel.system import System
 
 if TYPE_CHECKING:
     from missionfsm.adapters.isaac.bridge import RobotBridge, ServerBridge
+    from missionfsm.tools.check.verdict import Verdict
 
 CONVERSATIONS = 5
 """How many are had in real time where nothing else is asked for."""
@@ -44,7 +45,7 @@ class Bridged:
     conversations: int
     note: str
 
-    def judge(self, steps: int, **options: Any) -> Any:  # noqa: ANN401 - as `missionfsm.tools.conform.live.live` has them
+    def judge(self, steps: int, **options: Any) -> Verdict:  # noqa: ANN401 - as `missionfsm.tools.conform.live.live` has them
         """The verdict; options are those of `missionfsm.tools.conform.live.live`."""
         from missionfsm.tools.conform.live import live  # noqa: PLC0415 - commands load what they need
 

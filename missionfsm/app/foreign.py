@@ -9,7 +9,6 @@ import tomllib
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import Any
 
 from attrs import frozen
 
@@ -152,7 +151,7 @@ def subjects(folder: Path) -> tuple[Subject, ...]:
     return found
 
 
-def _subject(row: Any, where: str, folder: Path) -> Subject:  # noqa: ANN401 - whatever the table has
+def _subject(row: JSON, where: str, folder: Path) -> Subject:
     if not isinstance(row, dict):
         raise UnreadableError(f"{where}: {brief(row)} is not a table")
     name, command, verdict = row.get("name"), row.get("command"), row.get("verdict")

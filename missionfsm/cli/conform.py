@@ -280,8 +280,7 @@ class _Reached:
         from missionfsm.tools.conform.conform import conform as judge  # noqa: PLC0415 - commands load what they need
 
         if self.bridge:
-            verdict: Verdict = self.bridge.judge(plan.steps, **asked)
-            return verdict
+            return self.bridge.judge(plan.steps, **asked)
         return judge(self.system, self.subject, plan=plan, **asked_without_sockets, **asked)
 
 

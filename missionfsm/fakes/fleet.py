@@ -227,7 +227,7 @@ class Fleet:
 
     # What robots do.
 
-    def report(self, robot: str, part: str, value: Any) -> bool:  # noqa: ANN401 - a message of the part, JSON or None
+    def report(self, robot: str, part: str, value: object) -> bool:
         """A robot reports a part of its state. False, and nothing happens, where there is no such robot.
 
         Args:

@@ -28,7 +28,7 @@ from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
 from missionfsm.kernel.step import Match, Mismatch, Step
-from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, View, World
+from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, Topic, View, World
 
 
 @frozen
@@ -242,7 +242,7 @@ class Spec:
     drives: Mapping[str, Drive]
     urgent: Callable[[State], tuple[Step, ...]]
     matches: Callable[[View, Content], tuple[Match, ...] | Mismatch]
-    delivery: Callable[[Hashable], Delivery]
+    delivery: Callable[[Topic], Delivery]
     sequence: Callable[[str], tuple[Assumption, ...] | Mismatch]
     names: Callable[[State], int]
     request_operation: Callable[[Request], str]
@@ -252,8 +252,8 @@ class Spec:
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
     silent_for: Callable[[State, Focus], tuple[Step, ...]] | None = None
     calmed: Callable[[State], State] = lambda state: state
-    closing: Callable[[State, Hashable], tuple[Step, ...]] | None = None
-    concerns: Callable[[Hashable, Hashable], bool] = operator.eq
+    closing: Callable[[State, Topic], tuple[Step, ...]] | None = None
+    concerns: Callable[[Topic, Topic], bool] = operator.eq
     describe: Callable[[Request | View | State], str] = repr
     rules: tuple[Rule, ...] = ()
     charts: tuple[Chart[State], ...] = ()

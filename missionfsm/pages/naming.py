@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 from missionfsm.kernel.alphabet import ANY_NAME, Naming
@@ -78,7 +78,7 @@ class Shared:
     def __init__(self) -> None:
         self._numbers: dict[Any, int] = {}
 
-    def number(self, value: Any) -> int:  # noqa: ANN401 - anything hashable
+    def number(self, value: Hashable) -> int:
         """The number of a value."""
         return self._numbers.setdefault(value, len(self._numbers))
 

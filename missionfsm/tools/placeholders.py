@@ -12,6 +12,7 @@ from typing import Any
 
 from missionfsm.kernel.alphabet import Naming
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Name
 
 MAX_FILLINGS = 24
 """How many ways to fill the slots of one template are thought of at a time."""
@@ -61,7 +62,7 @@ def fill(params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int, k
     return [fill(value, picked, naming, serial, known) for value in params] if isinstance(params, list) else params
 
 
-def kind_of(name: Any) -> str | None:  # noqa: ANN401 - a name
+def kind_of(name: Name) -> str | None:
     """What a name is one of; None for plain text."""
     return name[0] if isinstance(name, tuple) else None
 

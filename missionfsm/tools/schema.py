@@ -7,6 +7,7 @@ a documented call may be any object; what a well-formed one looks like stands in
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from missionfsm.kernel.codec import JSON
@@ -45,26 +46,26 @@ def schema(which: str, system: System | None = None) -> dict[str, JSON]:
     }
 
 
-def _any_of(found: Any, otherwise: Any = OBJECT) -> Any:  # noqa: ANN401 - schemas
+def _any_of(found: Iterable[object], otherwise: object = OBJECT) -> object:
     """One of several schemas; another where there are none."""
     several = list(found)
     return {"anyOf": several} if len(several) > 1 else several[0] if several else otherwise
 
 
-def _results(shapes: Shapes, *others: Any) -> Any:  # noqa: ANN401 - schemas
+def _results(shapes: Shapes, *others: object) -> object:
     """What any call may answer with."""
     return _any_of((*shapes.results.values(), *others)) if shapes.results else OBJECT
 
 
-def _rpc(fields: dict[str, Any], required: tuple[str, ...]) -> dict[str, Any]:
+def _rpc(fields: Mapping[str, object], required: tuple[str, ...]) -> dict[str, Any]:
     return record({"jsonrpc": {"const": "2.0"}, **fields}, ("jsonrpc", *required))
 
 
-def _request(method: Any, params: Any) -> dict[str, Any]:  # noqa: ANN401 - schemas
+def _request(method: object, params: object) -> dict[str, Any]:
     return _rpc({"id": _ID, "method": method, "params": params}, ("id", "method", "params"))
 
 
-def _notification(method: str, params: Any) -> dict[str, Any]:  # noqa: ANN401 - schemas
+def _notification(method: str, params: object) -> dict[str, Any]:
     return _rpc({"method": {"const": method}, "params": params}, ("method", "params"))
 
 

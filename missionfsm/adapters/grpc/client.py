@@ -294,7 +294,7 @@ class GrpcSubject:
             return {}
         return found if found.get("system") == self.system else {}
 
-    def _asked_of_control(self, name: str, value: JSON) -> Any:  # noqa: ANN401 - JSON
+    def _asked_of_control(self, name: str, value: JSON) -> JSON:
         call = self._channel.unary_unary(f"/{control.SERVICE}/{name}")
         try:
             answer = call(

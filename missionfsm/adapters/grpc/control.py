@@ -7,7 +7,6 @@ library ships. What goes in and comes out is what the adapter protocol's methods
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import grpc
 from google.protobuf import descriptor_pb2, descriptor_pool, json_format, struct_pb2
@@ -56,12 +55,12 @@ def pack(value: JSON) -> bytes:
     return json_format.ParseDict(value, struct_pb2.Struct()).SerializeToString()
 
 
-def unpack(data: bytes) -> Any:  # noqa: ANN401 - JSON
+def unpack(data: bytes) -> JSON:
     """The JSON object that a Struct is; numbers that are whole are integers again."""
     return _whole(json_format.MessageToDict(struct_pb2.Struct.FromString(data)))
 
 
-def _whole(value: Any) -> Any:  # noqa: ANN401 - JSON
+def _whole(value: JSON) -> JSON:
     if isinstance(value, dict):
         return {key: _whole(one) for key, one in value.items()}
     if isinstance(value, list):

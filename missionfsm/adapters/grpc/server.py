@@ -11,9 +11,9 @@ import concurrent.futures
 import contextlib
 import functools
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import grpc
 from attrs import frozen
@@ -54,6 +54,8 @@ RULE_KEY, CITE_KEY = "missionfsm-rule", "missionfsm-cite"
 
 Context = Any
 """grpc.aio.ServicerContext, which has no type parameters that fit."""
+
+_Result = TypeVar("_Result")
 
 
 @frozen
@@ -301,7 +303,7 @@ class Server:
         """What a client connects to."""
         return f"{self._host}:{self.port}"
 
-    def _run(self, work: Any) -> Any:  # noqa: ANN401 - what the coroutine gives
+    def _run(self, work: Coroutine[object, object, _Result]) -> _Result:
         return asyncio.run_coroutine_threadsafe(work, self._loop).result()
 
     async def _start(self, port: int) -> int:

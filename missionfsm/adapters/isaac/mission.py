@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterable, Mapping
+from types import UnionType
 from typing import Any, Self
 
 import attrs
@@ -108,7 +109,7 @@ class Mission:
         return f"<Mission {self.uuid} for {self.request.robot!r}: {self.status.value}>"
 
 
-def _refuse_others(name: str, value: object, kind: Any, wanted: str) -> None:  # noqa: ANN401 - a class, or several
+def _refuse_others(name: str, value: object, kind: type | UnionType, wanted: str) -> None:
     if isinstance(value, bool) or not isinstance(value, kind):
         msg = f"{name}: wanted {wanted}, found {value!r}"
         raise TypeError(msg)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -246,7 +246,7 @@ def write_message(view: Listing, names: tuple[Name, ...], choice: int, number: i
 _WORLD: Mapping[str, str] = {camel(attribute.name): attribute.name for attribute in attrs.fields(World)}
 
 
-def _world_field(name: str, value: JSON) -> Any:  # noqa: ANN401 - as the field is
+def _world_field(name: str, value: JSON) -> Hashable:
     if name == "family":
         try:
             return Family(value)

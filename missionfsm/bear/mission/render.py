@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from missionfsm.bear.mission.readings import (
     AM_08,
@@ -54,12 +54,15 @@ def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
     return MissionStates(missions, index)
 
 
-def _pick(choice: int, cases: Mapping[Assumption, Any]) -> Any:  # noqa: ANN401 - whatever the cases are of
+_Value = TypeVar("_Value")
+
+
+def _pick(choice: int, cases: Mapping[Assumption, _Value]) -> _Value:
     return next(value for assumption, value in cases.items() if meet(choice, (assumption,)))
 
 
 def _mission_state(view: Listing, mission: Mission, mission_id: str, choice: int, *, pointed: bool) -> MissionState:
-    state = mission.state
+    state: Any = mission.state  # or a number that has no name
     if state is State.STATE_DEFAULT:
         state = _pick(choice, {AM_08[letters]: one for one, letters in waiting_as(pointed=pointed).items()})
     goals = tuple(Goal(destination_id="return point") if goal == RETURN_POINT else goal for goal in mission.goals)

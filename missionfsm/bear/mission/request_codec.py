@@ -51,7 +51,7 @@ _SINGLE = frozenset({Kind.BASE_NAVIGATE, Kind.SERVI_NAVIGATE, Kind.CARTI_NAVIGAT
 """Kinds with one goal of its own name instead of a list."""
 
 
-def _set_member(message: Any) -> tuple[str, Any]:  # noqa: ANN401 - any oneof wrapper
+def _set_member(message: attrs.AttrsInstance) -> tuple[str, Any]:
     """The member of a oneof that is set and its content; ("", None) if none is."""
     for attribute in attrs.fields(type(message)):
         content = getattr(message, attribute.name)
@@ -64,7 +64,9 @@ def _finite(goal: Goal) -> bool:
     return goal.pose is None or all(math.isfinite(number) for number in attrs.astuple(goal.pose))
 
 
-def _wanted(wrapper: Any, kinds: Mapping[tuple[str, str], Kind]) -> tuple[Wanted, tuple[Defect, ...]]:  # noqa: ANN401
+def _wanted(
+    wrapper: attrs.AttrsInstance | None, kinds: Mapping[tuple[str, str], Kind]
+) -> tuple[Wanted, tuple[Defect, ...]]:
     """The mission that a wrapper of two oneofs asks for, and what is wrong with it."""
     family, inner = _set_member(wrapper) if wrapper is not None else ("", None)
     which, payload = _set_member(inner) if inner is not None else ("", None)

@@ -22,7 +22,7 @@ _CHANGING = {
 }
 
 
-def _drive(event: str, **fields: Any) -> dict[str, Any]:  # noqa: ANN401 - schemas
+def _drive(event: str, **fields: object) -> dict[str, Any]:
     return record({"event": {"const": event}, **fields}, ("event", *(("status",) if "status" in fields else ())))
 
 

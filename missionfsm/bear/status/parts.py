@@ -65,7 +65,7 @@ def whole(view: View, shown: RobotState) -> tuple[Assumed, ...] | str:
     return tuple(tuple(itertools.chain.from_iterable(combination)) for combination in itertools.product(*ways))
 
 
-def _part(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed] | str:  # noqa: ANN401 - any part
+def _part(view: View, part: str, wanted: object, shown: object) -> list[Assumed] | str:
     read = _READ_APART.get(part)
     found = None if read is None else read(view, wanted, shown)
     if found is not None:
@@ -73,7 +73,7 @@ def _part(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed] | str
     return [()] if wanted == shown else _blank(view, part, wanted, shown) or difference(wanted, shown)
 
 
-def _blank(view: View, part: str, wanted: Any, shown: Any) -> list[Assumed]:  # noqa: ANN401 - any part
+def _blank(view: View, part: str, wanted: object, shown: object) -> list[Assumed]:
     """AS-09: a part that was never reported may be shown as a blank one, and one that is blank be left out."""
     for letter, empty in _EMPTY_PARTS.get(part, ()):
         if wanted is None and shown == empty:

@@ -33,6 +33,7 @@ from missionfsm.bear.wire.messages import MissionState
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Citation, Rule, promise
+from missionfsm.kernel.terms import Content
 from missionfsm.kernel.text import brief
 
 
@@ -207,7 +208,7 @@ def named(value: object) -> str:
 
 
 @functools.cache
-def _enums(kind: Any) -> tuple[tuple[str, bool], ...]:  # noqa: ANN401 - a message class
+def _enums(kind: type[attrs.AttrsInstance]) -> tuple[tuple[str, bool], ...]:
     """The fields of a message class, and whether each holds an enum."""
     attrs.resolve_types(kind)
     found = []
@@ -218,7 +219,7 @@ def _enums(kind: Any) -> tuple[tuple[str, bool], ...]:  # noqa: ANN401 - a messa
     return tuple(found)
 
 
-def _undocumented(value: Any) -> tuple[str, int] | None:  # noqa: ANN401 - any part of a message
+def _undocumented(value: Content) -> tuple[str, int] | None:
     """The first enum in a message, and in those inside it, whose number has no name."""
     if isinstance(value, tuple):
         return next(filter(None, map(_undocumented, value)), None)
@@ -234,7 +235,7 @@ def _undocumented(value: Any) -> tuple[str, int] | None:  # noqa: ANN401 - any p
     return None
 
 
-def within(value: Any) -> Iterator[Any]:  # noqa: ANN401 - any part of a message
+def within(value: Content) -> Iterator[Content]:
     """A value of a message and every message that it holds."""
     if isinstance(value, tuple):
         for one in value:
@@ -264,7 +265,7 @@ def _fault(one: Check, says: str) -> Fault:
     return Fault(one.rule.id, says, one.robots, one.lasts)
 
 
-def clamped(value: Any) -> Any:  # noqa: ANN401 - any part of a state
+def clamped(value: Content) -> Content:
     """AS-28: a battery or a network with its numbers brought into their ranges; the same object if they are in them."""
     if isinstance(value, BatteryState) and the_charge_is_a_percentage.wrong(value):
         return evolve(value, charge_percent=min(max(value.charge_percent, 0), 100))
@@ -273,7 +274,7 @@ def clamped(value: Any) -> Any:  # noqa: ANN401 - any part of a state
     return value
 
 
-def single(value: Any) -> Any:  # noqa: ANN401 - any part of a message
+def single(value: Content) -> Content:
     """A message with its floats as they are on the wire, in 32 bits: equal ones are equal however they are written."""
     if isinstance(value, float):
         try:
@@ -291,7 +292,7 @@ def single(value: Any) -> Any:  # noqa: ANN401 - any part of a message
     return value
 
 
-def difference(wanted: Any, shown: Any) -> str:  # noqa: ANN401 - any values
+def difference(wanted: Content, shown: Content) -> str:
     """In what a value differs from the one expected, in a few words."""
     if attrs.has(type(wanted)) and type(wanted) is type(shown):
         for attribute in attrs.fields(type(wanted)):
@@ -302,7 +303,7 @@ def difference(wanted: Any, shown: Any) -> str:  # noqa: ANN401 - any values
     return f"is {brief_value(shown)}, expected {brief_value(wanted)}"
 
 
-def brief_value(value: Any) -> str:  # noqa: ANN401 - any value
+def brief_value(value: Content) -> str:
     """A value as a message shows it: what is set, in short."""
     if value is None:
         return "unset"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 from attrs import evolve, frozen
 
@@ -30,6 +29,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.values import brief_value
 from missionfsm.kernel.readings import Ambiguity, Assumption
+from missionfsm.kernel.terms import Content
 
 Assumed = tuple[Assumption, ...]
 
@@ -62,7 +62,7 @@ class About:
     followed: bool = False
 
 
-def concerns(channel: Any, emission: Any) -> bool:  # noqa: ANN401 - a `Topic` and a `Told`
+def concerns(channel: Topic, emission: About) -> bool:
     """Whether a channel gets an emission."""
     if channel.robot != emission.robot or channel.endpoint is not emission.endpoint:
         return False
@@ -156,7 +156,7 @@ BLANK = {
 }
 
 
-def canonical(part: str, value: Any) -> Any:  # noqa: ANN401 - any part
+def canonical(part: str, value: Content) -> Content:
     """A part in the form in which it is compared: what is absent has its default, codes have an order."""
     if part == LOCALIZATION or value is None:
         return None

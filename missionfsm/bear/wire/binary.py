@@ -65,11 +65,11 @@ def _value(kind: str, content: JSON) -> bool:
     return kind in _SCALARS and _SCALARS[kind](content)
 
 
-def _is_integer(content: Any, within: range) -> bool:  # noqa: ANN401 - JSON
+def _is_integer(content: object, within: range) -> bool:
     return isinstance(content, int) and not isinstance(content, bool) and content in within
 
 
-def _is_number(content: Any) -> bool:  # noqa: ANN401 - JSON
+def _is_number(content: object) -> bool:
     return (isinstance(content, int | float) and not isinstance(content, bool)) or content in _NO_NUMBERS
 
 

@@ -24,6 +24,7 @@ from typing import Any, NewType, TypeVar, get_args
 import attrs
 import cattrs
 
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import brief
 
 Int64 = NewType("Int64", int)
@@ -41,6 +42,9 @@ _ANY_TIMESTAMP = re.compile(
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 T = TypeVar("T")
+Declared = Any
+"""The type of a field, as it is declared: a class, or what `typing` makes of several."""
+
 _Key = TypeVar("_Key")
 _Found = TypeVar("_Found")
 
@@ -201,13 +205,13 @@ def _message_hook(kind: type[T]) -> Callable[[object, object], T]:
 
 
 @functools.cache
-def _plain(declared: Any) -> Any:  # noqa: ANN401 - a type
+def _plain(declared: Declared) -> Declared:
     """The type that a present value has: an optional field's without the None."""
     inner = [one for one in get_args(declared) if one is not type(None)]
     return inner[0] if type(None) in get_args(declared) else declared
 
 
-def _is_tuple(declared: Any) -> bool:  # noqa: ANN401 - a type
+def _is_tuple(declared: object) -> bool:
     return getattr(declared, "__origin__", None) is tuple
 
 
@@ -215,7 +219,7 @@ MAX_KNOWN = 5_000
 """How many of the messages in lists are known again: a list that grows has the same ones in it again and again."""
 
 
-def _tuple_hook(declared: Any) -> Callable[[object, object], tuple[Any, ...]]:  # noqa: ANN401 - a type
+def _tuple_hook(declared: Declared) -> Callable[[object, object], tuple[Any, ...]]:
     inner = get_args(declared)[0]
     hook = CONVERTER.get_structure_hook(inner)
     if attrs.has(inner):
@@ -235,11 +239,11 @@ def _tuple_hook(declared: Any) -> Callable[[object, object], tuple[Any, ...]]:  
     return structure
 
 
-def _knowing(hook: Callable[[object, object], Any]) -> Callable[[object, object], Any]:
+def _knowing(hook: Callable[[object, object], object]) -> Callable[[object, object], object]:
     """A hook that gives the same message for the same JSON; messages are frozen, so that they can be shared."""
-    known: dict[str, Any] = {}
+    known: dict[str, object] = {}
 
-    def structure(value: object, kind: object) -> Any:  # noqa: ANN401 - a message
+    def structure(value: object, kind: object) -> object:
         return _recalled(known, repr(value), lambda: hook(value, kind))
 
     return structure
@@ -278,10 +282,10 @@ def _write_float(value: float) -> float | str:
     return value if math.isfinite(value) else ("Infinity" if value > 0 else "-Infinity")
 
 
-def _writer(kind: type) -> Callable[[Any], dict[str, Any]]:
+def _writer(kind: type) -> Callable[[object], dict[str, JSON]]:
     names = [(attribute.name, camel(attribute.name)) for attribute in attrs.fields(kind)]
 
-    def unstructure(value: Any) -> dict[str, Any]:  # noqa: ANN401 - a message
+    def unstructure(value: object) -> dict[str, JSON]:
         return {
             json: content if content.__class__ in _AS_THEY_ARE else _write(content)
             for name, json in names
@@ -295,8 +299,8 @@ _AS_THEY_ARE = frozenset((str, int, bool))
 """Types whose JSON they are themselves."""
 
 
-def _write(content: Any) -> Any:  # noqa: ANN401 - any field
-    return [_write(one) for one in content] if content.__class__ is tuple else CONVERTER.unstructure(content)
+def _write(content: object) -> JSON:
+    return [_write(one) for one in content] if isinstance(content, tuple) else CONVERTER.unstructure(content)
 
 
 CONVERTER = _converter()
@@ -307,13 +311,13 @@ def read(kind: type[T], value: object) -> T:
     return CONVERTER.structure(value, kind)
 
 
-def write(message: object) -> Any:  # noqa: ANN401 - JSON
+def write(message: object) -> JSON:
     """The JSON value of a message: every field that is not None, zeros included, enums by name."""
     return CONVERTER.unstructure(message)
 
 
 @functools.cache
-def _message_of(declared: Any) -> type | None:  # noqa: ANN401 - a type
+def _message_of(declared: Declared) -> type | None:
     """The type of the message, or of the messages, that a field of a type has; None where it has none."""
     plain = _plain(declared)
     inner = get_args(plain)[0] if _is_tuple(plain) else plain

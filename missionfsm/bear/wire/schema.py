@@ -12,7 +12,7 @@ from typing import Any, get_args
 
 import attrs
 
-from missionfsm.bear.wire.protojson import Int64, Timestamp, camel
+from missionfsm.bear.wire.protojson import Declared, Int64, Timestamp, camel
 from missionfsm.kernel.shapes import record
 
 _INTEGER = {"type": ["integer", "string"], "pattern": "^-?[0-9]+$"}
@@ -68,12 +68,12 @@ def _oneofs(kind: type) -> list[dict[str, Any]]:
     ]
 
 
-def _optional(declared: Any, definitions: dict[str, Any]) -> dict[str, Any]:  # noqa: ANN401 - a type
+def _optional(declared: Declared, definitions: dict[str, Any]) -> dict[str, Any]:
     """The schema of a field: what it may be if it is there, or null."""
     return {"anyOf": [_value(declared, definitions), {"type": "null"}]}
 
 
-def _value(declared: Any, definitions: dict[str, Any]) -> dict[str, Any]:  # noqa: ANN401 - a type
+def _value(declared: Declared, definitions: dict[str, Any]) -> dict[str, Any]:
     if declared in _SCALARS:
         return dict(_SCALARS[declared])
     inner = [one for one in get_args(declared) if one is not type(None)]

@@ -34,6 +34,7 @@ from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableErro
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
+from missionfsm.kernel.terms import Incident
 from missionfsm.kernel.text import brief
 
 _KEYS = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
@@ -280,7 +281,7 @@ def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric), names
 
 
-def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - an event of the system
+def write_drive(event: Incident, names: tuple[Name, ...]) -> JSON:
     """The JSON of an event; of a line the essence."""
     if isinstance(event, Passes):
         return {"event": "advance", "seconds": event.time / MICROSECONDS}
@@ -303,7 +304,7 @@ def write_drive(event: Any, names: tuple[Name, ...]) -> JSON:  # noqa: ANN401 - 
     return {"event": "line", **number, "line": line}
 
 
-def write_happened(event: Any, names: tuple[Name, ...]) -> dict[str, JSON]:  # noqa: ANN401 - an event of the system
+def write_happened(event: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
     """What connecting tells: the connection's number."""
     return {"connection": names[0][1]} if isinstance(event, Connects) else {}  # type: ignore[index]
 

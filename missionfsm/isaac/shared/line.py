@@ -60,7 +60,7 @@ def uuid_name(uuid: Uuid) -> Name:
     return ("uuid", uuid.value)
 
 
-def uuid_json(name: Any) -> JSON:  # noqa: ANN401 - a name
+def uuid_json(name: Any) -> JSON:  # noqa: ANN401 - a name of this system, a pair
     """An identifier's name as the wire has it: two decimal strings."""
     uuid = Uuid.of(name[1])
     return {"lower": str(uuid.lower), "upper": str(uuid.upper)}
@@ -84,7 +84,7 @@ def canonical(text: str) -> str | None:
     return json.dumps(_plain(value), sort_keys=True, separators=(",", ":"))
 
 
-def _plain(value: Any) -> Any:  # noqa: ANN401 - JSON
+def _plain(value: JSON) -> JSON:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list):

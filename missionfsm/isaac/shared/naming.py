@@ -7,13 +7,14 @@ from typing import Any
 from missionfsm.isaac.shared.line import new_uuid, uuid_json
 from missionfsm.kernel.alphabet import Naming
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Name
 
 
-def _write(name: Any) -> JSON:  # noqa: ANN401 - a name
+def _write(name: Any) -> JSON:  # noqa: ANN401 - a name of these systems, a pair
     return uuid_json(name) if name[0] == "uuid" else name[1]
 
 
-def _make(kind: str, serial: int) -> Any:  # noqa: ANN401 - a name
+def _make(kind: str, serial: int) -> Name:
     return new_uuid(serial) if kind == "uuid" else (kind, serial)
 
 

@@ -10,7 +10,7 @@ from missionfsm.kernel.shapes import TEXT, record
 SECONDS = {"type": "number", "minimum": 0}
 
 
-def drive(event: str, required: tuple[str, ...] = (), **fields: Any) -> dict[str, Any]:  # noqa: ANN401 - schemas
+def drive(event: str, required: tuple[str, ...] = (), **fields: object) -> dict[str, Any]:
     """The schema of a drive."""
     return record({"event": {"const": event}, **fields}, ("event", *required))
 

@@ -7,7 +7,6 @@ in the same conversation can have ruled nothing out; only nodes that are new to 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from attrs import frozen
 
@@ -100,7 +99,7 @@ class Eliminations:
         self._bytes = belief.node.bytes
         self._left = _left(belief.node)
 
-    def notice(self, event: Event, asked: Any, before: Node | None = None) -> None:  # noqa: ANN401 - of any system
+    def notice(self, event: Event, asked: Request | None, before: Node | None = None) -> None:
         """An event has led to a node that was not seen before: note what it rules out, if anything.
 
         Args:

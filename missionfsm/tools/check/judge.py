@@ -12,6 +12,7 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Event, Name, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import Request
 from missionfsm.oracle.automaton import Automaton, Tally
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
@@ -169,7 +170,7 @@ class Judge:
                 self._count(event, self.transcript.answered, open_calls=len(self.transcript.pending) > 0)
         return True
 
-    def _count(self, event: Event, asked: Any, *, open_calls: bool) -> None:  # noqa: ANN401 - of any system
+    def _count(self, event: Event, asked: Request | None, *, open_calls: bool) -> None:
         """Count an event that is explained: what was asked if it is an answer, and whether calls had none then."""
         if type(event) is Returned:
             self.succeeded += event.answer.code == OK

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.history import Answer, Called, Driven, Ended, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.text import printable
@@ -19,7 +18,7 @@ def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[CitedRule, ...]
     return tuple(CitedRule(rule.id, rule.says, str(rule.cite)) for rule in found)
 
 
-def described(spec: Spec, value: Any) -> str:  # noqa: ANN401 - a request, a view, a state or an event of any system
+def described(spec: Spec, value: object) -> str:
     """A value of a system in a few words, on one line."""
     return printable(spec.describe(value))
 
@@ -44,6 +43,6 @@ def answer_words(answer: Answer, names: tuple[str, ...]) -> str:
     return printable(f"{answer}{' ' + ', '.join(names) if names else ''}")
 
 
-def name_words(name: Any) -> str:  # noqa: ANN401 - a name
+def name_words(name: Name) -> str:
     """A name as a person reads it."""
     return printable(" ".join(map(str, name)) if isinstance(name, tuple) else str(name))

@@ -5,14 +5,14 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from typing import Any
 
 from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import UNCONSTRAINED, choose, meet
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import View
+from missionfsm.kernel.terms import State, View
 from missionfsm.tools.check.verdict import PER, RATE
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import recognised
@@ -91,7 +91,7 @@ class Census:
         elsewhere = f", and that in {worlds} of {len(self._all)} worlds" if worlds < len(self._all) else ""
         return f"{ways} of {self.moves:,} ways to go on near the start lead to it{elsewhere}{under}"
 
-    def _look(self, world: int, start: Any, params: Any) -> None:  # noqa: ANN401 - of any system
+    def _look(self, world: int, start: State, params: JSON) -> None:
         spec = self.system.spec
         alphabet = self.system.alphabet(params, BOUNDS)
         plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
@@ -114,7 +114,7 @@ class Census:
                     found.add(step.after)
                     todo.append(step.after)
 
-    def _moves(self, here: Any, labels: Labels) -> Iterator[list[Step]]:  # noqa: ANN401 - a state of any system
+    def _moves(self, here: State, labels: Labels) -> Iterator[list[Step]]:
         spec = self.system.spec
         for request, free in labels.requests:
             for refs in bindings(spec, here, free):

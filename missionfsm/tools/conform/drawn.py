@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from typing import Any
+from typing import Protocol
 
 from hypothesis import HealthCheck, Phase, Verbosity, settings
 from hypothesis import seed as with_seed
@@ -28,6 +28,15 @@ CHOICES = 12
 """Among how many of the least walked edges a guided step draws."""
 NAMES = 1 << 16
 """From how many numbers a name is drawn, however many names were given."""
+
+
+class _Talking(Protocol):
+    """What the rules need of the machine."""
+
+    world: int
+
+    def act(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> None:
+        """Call, drive or wait for silence."""
 
 
 class _Over(BaseException):
@@ -135,8 +144,8 @@ def _stopping() -> Iterator[None]:
         raise _Broke(error) from None
 
 
-def _call_rule(run: Run, method: str) -> Any:  # noqa: ANN401 - a rule of Hypothesis
-    def call(self: Any, data: st.DataObject) -> None:  # noqa: ANN401 - the machine
+def _call_rule(run: Run, method: str) -> object:
+    def call(self: _Talking, data: st.DataObject) -> None:
         alphabet = run.guide.alphabets[self.world]
         prompts: list[Input] = [one for one in alphabet.inputs if one.method == method]
         if not prompts:
@@ -145,7 +154,7 @@ def _call_rule(run: Run, method: str) -> Any:  # noqa: ANN401 - a rule of Hypoth
         name: NameRef | str | None = None
         if ANY_NAME in repr(prompt.params):
             texts = [given for given, one in run.conversation.given.items() if isinstance(one, str)]
-            names = (*reversed(texts), *alphabet.wrong_names)
+            names: tuple[JSON, ...] = (*reversed(texts), *alphabet.wrong_names)
             name = names[data.draw(st.integers(0, NAMES)) % len(names)]
         self.act(method, prompt.params, name, _picks(run, prompt.params, data))
         if data.draw(st.booleans()):
@@ -166,8 +175,8 @@ def _picks(run: Run, params: JSON, data: st.DataObject) -> Bindings:
     return tuple(picks)
 
 
-def _drive_rule(run: Run, name: str) -> Any:  # noqa: ANN401 - a rule of Hypothesis
-    def drive(self: Any, data: st.DataObject) -> None:  # noqa: ANN401 - the machine
+def _drive_rule(run: Run, name: str) -> object:
+    def drive(self: _Talking, data: st.DataObject) -> None:
         events = [one for one in run.guide.alphabets[self.world].drives if one["event"] == name]
         if not events:
             return
@@ -180,8 +189,8 @@ def _drive_rule(run: Run, name: str) -> Any:  # noqa: ANN401 - a rule of Hypothe
     return rule(data=st.data())(drive)
 
 
-def _cancel_rule(run: Run) -> Any:  # noqa: ANN401 - a rule of Hypothesis
-    def give_up_a_stream(self: Any, data: st.DataObject) -> None:  # noqa: ANN401 - the machine
+def _cancel_rule(run: Run) -> object:
+    def give_up_a_stream(self: _Talking, data: st.DataObject) -> None:
         picks = _picks(run, CANCEL.params, data)
         if picks:
             self.act(CANCEL.method, CANCEL.params, None, picks)

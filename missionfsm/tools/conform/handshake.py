@@ -7,7 +7,7 @@ system, so it is the alphabet that is made smaller here, once, for whoever draws
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Any
 
 from attrs import evolve, frozen
@@ -145,7 +145,11 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
     return evolve(system, alphabet=alphabet, codec=codec, matrix=matrix)
 
 
-def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Any) -> Matrix | None:  # noqa: ANN401 - a function
+Has = Callable[[str, JSON], bool]
+"""A call and its params to whether an adapter has it."""
+
+
+def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Has) -> Matrix | None:
     """The matrix with the ways that an adapter has; None where it moves by itself."""
     if any(drive.by_itself and name not in drives for name, drive in system.spec.drives.items()):
         return None  # in which situation it is, is seldom sure while it moves by itself
@@ -156,7 +160,7 @@ def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Any) 
     return evolve(matrix, ways=ways)
 
 
-def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Any) -> tuple[ScriptStep, ...]:  # noqa: ANN401 - a function
+def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Has) -> tuple[ScriptStep, ...]:
     """A script up to the first thing that an adapter does not have."""
     done = []
     for line in script:

@@ -106,7 +106,7 @@ class Reach:
         for column in columns:
             self.times[situation, column] = self.times.get((situation, column), 0) + 1
 
-    def _what(self, action: Action) -> Any:  # noqa: ANN401 - of any system
+    def _what(self, action: Action) -> Request | Incident:
         """The request or event that an action says, but for the names in it."""
         key = (action.method, repr(action.params))
         if key not in self._read:

@@ -16,7 +16,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Invariant, Spec
 from missionfsm.kernel.step import ONCE_HAD, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import State
+from missionfsm.kernel.terms import Code, State
 from missionfsm.tools.placeholders import fill, slots
 
 Free = tuple[bool, ...]
@@ -240,7 +240,7 @@ class Reached:
         return max(depth.values())
 
 
-def _reach(start: Any, successors: Callable[[Any], Iterable[Any]]) -> dict[Any, Any]:  # noqa: ANN401 - codes of states
+def _reach(start: Code, successors: Callable[[Code], Iterable[Code]]) -> dict[Code, Code]:
     found: dict[Any, Any] = {start: None}
     todo = [start]
     add = todo.append

@@ -7,7 +7,7 @@ explained: the explanation takes the very same steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
 from attrs import evolve, frozen
@@ -18,7 +18,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.step import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Request
+from missionfsm.kernel.terms import Request, State
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import Reference, recognised
 
@@ -69,13 +69,13 @@ class ReferenceSteps:
     def __init__(self, model: Reference) -> None:
         self.model = model
         self._sets: dict[frozenset[str], frozenset[str]] = {}
-        self._known: dict[Any, tuple[Step, Options, frozenset[str]]] = {}
-        self._urgent: dict[Any, tuple[tuple[Step, ...], Step | None]] = {}
-        self._shown: dict[Any, tuple[tuple[Match, ...], ...] | Mismatch] = {}
+        self._known: dict[Hashable, tuple[Step, Options, frozenset[str]]] = {}
+        self._urgent: dict[Hashable, tuple[tuple[Step, ...], Step | None]] = {}
+        self._shown: dict[Hashable, tuple[tuple[Match, ...], ...] | Mismatch] = {}
 
     def answers(
         self,
-        here: Any,  # noqa: ANN401 - of any system
+        here: State,
         request: Request,
         refs: tuple[int | None, ...],
     ) -> tuple[Step, Options, frozenset[str]]:
@@ -90,7 +90,7 @@ class ReferenceSteps:
             found = self._known[key] = (step, options, self._sets.setdefault(rules, rules))
         return found
 
-    def urgent(self, here: Any) -> tuple[tuple[Step, ...], Step | None]:  # noqa: ANN401 - of any system
+    def urgent(self, here: State) -> tuple[tuple[Step, ...], Step | None]:
         """What may happen at once in a state, and what of it the reference does."""
         found = self._urgent.get(here)
         if found is None:
@@ -228,7 +228,7 @@ class _Explorer:
         if not self.alternatives:
             raise _GuiltyError
 
-    def _taken(self, here: Any, labels: Labels) -> Iterator[Step]:  # noqa: ANN401
+    def _taken(self, here: State, labels: Labels) -> Iterator[Step]:
         """Every step that the model takes in a state, each explained; urgent ones come first."""
         allowed, own = self.honest.urgent(here)
         taken = self.model.twist(here, own)
@@ -249,18 +249,18 @@ class _Explorer:
                     self._require(self._explained(here, happened, allowed))
                     yield happened
 
-    def _asked_all(self, here: Any, labels: Labels) -> Iterator[Step]:  # noqa: ANN401 - of any system
+    def _asked_all(self, here: State, labels: Labels) -> Iterator[Step]:
         for request, free in labels.requests:
             for refs in bindings(self.spec, here, free):
                 step, options = self._asked(here, request, refs)
                 self._require(options)
                 yield step
 
-    def _passes(self, here: Any) -> bool:  # noqa: ANN401 - of any system
+    def _passes(self, here: State) -> bool:
         """Whether a state of the model does not last."""
         return self.model.twist(here, self.honest.urgent(here)[1]) is not None
 
-    def _asked(self, here: Any, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, Options]:  # noqa: ANN401
+    def _asked(self, here: State, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, Options]:
         own, options, rules = self.honest.answers(here, request, refs)
         self.came_up = self.came_up or self.rule in rules
         try:
@@ -280,7 +280,7 @@ class _Explorer:
         allowed = self.spec.outcomes(here, request, refs)
         return step, _explaining(self.system, here, request, allowed, step, silent=silent)
 
-    def _explained(self, here: Any, taken: Step, allowed: Iterable[Step]) -> Options:  # noqa: ANN401
+    def _explained(self, here: State, taken: Step, allowed: Iterable[Step]) -> Options:
         """What explains a step that answers nobody."""
         self.came_up = self.came_up or self.rule in taken.rules
         passing = self._passes(taken.after)
@@ -335,7 +335,7 @@ def shown(
 
 def _explaining(  # noqa: PLR0913 - a step and where it is taken
     system: System,
-    here: Any,  # noqa: ANN401 - of any system
+    here: State,
     request: Request,
     allowed: tuple[Step, ...],
     taken: Step,
@@ -370,7 +370,7 @@ def _agreements(system: System, allowed: Answer | None, given: Answer | None) ->
     return () if isinstance(matches, Mismatch) else (match.assumes for match in matches)
 
 
-def _seen(step: Step, here: Any, *, silent: bool = False) -> Any:  # noqa: ANN401 - what matters of a step
+def _seen(step: Step, here: State, *, silent: bool = False) -> Hashable:
     names = None if step.after is here else step.names
     refs = tuple(sorted(step.refs)) if step.answer is not None and step.answer.unordered else step.refs
     return (step.after, names, () if silent else step.emits, step.opens, refs)

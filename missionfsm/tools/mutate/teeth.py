@@ -333,9 +333,9 @@ def _without_effect(state: State, step: Step) -> Step | None:
     return evolve(step, after=state, names=None, emits=(), opens=())
 
 
-def _unseen(_: Any, step: Step) -> Step:  # noqa: ANN401 - a state of any system
+def _unseen(_: State, step: Step) -> Step:
     return evolve(step, emits=(), opens=tuple(evolve(one, owed=()) for one in step.opens))
 
 
-def _reversed(_: Any, step: Step) -> Step:  # noqa: ANN401 - a state of any system
+def _reversed(_: State, step: Step) -> Step:
     return evolve(step, refs=tuple(reversed(step.refs)))

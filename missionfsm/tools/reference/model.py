@@ -86,7 +86,7 @@ Twist = Callable[[Any, Step | None], Step | None]
 """(state, step) to the step that is taken in its place; for implementations with one thing broken."""
 
 
-def straight(_: Any, step: Step | None) -> Step | None:  # noqa: ANN401 - a state of any system
+def straight(_: State, step: Step | None) -> Step | None:
     """The step itself: nothing is broken."""
     return step
 

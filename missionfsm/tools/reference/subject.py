@@ -145,6 +145,6 @@ class ReferenceSubject:
         return Notification("message", {"stream": number, "message": message})
 
 
-def _channel(name: Any) -> tuple[str, int]:  # noqa: ANN401 - a channel's name
+def _channel(name: Any) -> tuple[str, int]:  # noqa: ANN401 - the name of a channel, a pair
     kind, number = name
     return kind, number

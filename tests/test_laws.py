@@ -361,7 +361,14 @@ RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.ro
 """What part of many violations names the very rule, at least; of the others nobody has said yet why they do not."""
 
 
-@pytest.mark.parametrize("name", ["bear.mission", "bear.status", "isaac.robot"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("bear.mission", marks=pytest.mark.long),
+        pytest.param("bear.status", marks=pytest.mark.long),
+        "isaac.robot",
+    ],
+)
 def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
     """Of a sample of mutants: each violation names one to three rules, the one that was broken among them."""
     found = list(accusations(systems.system(name), every=SAMPLED[name], first=2))
@@ -487,6 +494,6 @@ def test_nothing_depends_on_the_hash_seed(name: str) -> None:
             text=True,
             check=True,
         ).stdout
-        for seed in ("0", "1", "4711")
+        for seed in ("0", "4711")
     }
     assert len(ledgers) == 1

@@ -123,6 +123,7 @@ class Unsteady:
         return answer
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_what_is_drawn_does_not_depend_on_answers(seed: int) -> None:
     """Hypothesis draws again what it drew before; an implementation that then answers otherwise does not upset it."""
@@ -145,6 +146,7 @@ class Moody:
         return self._now.exchange(method, params)
 
 
+@pytest.mark.long
 def test_a_violation_that_comes_and_goes_is_told_how_often_it_is_seen() -> None:
     """It is tried again: how often it was seen, of how many times, is said with it."""
     broken = answering("NOT_FOUND", BUSY)
@@ -179,6 +181,7 @@ def test_what_only_comes_later_does_not_come_and_go(seed: int) -> None:
     assert (verdict.outcome, verdict.notes) == (Outcome.VIOLATES, ())
 
 
+@pytest.mark.slow
 def test_a_run_may_be_stopped_at_any_time() -> None:
     """Wherever a run is broken off, also where a conversation drawn alike went on, it ends in a verdict."""
     for steps in range(290, 600, 10):

@@ -86,6 +86,7 @@ def test_a_run_names_events_for_what_all_its_conversations_ruled_out() -> None:
 # Which rules came up seldom.
 
 
+@pytest.mark.long
 def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     """Those and no others; each with a reason that the model gives."""
     runs: list[Run] = []
@@ -99,6 +100,7 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     assert verdict.to_json()["coverage"]["rare"] == verdict.rare
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rule", "readings", "why"),
     [
@@ -116,6 +118,7 @@ def test_the_reason_is_the_models(rule: str, readings: dict[str, tuple[str, ...]
     assert why in Census(MISSION, readings).why(MISSION.spec.rule(f"bear.mission/{rule}"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_what_is_exercised_enough_is_not_rare(name: str) -> None:
     """A rule that is exercised at the rate is not on the list; with none exercised all are."""

@@ -32,6 +32,7 @@ def violation(verdict: Verdict) -> Violation:
     return verdict.violation
 
 
+@pytest.mark.slow
 def test_the_record_of_a_contradiction_is_judged_alike() -> None:
     """It has every conversation that it takes; each by itself is explained, together they are the same violation."""
     shown = violation(found())

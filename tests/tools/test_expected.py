@@ -29,6 +29,7 @@ def judged(subject: Subject, *expected: str) -> Verdict:
     return conform(MISSION, subject, examples=2, tours=18, steps=20, seed=2, expected=expected, advice=False)
 
 
+@pytest.mark.slow
 def test_a_search_goes_on_after_a_violation_that_is_known() -> None:
     """It ends well, has had all its conversations, and says how often it met the violation."""
     verdict = judged(answering("NOT_FOUND", BUSY), BUSY)
@@ -37,6 +38,7 @@ def test_a_search_goes_on_after_a_violation_that_is_known() -> None:
     assert f"known violation, met {verdict.known[BUSY]} times: {BUSY}" in str(verdict)
 
 
+@pytest.mark.slow
 def test_another_violation_is_found_behind_one_that_is_known() -> None:
     """Knowing the one does not hide the other."""
     verdict = judged(answering("NOT_FOUND", BUSY, EMPTY), BUSY)
@@ -45,6 +47,7 @@ def test_another_violation_is_found_behind_one_that_is_known() -> None:
     assert EMPTY in [rule.id for rule in verdict.violation.rules]
 
 
+@pytest.mark.slow
 def test_an_expectation_that_is_not_met_fails_the_run() -> None:
     """An implementation that does right by now has to be taken off the list."""
     verdict = judged(answering("NOT_FOUND", BUSY), BUSY, NEVER)
@@ -52,6 +55,7 @@ def test_an_expectation_that_is_not_met_fails_the_run() -> None:
     assert f"a violation of {NEVER} was expected and was not met: take it off the list" in str(verdict)
 
 
+@pytest.mark.long
 def test_readings_that_contradict_one_another_may_be_known_as_well() -> None:
     """What speaks for each of two readings is one violation; where it is known, the question is set aside."""
     found = judged(Fickle("AM-33.fresh", "ab"))

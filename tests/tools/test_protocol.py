@@ -53,17 +53,22 @@ class Strict:
         """Nothing is held."""
 
 
-SUBSETS = [(), DRIVES, ("fault",), ("goalReached", "world"), ("missionFailed", "fault"), DRIVES[:4]]
+SUBSETS = [
+    *((), DRIVES, ("missionFailed", "fault")),
+    *(pytest.param(one, marks=pytest.mark.long) for one in (("fault",), ("goalReached", "world"), DRIVES[:4])),
+]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drives", SUBSETS, ids="-".join)
 def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
     """Whatever drives an adapter has: none other is sent, and no second fault while one waits, to a right one."""
     adapter = Strict(ReferenceSubject(MISSION, {}), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, examples=3, tours=4, steps=15, seed=2, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drives", SUBSETS, ids="-".join)
 def test_a_story_is_made_short_with_what_is_declared(drives: tuple[str, ...]) -> None:
     """A violation is found and made short without a drive that the adapter has not."""
@@ -90,6 +95,7 @@ def test_no_world_but_the_fixed_one_is_asked_for() -> None:
     assert verdict.outcome is Outcome.CONFORMS
 
 
+@pytest.mark.slow
 def test_an_adapter_that_fails_later_loses_no_violation() -> None:
     """What was found is told, though the adapter dies while the story is made short."""
     subject = answering("NOT_FOUND", BUSY)

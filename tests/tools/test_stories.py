@@ -45,6 +45,7 @@ def history(verdict: Verdict) -> tuple[JSON, ...]:
 BROKEN = [("NOT_FOUND", BUSY), ("PERMISSION_DENIED", BUSY), ("FAILED_PRECONDITION", EMPTY), ("INTERNAL", EMPTY)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("code", "rule"), BROKEN)
 def test_the_history_of_a_story_is_judged_alike(code: str, rule: str) -> None:
     """`check` finds the same violation in it, at its last line."""
@@ -77,6 +78,7 @@ HARMED = (
 )
 
 
+@pytest.mark.long
 def test_no_story_is_longer_than_the_shortest() -> None:
     """Whatever is broken, a rule, a move, a message, an effect: no shorter conversation of anything shows anything."""
     told = []

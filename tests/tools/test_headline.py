@@ -201,7 +201,7 @@ def test_rules_of_what_was_met_before_it_was_made_short_are_told_as_such(tmp_pat
     assert verdict.violation is not None
     other = evolve(verdict, violation=evolve(verdict.violation, listed=("bear.mission/other/rule",)))
     lines = other.text().splitlines()
-    at = lines.index("  as it was met before it was made short, and as --expect-violations takes it:")
+    at = lines.index("  what was met first breaks other rules: as --expect-violations takes it:")
     assert lines[at + 1] == "    bear.mission/other/rule"
     assert "  as --expect-violations takes it:" in verdict.text().splitlines()
 

@@ -12,7 +12,7 @@ from broken import BUSY, MISSION, answering
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 from missionfsm.tools.check.verdict import Outcome
-from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.conform import NOT_CARRIED, conform
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 DRIVES = ("goalReached", "missionSucceeded", "missionFailed", "world", "fault")
@@ -93,6 +93,17 @@ def test_no_world_but_the_fixed_one_is_asked_for() -> None:
         MISSION, Strict(ReferenceSubject(MISSION, {}), declared), examples=2, tours=4, steps=15, seed=1, advice=False
     )
     assert verdict.outcome is Outcome.CONFORMS
+
+
+@pytest.mark.parametrize("requests", ["json", "binary"])
+def test_what_only_json_can_carry_is_told_with_the_way_round_it(requests: str) -> None:
+    """A wrong answer to two members of a oneof comes with the word that ends such questions, which does end them."""
+    malformed = "bear.mission/CreateMission/INVALID_ARGUMENT/the-request-is-malformed"
+    declared = {"drives": [], "methods": ["CreateMission"], **({"requests": "binary"} if requests == "binary" else {})}
+    adapter = Strict(answering("NOT_FOUND", malformed), declared)
+    verdict = conform(MISSION, adapter, examples=20, tours=5, steps=10, seed=1, advice=False)
+    is_json = requests == "json"
+    assert (verdict.outcome is Outcome.VIOLATES, NOT_CARRIED in verdict.notes) == (is_json, is_json)
 
 
 @pytest.mark.slow

@@ -34,6 +34,9 @@ MAX_ALTERNATIVES = 8
 ACCUSED = 3
 """How many rules a violation names at most, the nearest first."""
 
+NOT_HAPPENED = 'that it does not happen: an adapter answers {"happened": false}'
+"""What is right in the place of a drive that cannot happen."""
+
 NOTES = 4
 """How many reasons a person is told."""
 
@@ -54,6 +57,7 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
     elif isinstance(event, Ended):
         found = _against_end(nearest, event)
     else:
+        observed += " happened" if isinstance(event, Driven) else ""
         found = _against_drive(nearest, event)
     expected, rules, notes = found
     return Violation(
@@ -264,6 +268,8 @@ def _against_end(nearest: Nearest, event: Ended) -> Accusation:
 
 def _against_drive(nearest: Nearest, event: Event) -> Accusation:
     drive = nearest.spec.drives[event.event.name] if isinstance(event, Driven) else None  # type: ignore[attr-defined]
-    states = dict.fromkeys(described(nearest.spec, one.state) for one in nearest.belief.node.explanations)
+    reachable = list(nearest.reachable())
+    rest = [one for one in reachable if nearest.at_rest(one)] or reachable
+    states = dict.fromkeys(described(nearest.spec, one.state) for one in rest)
     note = f"it cannot happen in {' or '.join(list(states)[:2])}"
-    return (), drive.impossible if drive else (), [note]
+    return [Candidate(NOT_HAPPENED, (), (), ())], drive.impossible if drive else (), [note]

@@ -209,7 +209,7 @@ class Nearest:
             one.ambiguity.default not in one.letters and one.ambiguity.default in one.ambiguity.possible(here.assumed)
             for one in assumes
         )
-        shown = tuple(map(str, assumes))
+        shown = tuple(dict.fromkeys(map(str, assumes)))
         return Candidate(
             what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual, code=answer.code
         )

@@ -115,10 +115,15 @@ class Violation:
         else:
             lines.append("  nothing was allowed here")
         lines += [f"  {note}" for note in self.notes]
-        if self.rules:
+        if self.rules and not self._told_as_allowed:
             lines.append("  against:")
             lines += dict.fromkeys(f"    - {one}" for one in self.rules)
         return "\n".join(lines)
+
+    @property
+    def _told_as_allowed(self) -> bool:
+        """Whether the rules that are broken are those by which the one thing that was allowed is right."""
+        return len(self.expected) == 1 and set(self.rules) == set(self.expected[0].rules)
 
 
 @frozen
@@ -325,7 +330,8 @@ class Verdict:
             return []
         ids = self.violation.known_by
         shown = {rule.id for rule in self.violation.rules}
-        met = "" if shown.issuperset(ids) else "as it was met before it was made short, and "
+        longer = "what was met first breaks other rules: "
+        met = "" if shown.issuperset(ids) else longer
         return [f"  {met}as --expect-violations takes it:", *(f"    {one}" for one in ids)]
 
     def _readings(self, *, verbose: bool) -> list[str]:

@@ -47,7 +47,7 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
 
 
 def _conditions(rules: Iterable[Rule]) -> str:
-    return "; ".join(list(dict.fromkeys(rule.says for rule in rules))[:CONDITIONS])
+    return "; ".join(list(dict.fromkeys(rule.says.rstrip(".") for rule in rules))[:CONDITIONS])
 
 
 def _parted(allowed: Sequence[Candidate]) -> tuple[list[str], list[str], bool]:

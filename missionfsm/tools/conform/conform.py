@@ -43,6 +43,9 @@ EXPERIMENTS, ADVICE = "telling open readings apart", "what would decide open rea
 LONGEST_SUSPECTED = 60
 """Lines of a history in which suspects are looked for although the time is up."""
 
+NOT_CARRIED = 'nobody sends this in binary protobuf: an adapter that declares "requests": "binary" is not asked it'
+"""What is told where an answer is wrong to a request that only JSON can carry."""
+
 
 @frozen
 class Plan:
@@ -262,6 +265,8 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
         if len(violation.history) <= LONGEST_SUSPECTED or not run.enough():
             violation = with_suspects(run.system, violation, run.narrowing.asked_for)
         violation = beside_others(run, violation, asks_again=asks_again)
+        if _about_what_binary_cannot_carry(run, violation):
+            ledger.note(NOT_CARRIED)
         return _Finding(Outcome.VIOLATES, judge.belief.readings, _listed(violation, met))
     if ledger.contradiction is not None:
         met = ledger.inconsistency()
@@ -269,6 +274,15 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
             shorten_evidence(run)
         return _Finding(Outcome.VIOLATES, followed, _listed(ledger.inconsistency(), met))
     return _Finding(Outcome.CONFORMS, followed)
+
+
+def _about_what_binary_cannot_carry(run: Run, violation: Violation) -> bool:
+    """Whether the answer that is wrong is one to a request that a robot behind protobuf never gets."""
+    answered = violation.history[-1].get("return") if violation.history else None
+    calls = [line for line in violation.history if answered is not None and line.get("call") == answered]
+    return not run.partner.info.binary and any(
+        not run.system.codec.carries(line["method"], line["params"]) for line in calls[-1:]
+    )
 
 
 def _listed(violation: Violation | None, met: Violation | None) -> Violation | None:

@@ -66,9 +66,9 @@ class Log:
         lines = [line.rstrip() for line in self.text.splitlines() if line.strip()]
         if not lines:
             return ""
-        told = telling(lines)
-        says = " | ".join(printable(line.strip()[:MAX_CHARACTERS]) for line in told)
-        return f" (stderr: {says}{self._kept_whole() if len(lines) > len(told) else ''})"
+        telling_lines = telling(lines)
+        says = " | ".join(printable(line.strip()[:MAX_CHARACTERS]) for line in telling_lines)
+        return f" (stderr: {says}{self._kept_whole() if len(lines) > len(telling_lines) else ''})"
 
     def _kept_whole(self) -> str:
         try:
@@ -88,12 +88,12 @@ def telling(lines: Sequence[str]) -> tuple[str, ...]:
     last = max((number for number, line in enumerate(lines) if any(one.match(line) for one in _TELLING)), default=None)
     if last is None:
         return tuple(lines[-1:])
-    told = [lines[last]]
+    telling_lines = [lines[last]]
     for line in lines[last + 1 : last + 3]:
         if _FRAME.match(line):
-            told.append(line)
+            telling_lines.append(line)
             break
         if re.match(r"^(goroutine |note: |\[signal |stack backtrace)", line):
             continue
-        told.append(line)
-    return tuple(told)
+        telling_lines.append(line)
+    return tuple(telling_lines)

@@ -268,13 +268,13 @@ class Child:
                 raise self._exited(method) from None
 
     def _line(self, deadline: float, method: str) -> bytes:
-        told = False
+        ended_early = False
         while not self._lines:
-            if not told and self._stopped():
-                told, deadline = True, min(deadline, time.monotonic() + GRACE)
+            if not ended_early and self._stopped():
+                ended_early, deadline = True, min(deadline, time.monotonic() + GRACE)
             left = deadline - time.monotonic()
             if left <= 0:
-                when = "when the run was stopped" if told else f"within {self.timeout:g} s"
+                when = "when the run was stopped" if ended_early else f"within {self.timeout:g} s"
                 raise self._failed(f"did not answer {method} {when}")
             ready = {key.fd for key, _ in self._selector.select(min(left, MOMENT))}
             if self._err in ready:

@@ -161,9 +161,9 @@ def _messages(name: str) -> str:
 def _members(schema: JSON) -> str:
     exclusive = {one for rule in schema.get("allOf", ()) for one in rule.get("not", {}).get("required", ())}
     members = [(one, _kind(kind)) for one, kind in schema["properties"].items() if "_" not in one]
-    told = [f"`{one}` {kind}" for one, kind in members if one not in exclusive]
+    described = [f"`{one}` {kind}" for one, kind in members if one not in exclusive]
     *others, last = [f"`{one}` {kind}" for one, kind in members if one in exclusive] or [""]
-    return ", ".join((*([f"one of {', '.join(others)} or {last}"] if others else []), *told))
+    return ", ".join((*([f"one of {', '.join(others)} or {last}"] if others else []), *described))
 
 
 def _kind(schema: JSON) -> str:

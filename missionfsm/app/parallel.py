@@ -60,6 +60,6 @@ def _begun(context: SpawnContext, name: str, seed: int, only: str, part: tuple[i
         ours.close()
 
 
-def _judge(name: str, seed: int, only: str, part: tuple[int, int], told: Connection) -> None:
+def _judge(name: str, seed: int, only: str, part: tuple[int, int], results: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
-    told.send(teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: told.send(_MORE)))
+    results.send(teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: results.send(_MORE)))

@@ -334,9 +334,10 @@ class _Judges:
             says = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
             message = f"{called(path)}: {says}"
             raise UnreadableError(message)
-        told = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
+        verdicts = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
         return [
-            (robot, judge, located(verdict, self._stopped.get(robot, judge.place))) for robot, judge, verdict in told
+            (robot, judge, located(verdict, self._stopped.get(robot, judge.place)))
+            for robot, judge, verdict in verdicts
         ]
 
     def _completed(self, verdict: Verdict) -> Verdict:
@@ -355,11 +356,11 @@ def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) 
     kept: deque[JSON] = deque(maxlen=KEPT)
     with open_history(path) as source:
         for number, line in lines(source, path):
-            whose, told = addresses.whose(line)
+            whose, rest = addresses.whose(line)
             if type(line) is dict and "missionfsm" in line:
                 kept.clear()
             elif whose == robot:
-                kept.append(told)
+                kept.append(rest)
             if number == verdict.violation.at:
                 break
     history = (*verdict.violation.history, *kept)

@@ -306,7 +306,7 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
                 wrong = True
             if wrong and judge.violation is not None:
                 verdict = judge.verdict()
-                page.told(verdict, over=False)
+                page.show_verdict(verdict, over=False)
                 said = [line.strip() for line in str(verdict).splitlines() if line.strip()]
                 say(Judged("; ".join(said[:2]), conforms=False))  # a line; all of it comes at the end
         if not wrong:
@@ -315,7 +315,7 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
             say("the judge lags too far behind and gives up; what is recorded can be judged by `missionfsm check`")
             return
     verdict = judge.verdict()
-    page.told(verdict, over=True)
+    page.show_verdict(verdict, over=True)
     say(Judged(str(verdict), verdict.conforms, verdict.to_json()))
 
 
@@ -342,7 +342,7 @@ class _Page:
             page = standing_page(name, lines, PAGE_SECONDS)
             self._write(page, over=False)
 
-    def told(self, verdict: Verdict, *, over: bool) -> None:
+    def show_verdict(self, verdict: Verdict, *, over: bool) -> None:
         """There is a verdict; it is final once traffic is over."""
         if self._path:
             from missionfsm.pages.report import Judged as On  # noqa: PLC0415 - pages are for who wants them

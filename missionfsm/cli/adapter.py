@@ -10,7 +10,7 @@ import typer
 from missionfsm.cli.common import ADAPTER_FAILED, BAD_INPUT, DONE, choice, profiled, refuse_outputs, stop, the_system
 from missionfsm.cli.helping import SystemName
 from missionfsm.cli.options import DAY, ProfileName, Readings, finite
-from missionfsm.cli.printing import JsonFile, told
+from missionfsm.cli.printing import JsonFile, print_result
 
 
 def smoke(
@@ -30,7 +30,7 @@ def smoke(
 
     refuse_outputs({"--json": json})
     found = looked_at(the_system(system), lambda: Child(command, timeout))
-    troubles = told(found, json)
+    troubles = print_result(found, json)
     troubles.end(DONE if found.is_adapter else ADAPTER_FAILED)
 
 

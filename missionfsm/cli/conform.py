@@ -53,7 +53,7 @@ from missionfsm.cli.overgrpc import (
     WorldFile,
 )
 from missionfsm.cli.pages import HtmlFile, write_report
-from missionfsm.cli.printing import JsonFile, told
+from missionfsm.cli.printing import JsonFile, print_result
 from missionfsm.cli.progress import Bar
 from missionfsm.cli.reports import annotate, known_violations, write_junit, write_record
 from missionfsm.kernel.system import System
@@ -237,7 +237,7 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
             stop(str(error), BAD_INPUT)
         finally:
             reached.subject.close()
-    troubles = told(verdict, json, verbose=verbose)
+    troubles = print_result(verdict, json, verbose=verbose)
     for write in (
         functools.partial(annotate, github, [(None, "", verdict)], json),
         functools.partial(write_report, html, ("", None, verdict)),

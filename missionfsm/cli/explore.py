@@ -10,7 +10,7 @@ from missionfsm.cli.common import BAD_INPUT, DONE, FAILED, choice, complain, pro
 from missionfsm.cli.helping import SystemName
 from missionfsm.cli.options import ProfileName, Readings
 from missionfsm.cli.pages import HtmlFile, write_explorer
-from missionfsm.cli.printing import JsonFile, told
+from missionfsm.cli.printing import JsonFile, print_result
 
 
 def explore(  # noqa: PLR0913 - options of the command
@@ -47,13 +47,13 @@ def explore(  # noqa: PLR0913 - options of the command
 
         if html is not None or forget_ended:
             stop("--hazards: it goes with no --html and no --forget-ended", BAD_INPUT)
-        told(retries(explored, bounds, readings), json).end(DONE)
+        print_result(retries(explored, bounds, readings), json).end(DONE)
     if forget_ended and html is not None:
         stop("--forget-ended: it has no effect on the page of --html, which shows every state", BAD_INPUT)
     if explored.minutes_at is not None and missions >= explored.minutes_at:
         complain(f"explore {system}: this takes minutes; --missions {explored.minutes_at - 1} takes seconds")
     found = visit(explored, bounds, assumed=assumed, forget_ended=forget_ended)
-    troubles = told(found, json)
+    troubles = print_result(found, json)
     with troubles.kept():
         write_explorer(html, explored, found, assumed)
     troubles.end(DONE if found.holds else FAILED)

@@ -129,8 +129,8 @@ class Result(Protocol):
         """As it is written for programs."""
 
 
-def told(found: Result, json: str | None, *, verbose: bool = False) -> Troubles:
-    """Tell what was found and write it as JSON; what went wrong with either is kept."""
+def print_result(found: Result, json: str | None, *, verbose: bool = False) -> Troubles:
+    """Print what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():
         say_verdict(found.text(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)

@@ -10,7 +10,7 @@ import typer
 from missionfsm.cli.common import BAD_INPUT, DONE, FAILED, refuse_outputs, stop, the_system
 from missionfsm.cli.helping import SystemName
 from missionfsm.cli.pages import HtmlFile, write_teeth
-from missionfsm.cli.printing import JsonFile, told
+from missionfsm.cli.printing import JsonFile, print_result
 from missionfsm.cli.progress import Bar
 from missionfsm.kernel.codec import UnreadableError
 
@@ -49,7 +49,7 @@ def teeth(  # noqa: PLR0913 - options of the command
         stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
     with Bar("implementations", total) as bar:
         found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, progress=bar.one_more)
-    troubles = told(found, json)
+    troubles = print_result(found, json)
     with troubles.kept():
         write_teeth(html, judged, found)
     troubles.end(FAILED if found.missed or found.untested else DONE)
@@ -69,4 +69,4 @@ def _foreign(  # noqa: PLR0913 - options of the command
         stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
     with Bar("implementations", len(given)) as bar:
         found = judge_all(system, given, seed=seed, seconds=seconds, jobs=min(jobs, len(given)), progress=bar.one_more)
-    told(found, json).end(FAILED if found.wrong else DONE)
+    print_result(found, json).end(FAILED if found.wrong else DONE)

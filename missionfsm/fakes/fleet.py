@@ -143,7 +143,7 @@ class Fleet:
         self._here = self._model.start(SYSTEM.codec.world(world))
         self._subscriptions: dict[Name, Updates[Any]] = {}
         self._clock = clock
-        self._told = 0
+        self._shown_so_far = 0
 
     def __repr__(self) -> str:
         return f"<Fleet: {describe(self._here.state)}>"
@@ -277,8 +277,8 @@ class Fleet:
         for sent in reply.sent:
             updates = self._subscriptions.get(sent.channel, opened)
             if updates is not None:
-                self._told += 1
-                seconds = self._told if now is None else now
+                self._shown_so_far += 1
+                seconds = self._shown_so_far if now is None else now
                 timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
                 shown = show(sent.view, self._model.choice)
                 updates._show(shown.robot, timestamp, shown.value)  # noqa: SLF001 - as above

@@ -113,7 +113,7 @@ def submissions(file: MissionFile) -> tuple[JSON, ...]:
 
 
 def _submitted(mission: MissionEntry) -> JSON:
-    told: dict[str, JSON] = {
+    params: dict[str, JSON] = {
         "robot": mission.robot,
         "channel": mission.channel,
         "config": json.loads(mission.config),
@@ -121,7 +121,7 @@ def _submitted(mission: MissionEntry) -> JSON:
         "upstream": [one + 1 for one in mission.upstream],
     }
     if mission.status_channel is not None:
-        told["status_channel"] = mission.status_channel
+        params["status_channel"] = mission.status_channel
     if mission.timeout < math.inf:
-        told["timeout"] = mission.timeout
-    return told
+        params["timeout"] = mission.timeout
+    return params

@@ -137,9 +137,9 @@ def _standing(  # noqa: PLR0913 - what a message fixes
         one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
         for one in here.calls
     )
-    told = Channel(name, topic, Owed(view, names, looks=looks))
+    showing = Channel(name, topic, Owed(view, names, looks=looks))
     gone = tuple(one for one in here.gone if one not in names)
-    return Explanation(state, names, here.assumed, calls, here.lost, (told, *channels), gone)
+    return Explanation(state, names, here.assumed, calls, here.lost, (showing, *channels), gone)
 
 
 def joined(successors: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:

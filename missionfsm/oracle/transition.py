@@ -589,11 +589,15 @@ class TransitionFunction:
         for position, channel in enumerate(explanation.channels):
             due = [owed for owed in channel.owed if not owed.passing]
             if due:
-                told = tuple(dict.fromkeys(after for before in ways for after in self._told(channel, due, before)))
-                if loses and not told and channel.last:
-                    told = tuple(after for before in ways if (after := self.successors.meet(before, (lenient.LOSES,))))
+                after_it = tuple(
+                    dict.fromkeys(after for before in ways for after in self._caught_up(channel, due, before))
+                )
+                if loses and not after_it and channel.last:
+                    after_it = tuple(
+                        after for before in ways if (after := self.successors.meet(before, (lenient.LOSES,)))
+                    )
                     lost.add(position)
-                ways = told
+                ways = after_it
         if ways:
             channels = tuple(
                 lenient.given_up(channel) if position in lost else _offering(channel) if channel.owed else channel
@@ -602,7 +606,7 @@ class TransitionFunction:
             for assumed in ways:
                 yield tidy(undrained(explanation.but(assumed=assumed, channels=channels)))
 
-    def _told(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
+    def _caught_up(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
         """What is assumed where the subscriber knows all that a channel owes, since it saw that last.
 
         What is back where the subscriber saw it last may stay unsaid by one that sends only the latest.
@@ -650,12 +654,12 @@ def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator
     if max(left, default=GONE - 1) >= GONE or len(left) != len(set(free)):
         return
     elsewhere = set(mentioned(explanation)) if len(left) > 1 else set()
-    told, rest = ([name for name in left if (name in elsewhere) is known] for known in (True, False))
-    for some in itertools.permutations(free, len(told)):
+    mentioned_too, rest = ([name for name in left if (name in elsewhere) is known] for known in (True, False))
+    for some in itertools.permutations(free, len(mentioned_too)):
         others = (name for name in free if name not in some)
         yield [
             *zip(shared, shared, strict=True),
-            *zip(told, some, strict=True),
+            *zip(mentioned_too, some, strict=True),
             *zip(rest, others, strict=True),
         ]
 

@@ -152,8 +152,8 @@ class Doings:
         positions = {at: names + number for number, at in enumerate(fixed)}
         first = names + len(fixed)
         places = [self.writer.place(kind, first + at) for at, kind in enumerate(opened)]
-        told = {**filled.params, **self.system.codec.write_happened(one.event, (*filled.names, *places))}
-        line = self.writer.text({"drive": told}, {filled.names[at]: position for at, position in positions.items()})
+        drive = {**filled.params, **self.system.codec.write_happened(one.event, (*filled.names, *places))}
+        line = self.writer.text({"drive": drive}, {filled.names[at]: position for at, position in positions.items()})
         refs = (
             *(positions.get(at, ref) for at, ref in enumerate(filled.refs)),
             *range(first, first + len(opened)),

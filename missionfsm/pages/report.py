@@ -136,8 +136,8 @@ class Story:
         violation = self.judged.verdict.violation
         if violation is None:
             return ()
-        told = {rule for one in violation.expected for rule in one.rules}
-        return tuple(rule for rule in violation.rules if rule not in told)
+        justified = {rule for one in violation.expected for rule in one.rules}
+        return tuple(rule for rule in violation.rules if rule not in justified)
 
 
 @frozen
@@ -193,11 +193,11 @@ def _story(system: System, judged: Judged) -> Story:
     violation = judged.verdict.violation
     history = violation.history if violation else ()
     # One that follows no single reading is wrong in no one place.
-    told = rows(system, history, violation=bool(violation and violation.at))
+    lines = rows(system, history, violation=bool(violation and violation.at))
     return Story(
         judged,
-        told[:-SHOWN],
-        told[-SHOWN:],
+        lines[:-SHOWN],
+        lines[-SHOWN:],
         readings_asked(system.spec, judged.verdict),
         "".join(f"{_line(line)}\n" for line in history),
         as_pytest(history, "the_recorded_conversation_is_explained") if history else "",
@@ -209,13 +209,13 @@ def _parted(system: System, sides: Sequence[Side]) -> tuple[Conversation, ...]:
     """Conversations with what they begin with alike; names that somebody chose do not count."""
     by_look: dict[tuple[tuple[str, str], ...], tuple[list[str], tuple[Row, ...]]] = {}
     for side in sides:
-        told = rows(system, side.history, violation=False)
-        look = tuple((row.kind, _NUMBER.sub("0", row.words)) for row in told)
-        by_look.setdefault(look, ([], told))[0].append(side.says)
+        lines = rows(system, side.history, violation=False)
+        look = tuple((row.kind, _NUMBER.sub("0", row.words)) for row in lines)
+        by_look.setdefault(look, ([], lines))[0].append(side.says)
     alike = 0
     while all(alike < len(look) - 1 for look in by_look) and len({look[alike] for look in by_look}) == 1:
         alike += 1
-    return tuple(Conversation("; ".join(says), told[:alike], told[alike:]) for says, told in by_look.values())
+    return tuple(Conversation("; ".join(says), lines[:alike], lines[alike:]) for says, lines in by_look.values())
 
 
 def _line(line: JSON) -> str:

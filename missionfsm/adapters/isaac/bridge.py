@@ -72,15 +72,15 @@ class _Bridge:
         lines = self.collect(seconds)
         if time.monotonic() - self._noted < _MOMENT:
             return lines
-        told = {"drive": {"event": "advance", "seconds": self.passed()}}
-        return (Notification("history", told), *lines)
+        line = {"drive": {"event": "advance", "seconds": self.passed()}}
+        return (Notification("history", line), *lines)
 
     def passed(self) -> float:
         """How much time has passed since this was asked last."""
         before, self._noted = self._noted, time.monotonic()
-        return self.told(self._noted - before)
+        return self.as_measured(self._noted - before)
 
-    def told(self, seconds: float) -> float:
+    def as_measured(self, seconds: float) -> float:
         """A time as the oracle is told it, in whole microseconds."""
         return round(seconds, 6)
 
@@ -286,9 +286,9 @@ class RobotBridge(_Bridge):
                 self._listener.accept()[0].close()
         self._listener.settimeout(PATIENCE)
 
-    def told(self, seconds: float) -> float:
+    def as_measured(self, seconds: float) -> float:
         """A time as the oracle is told it: a little less than it was."""
-        return super().told(max(0.0, seconds - self.tolerance))
+        return super().as_measured(max(0.0, seconds - self.tolerance))
 
     def reset(self, world: JSON) -> tuple[Notification, ...]:  # noqa: ARG002 - it has no parameters
         """Have a fresh robot, and wait until it connects."""

@@ -46,10 +46,10 @@ class Journal:
 
     def __init__(self, path: str | Path) -> None:
         self.path = str(path)
-        with self._told():
+        with self._as_journal_error():
             self._sql = sqlite3.connect(self.path, timeout=0.0, isolation_level=None, check_same_thread=False)
         try:
-            with self._told():
+            with self._as_journal_error():
                 self._open()
         except JournalError:
             self._sql.close()
@@ -73,7 +73,7 @@ class Journal:
 
     def missions(self) -> tuple[Snapshot, ...]:
         """All that is in it, in the order of creation."""
-        with self._told():
+        with self._as_journal_error():
             rows = self._sql.execute(
                 "SELECT uuid, robot, channel, status_channel, config, start_timeout, timeout, upstream, "
                 "status, attempt, number FROM missions ORDER BY id"
@@ -82,7 +82,7 @@ class Journal:
 
     def write(self, new: Iterable[Snapshot] = (), changed: Iterable[Snapshot] = (), gone: Iterable[Uuid] = ()) -> None:
         """Write what is new, what has changed and what is forgotten: all of it or nothing, on the disk on return."""
-        with self._told():
+        with self._as_journal_error():
             self._sql.execute("BEGIN")
             self._sql.executemany(
                 "INSERT INTO missions (uuid, robot, channel, status_channel, config, start_timeout, timeout, upstream, "
@@ -101,7 +101,7 @@ class Journal:
         self._sql.close()
 
     @contextlib.contextmanager
-    def _told(self) -> Iterator[None]:
+    def _as_journal_error(self) -> Iterator[None]:
         try:
             yield
         except (sqlite3.Error, ValueError, KeyError, TypeError) as error:

@@ -169,8 +169,8 @@ class ServerSubject(_InProcess):
             return self._submit(params.get("mission"))
         if method == "statuses":
             statuses = dict(self._core.statuses())
-            told = {str(handle): statuses[uuid].name for handle, uuid in enumerate(self._missions, 1)}
-            return Exchange({"missions": told})
+            by_handle = {str(handle): statuses[uuid].name for handle, uuid in enumerate(self._missions, 1)}
+            return Exchange({"missions": by_handle})
         return super().call(method, params)
 
     def _submit(self, mission: JSON) -> Exchange:

@@ -94,16 +94,18 @@ def _waiting(world: World, message: MissionState, which: int) -> Mission:
 
 def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
     """The kinds that a mission of this type may have, the likeliest first, of those that are shown alike only one."""
-    told = message.mission_type or MissionType()
-    known = [kind for kind, types in TYPES.items() if told in types or told == FAMILY_TYPES.get((kind, world.family))]
-    known.sort(key=lambda kind: told not in TYPES[kind])  # what is told by its own type assumes nothing
-    if not known or told == MissionType():
+    stated = message.mission_type or MissionType()
+    known = [
+        kind for kind, types in TYPES.items() if stated in types or stated == FAMILY_TYPES.get((kind, world.family))
+    ]
+    known.sort(key=lambda kind: stated not in TYPES[kind])  # what is told by its own type assumes nothing
+    if not known or stated == MissionType():
         known += [kind for kind in AM_26 if FAMILY[kind] in (None, world.family)]
     kinds = known if message.goals else []
     if not kinds:
         kinds = [Kind.RETURN] if len(message.goals) > 1 else [Kind.CHARGE, Kind.RETURN]
     alike = {
-        (kind in PATROLS, kind in AUTOMATIC, kind in GOALLESS and kind, told in TYPES.get(kind, ())): kind
+        (kind in PATROLS, kind in AUTOMATIC, kind in GOALLESS and kind, stated in TYPES.get(kind, ())): kind
         for kind in reversed(kinds)
     }
     return tuple(reversed(alike.values()))

@@ -204,11 +204,11 @@ class StreamMonitor:
             track.number, track.timestamp = known.sequence_number, metadata.get("timestamp")
         track.given = payload
         verdict = self._judge(payload, key) if isinstance(payload, dict) else _verdict(lambda: self._value(payload))
-        problems += self._told(verdict, track.verdict)
+        problems += self._new_faults(verdict, track.verdict)
         track.payload, track.verdict = key, verdict
         return tuple(Problem(self.messages, robot, rule, says, flagged) for rule, says, flagged in problems)
 
-    def _told(self, verdict: Verdict, before: Verdict | None) -> Iterator[tuple[str, str, bool]]:
+    def _new_faults(self, verdict: Verdict, before: Verdict | None) -> Iterator[tuple[str, str, bool]]:
         lasted = {fault.rule for fault in before or ()}
         for fault in verdict:
             if fault.lasts and fault.rule not in lasted:

@@ -60,8 +60,8 @@ def world(given: JSON) -> World:
 
 def write_world(given: World) -> JSON:
     """The parameters of a world."""
-    told = {key: getattr(given, attribute) for key, attribute in _WORLD.items()}
-    return {key: value for key, value in told.items() if value is not None}
+    parameters = {key: getattr(given, attribute) for key, attribute in _WORLD.items()}
+    return {key: value for key, value in parameters.items() if value is not None}
 
 
 # Drives.

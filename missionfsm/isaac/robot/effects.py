@@ -91,7 +91,7 @@ def _waiting_names(here: Codelet) -> tuple[int, ...]:
     return tuple(range(here.identifiers - len(here.mission)))
 
 
-def told(here: Codelet) -> Iterator[Emission]:
+def waiting_statuses(here: Codelet) -> Iterator[Emission]:
     """The statuses that waited, in order."""
     at = 0
     for one in here.waiting:
@@ -122,7 +122,7 @@ def _concluded(
         waiting = (*(() if flushed else here.waiting), *(_waits(here, one) for one in later))
         waited = 0 if flushed else here.waited
         emits = (
-            *(told(here) if flushed else ()),
+            *(waiting_statuses(here) if flushed else ()),
             *_sent(here, now),
             *((_emission(here.world, "running", mission, offer=True),) if after.running and not waiting else ()),
         )
@@ -279,7 +279,7 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     because = dict.fromkeys(FINAL[one.report.status].id for one in here.waiting)
     offers = (_emission(here.world, "running", _old(here), offer=True),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
-    return (Step(after, names=here.mission, emits=(*told(here), *offers), rules=tuple(because)),)
+    return (Step(after, names=here.mission, emits=(*waiting_statuses(here), *offers), rules=tuple(because)),)
 
 
 # Time.

@@ -34,14 +34,14 @@ def matches(view: Report | Introduction, content: LineContent | Malformed) -> tu
     assumes = (AI_25_HEADER["n" if content.bare else "s"],) if content.stamped else ()
     if content.borrowed:
         assumes = (*assumes, AI_27_UUID["b"])
-    told = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id)
+    common = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id)
     if isinstance(view, Introduction):
-        return _introduces(view, content, assumes, told)
-    return _reports(view, content, assumes, told)
+        return _introduces(view, content, assumes, common)
+    return _reports(view, content, assumes, common)
 
 
 def _introduces(
-    view: Introduction, content: LineContent, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+    view: Introduction, content: LineContent, assumes: tuple[Assumption, ...], common: tuple[str, ...]
 ) -> tuple[Match, ...] | Mismatch:
     if content.kind == "status" and content.what in RULES:
         return Mismatch(RULES[content.what].id, f"no {content.what.upper()} is due, only the robot's name is")
@@ -51,11 +51,11 @@ def _introduces(
         return Mismatch(rules.NAMED.id, f"the name came on channel {content.channel!r}, not {view.channel!r}")
     if not content.what or view.name not in (None, content.what):
         return Mismatch(rules.NAMED.id, f"the robot is called {view.name!r}, not {content.what!r}")
-    return (Match(assumes, rules=(rules.NAMED.id, *told)),)
+    return (Match(assumes, rules=(rules.NAMED.id, *common)),)
 
 
 def _reports(
-    view: Report, content: LineContent, assumes: tuple[Assumption, ...], told: tuple[str, ...]
+    view: Report, content: LineContent, assumes: tuple[Assumption, ...], common: tuple[str, ...]
 ) -> tuple[Match, ...] | Mismatch:
     rule = RULES[view.status]
     if content.kind != "status":
@@ -68,10 +68,10 @@ def _reports(
         return Mismatch(rule.id, f"{view.status.upper()} is due, not {content.what.upper()}")
     assumes = (AI_28_STATUS[_FORMS[content.form]], *assumes)
     if not view.named:
-        return (Match(assumes, rules=(rule.id, *told)),)
+        return (Match(assumes, rules=(rule.id, *common)),)
     if not content.named:
-        return (Match((*assumes, AI_10["a"]), rules=(rule.id, *told)),)
-    return (Match((*assumes, AI_10["b"]), ((0, 0),), (rule.id, rules.ABOUT.id, rules.CHANNEL.id, *told)),)
+        return (Match((*assumes, AI_10["a"]), rules=(rule.id, *common)),)
+    return (Match((*assumes, AI_10["b"]), ((0, 0),), (rule.id, rules.ABOUT.id, rules.CHANNEL.id, *common)),)
 
 
 def sequence(relation: str) -> tuple[Assumption, ...]:

@@ -210,11 +210,11 @@ def _word(status: JSON) -> str | None:
     return _BY_NAME.get(status.upper()) if isinstance(status, str) and status.isascii() else None
 
 
-def write_answer(method: str, told: Answer, names: tuple[Name, ...]) -> JSON:
+def write_answer(method: str, answer: Answer, names: tuple[Name, ...]) -> JSON:
     """The result of a call that succeeded, with the shipped server's names."""
     if method == "submit":
         return {"mission": names[0][1]}  # type: ignore[index]
-    words: Any = told.shape
+    words: Any = answer.shape
     return {"missions": {str(name[1]): _WORDS[word][0] for name, word in zip(names, words, strict=True)}}  # type: ignore[index]
 
 
@@ -327,9 +327,9 @@ def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int
     message_uuid = Uuid.of(new_uuid(number + (uuid.value << 40))[1])  # type: ignore[index]
     own = uuid if meet(choice, (AI_27_UUID["b"],)) else message_uuid
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
-    told = uuid if meet(choice, (AI_28_UUID["y"],)) else None
+    stated = uuid if meet(choice, (AI_28_UUID["y"],)) else None
     header = Header(view.channel, time, time, own)
-    message = json.loads(encode(Message(header, MissionProto(told, view.config)), header_uuid_as_numbers=bare))
+    message = json.loads(encode(Message(header, MissionProto(stated, view.config)), header_uuid_as_numbers=bare))
     if meet(choice, (AI_28_CONFIG["a"],)):
         message["payload"]["config"] = json.loads(view.config)
     return strictjson.compact(message)

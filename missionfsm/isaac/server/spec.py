@@ -112,8 +112,8 @@ def _submitted(
     quiet = calmed(server, concerned(server, Focus(RETURNED, request, handles)))
     for decision in decide(operation.blocking(server, ask)):
         if decision.code is not None:
-            told = tuple(rule.id for rule in decision.rules)
-            found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=told))
+            refusals = tuple(rule.id for rule in decision.rules)
+            found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=refusals))
             continue
         for move in _taken(quiet, request, tuple(sorted({one for one in upstream if one is not None}))):
             handle = 2 * len(server.missions) + len(server.ends)
@@ -124,8 +124,8 @@ def _submitted(
 
 def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> Iterator[Move]:
     """A mission is queued."""
-    told = tuple(rule.id for rule in OPERATIONS["submit"].promises)
-    for letter, move in zero_means(Move(server, rules=told), request.start, request.run):
+    promised = tuple(rule.id for rule in OPERATIONS["submit"].promises)
+    for letter, move in zero_means(Move(server, rules=promised), request.start, request.run):
         start, run = ((None if letter == "b" and time == 0 else time) for time in (request.start, request.run))
         here: Move | None = move
         if request.robot is None:

@@ -69,10 +69,10 @@ def shown(server: Server) -> Iterator[Step]:
                     longer.setdefault(((*words, word), agreed), both)
         found = longer
     handles = tuple(2 * index for index in range(len(server.missions)))
-    told = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
+    promised = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
     quiet = calmed(server)
     for (words, _), assumes in found.items():
-        yield Step(quiet, answer=Answer(OK, words), refs=handles, rules=told, assumes=assumes)
+        yield Step(quiet, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
 
 
 def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
@@ -135,8 +135,8 @@ def matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] 
         AI_28_UUID["y" if content.named else "n"],
         *((AI_27_UUID["b"],) if content.borrowed else ()),
     )
-    told = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
-    return (Match(assumes, ((0, 0),) if content.named else (), told),)
+    justified = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
+    return (Match(assumes, ((0, 0),) if content.named else (), justified),)
 
 
 def sequence(relation: str) -> tuple[Assumption, ...]:

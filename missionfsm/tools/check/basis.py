@@ -68,8 +68,8 @@ class Untested:
         by_reason: dict[str, list[str]] = {}
         for name, why in self.calls.items():
             reason, _, codes = why.partition(": ")
-            told = f"{name} ({codes})" if codes and reason != NOT_THERE else name
-            by_reason.setdefault(_SAID.get(reason, reason), []).append(told)
+            text = f"{name} ({codes})" if codes and reason != NOT_THERE else name
+            by_reason.setdefault(_SAID.get(reason, reason), []).append(text)
         missing = (f"{why}: {_few(names, all_names=all_names)}" for why, names in by_reason.items())
         return "; ".join((f"{self.operations - len(self.calls)} of {self.operations} succeeded", *missing))
 
@@ -77,16 +77,16 @@ class Untested:
         if not self.drives:
             return f"all {self.all_drives} commanded"
         missing = _few(self.drives, all_names=all_names)
-        told = f"{len(self.drives)} of {self.all_drives} missing ({missing})"
+        text = f"{len(self.drives)} of {self.all_drives} missing ({missing})"
         if self.unseen:
-            told += "; what they do may have happened unseen"
+            text += "; what they do may have happened unseen"
         rules = len(self.refusals) + len(self.promises)
         if not rules:
-            return told
+            return text
         count = "1 rule" if rules == 1 else f"{rules} rules"
         if self.shown and self.unseen:
-            return f"{told}, so that {count} could be tested only where a stream showed whether it had"
-        return f"{told}, so that {count} could not be tested"
+            return f"{text}, so that {count} could be tested only where a stream showed whether it had"
+        return f"{text}, so that {count} could not be tested"
 
 
 OFTEN = 3
@@ -114,13 +114,13 @@ class Reached:
     def lines(self, *, all_names: bool = False) -> list[str]:
         """What the run came to, and where it did not."""
         met = self.cells - len(self.holes)
-        told = [f"situations × actions: {met} of {self.cells} met {OFTEN} times or more"]
+        text = [f"situations × actions: {met} of {self.cells} met {OFTEN} times or more"]
         if self.never:
-            told.append(f"  never came about: {_few(self.never, all_names=all_names)}")
+            text.append(f"  never came about: {_few(self.never, all_names=all_names)}")
         if self.holes:
             holes = (f"{cell} ({times})" for cell, times in sorted(self.holes.items(), key=lambda one: one[1]))
-            told.append(f"  too seldom: {_few(holes, all_names=all_names)}")
-        return told
+            text.append(f"  too seldom: {_few(holes, all_names=all_names)}")
+        return text
 
 
 NOT_TRIED, NOT_THERE, NEVER_SUCCEEDED = "was not tried", "is not there", "never succeeded"
@@ -140,12 +140,12 @@ def readings_line(readings: Mapping[str, tuple[str, ...]], flagged: tuple[str, .
     others = len(flagged) - len(against)
     if against:
         verb = "departs" if len(against) == 1 else "depart"
-        told = f"{len(against)} {verb} from the text ({_few(against, all_names=all_names)})"
+        text = f"{len(against)} {verb} from the text ({_few(against, all_names=all_names)})"
     else:
-        told = "none departs from the text"
+        text = "none departs from the text"
     besides = f"; {others} besides that {'is' if others == 1 else 'are'} flagged" if others else ""
     mattered = f"{len(readings)} mattered, {still_open} of them still open" if readings else "none mattered"
-    return f"readings: {told}{besides}; {mattered}"
+    return f"readings: {text}{besides}; {mattered}"
 
 
 def _few(names: Iterable[str], *, all_names: bool) -> str:

@@ -141,8 +141,8 @@ def by_ambiguity(
     ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Elimination]
 ) -> dict[str, dict[str, str]]:
     """Ambiguity id to letter to the event that ruled it out, in words, in the order of the ambiguities."""
-    told = {
+    open_letters = {
         one.id: {letter: str(found[one.id, letter]) for letter in one.readings if (one.id, letter) in found}
         for one in ambiguities
     }
-    return {name: letters for name, letters in told.items() if letters}
+    return {name: letters for name, letters in open_letters.items() if letters}

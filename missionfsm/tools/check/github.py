@@ -21,18 +21,18 @@ def workflow_commands(verdicts: Iterable[tuple[str | None, str, Verdict]]) -> It
         line = verdict.violation.at if verdict.violation and verdict.violation.where else 1
         title = f"{verdict.headline}: {about}"
         if verdict.outcome is not Outcome.CONFORMS:
-            told = verdict.violation.explanation if verdict.violation else f"because {verdict.because}"
-            yield _command("error", path, line, title, told)
+            text = verdict.violation.explanation if verdict.violation else f"because {verdict.because}"
+            yield _command("error", path, line, title, text)
         for flagged in verdict.flagged if verdict.conforms else ():
             yield _command("warning", path, 1, title, flagged)
 
 
-def _command(kind: str, path: str | None, line: int, title: str, told: str) -> str:
+def _command(kind: str, path: str | None, line: int, title: str, text: str) -> str:
     place = {"file": path, "line": str(line)} if path else {}
     properties = ",".join(
         f"{name}={printable_lines(value).translate(_PROPERTY)}" for name, value in {**place, "title": title}.items()
     )
-    return f"::{kind} {properties}::{printable_lines(told).translate(_DATA)}"
+    return f"::{kind} {properties}::{printable_lines(text).translate(_DATA)}"
 
 
 __all__ = ["workflow_commands"]

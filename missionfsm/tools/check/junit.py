@@ -22,11 +22,11 @@ def junit(verdicts: Iterable[tuple[str, Verdict]]) -> bytes:
     )
     for name, verdict in judged:
         case = SubElement(suite, "testcase", classname=verdict.system, name=printable(name))
-        told = printable_lines(str(verdict))
-        headline = told.partition("\n")[0]
+        text = printable_lines(str(verdict))
+        headline = text.partition("\n")[0]
         if verdict.conforms:
-            SubElement(case, "system-out").text = told
+            SubElement(case, "system-out").text = text
         else:
             kind = "failure" if verdict.outcome is Outcome.VIOLATES else "error"
-            SubElement(case, kind, message=headline).text = told
+            SubElement(case, kind, message=headline).text = text
     return bytes(tostring(suite, encoding="utf-8", xml_declaration=True)) + b"\n"

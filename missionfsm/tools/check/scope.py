@@ -90,9 +90,9 @@ def flagged_in_all(
     lines = flagged(spec, readings, rulings)
     followed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
     for ways in several:
-        told = {line.partition("=")[0] for line in lines}
+        named = {line.partition("=")[0] for line in lines}
         left = [way & followed for way in sorted(ways) if meet(way, _decided(spec, followed))]
-        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.partition("=")[0] not in told)
+        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.partition("=")[0] not in named)
     return lines
 
 

@@ -190,12 +190,12 @@ class Conversation:
         self._notifications(earlier)
         if happened:
             # What the environment gave a name to (a connection), the history says with the drive.
-            told = {**event, **{key: value for key, value in result.items() if key != "happened"}}
-            if any(told[key] != value for key, value in event.items() if key not in self.system.codec.measured):
+            driven = {**event, **{key: value for key, value in result.items() if key != "happened"}}
+            if any(driven[key] != value for key, value in event.items() if key not in self.system.codec.measured):
                 message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
                 raise SubjectError(message)
-            self._hear({"drive": told})
-            self._bind(_read(self.system.codec.happened, told)[1])
+            self._hear({"drive": driven})
+            self._bind(_read(self.system.codec.happened, driven)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(caused)
 

@@ -348,8 +348,8 @@ class _Search:
             return against <= self._rules_out(tried)
 
         found = shrink(attempt(world, actions), attempt, lambda _, __: (), world, shows, enough=lab.enough)
-        told = tuple(one for one in self.letters if one in self._rules_out(found))
-        return Trial(self.ambiguity, letter, told, found.world, tuple(found.actions), found.judge.history)
+        ruled_out = tuple(one for one in self.letters if one in self._rules_out(found))
+        return Trial(self.ambiguity, letter, ruled_out, found.world, tuple(found.actions), found.judge.history)
 
 
 def _plain(guide: Guide, world: int) -> Iterator[int]:

@@ -86,8 +86,8 @@ class Diagram:
         """The node with an identifier."""
         return next(node for node in self.nodes if node.id == identifier)
 
-    def told(self, stay: Stay) -> tuple[str, str]:
-        """Where something stays, and how; in words."""
+    def in_words(self, stay: Stay) -> tuple[str, str]:
+        """Where something stays, and how."""
         where = "; ".join(", ".join(self.node(node).lines) for node in stay.nodes)
         only = self.only(stay.side)
         stays = "stays there" if self.sure else "may stay there"
@@ -217,8 +217,8 @@ def _staying(
     apart = {(side, node) for side in sides if side is not Side.BOTH for node in common}
     stays: dict[tuple[Side, str, str], set[str]] = {}
     for side, move in ((side, move) for side, shown in sides.items() for move in shown.moves):
-        told = (refusals or (side, move.source) in apart) if move.refused else move.source in left
-        if told and identifier(move.source) == identifier(move.target):
+        worth_saying = (refusals or (side, move.source) in apart) if move.refused else move.source in left
+        if worth_saying and identifier(move.source) == identifier(move.target):
             code = move.code if move.refused else ""
             stays.setdefault((side, code, move.label if code else str(move)), set()).add(identifier(move.source))
     return stays
@@ -230,9 +230,9 @@ def _stays(stays: Mapping[tuple[Side, str, str], set[str]], nodes: tuple[Node, .
     left = {node.id for node in nodes if not node.end}
     grouped: dict[tuple[Side, str, tuple[str, ...]], list[str]] = {}
     for (side, code, label), where in stays.items():
-        told = () if where == left else tuple(sorted(where, key=order.index))
-        grouped.setdefault((side, code, told), []).append(label)
-    found = [Stay(told, tuple(lines), code, side) for (side, code, told), lines in grouped.items()]
+        nodes_of_some = () if where == left else tuple(sorted(where, key=order.index))
+        grouped.setdefault((side, code, nodes_of_some), []).append(label)
+    found = [Stay(nodes_of_some, tuple(lines), code, side) for (side, code, nodes_of_some), lines in grouped.items()]
     return sorted(found, key=lambda one: (one.side.value, one.code, len(order) - (len(one.nodes) or len(order))))
 
 

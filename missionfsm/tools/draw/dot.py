@@ -93,7 +93,7 @@ def _below(diagram: Diagram) -> str:
         if diagram.ends:
             rows.append(_row(ENDS[0], f"<I>{ENDS[1]}</I>", INK))
         for stay in diagram.stays:
-            where, does = diagram.told(stay)
+            where, does = diagram.in_words(stay)
             what = f"<I>{html.escape(does)}</I>: {_wrapped(', '.join(stay.lines), _WIDTH // 2)}"
             rows.append(_row(where, what, COLOURS.get(stay.side, INK)))
     return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="3">{"".join(rows)}</TABLE>'

@@ -46,8 +46,8 @@ def _arrows(diagram: Diagram) -> Iterator[str]:
 
 
 def _legend(diagram: Diagram) -> Iterator[str]:
-    told = [*diagram.remarks]
-    told += [": ".join(ENDS)] if diagram.ends else []
-    told += (": ".join((*diagram.told(stay), ", ".join(stay.lines))) for stay in diagram.stays)
-    if told:
-        yield from ("legend bottom", *told, "endlegend")
+    legend = [*diagram.remarks]
+    legend += [": ".join(ENDS)] if diagram.ends else []
+    legend += (": ".join((*diagram.in_words(stay), ", ".join(stay.lines))) for stay in diagram.stays)
+    if legend:
+        yield from ("legend bottom", *legend, "endlegend")

@@ -65,8 +65,8 @@ def _said(move: Move) -> str:
     if move.refused:
         return f"_{move.code}_"
     target = "stays" if move.source == move.target else move.target
-    told = [move.code] if move.code not in ("", OK) else []
-    return f"{target} ({', '.join((*told, *move.shows))})" if told or move.shows else target
+    details = [move.code] if move.code not in ("", OK) else []
+    return f"{target} ({', '.join((*details, *move.shows))})" if details or move.shows else target
 
 
 def _table(

@@ -99,8 +99,8 @@ class ReferenceSubject:
         event, names = codec.drive(params)
         self._here, reply = self.model.drive(self._started(), event, names)
         self._minted = self._here.minted
-        told = codec.write_happened(event, reply.names) if reply.happened else {}
-        return Exchange({"happened": reply.happened, **told}, after=self._notifications(reply))
+        measured = codec.write_happened(event, reply.names) if reply.happened else {}
+        return Exchange({"happened": reply.happened, **measured}, after=self._notifications(reply))
 
     def _cancel(self, params: JSON) -> Exchange:
         stream = params.get("stream") if isinstance(params, dict) else None

@@ -273,14 +273,14 @@ class _Judges:
         Raises:
             UnreadableError: a line is not of the format.
         """
-        again, take = self._texts.again, self._nobody.take
+        as_known, take = self._texts.known, self._nobody.take
         read_again = not (self._keep or self._only or self._settled_after is not None)
         looks, nobody = self._lost is None, self._nobody
         for number, text in numbered:
             try:
                 if looks and not number % LOOK:
                     self._look(nobody)
-                known = again(text) if read_again and not self.addresses.by_call else None
+                known = as_known(text) if read_again and not self.addresses.by_call else None
                 if known is None:
                     line = texts.json(text)
                     if type(line) is dict and "missionfsm" in line:
@@ -334,10 +334,9 @@ class _Judges:
             says = "no line says when it was (`at`), so nobody can tell what is late (--settled-after)"
             message = f"{called(path)}: {says}"
             raise UnreadableError(message)
-        verdicts = [(robot, judge, self._completed(judge.verdict())) for robot, judge in judges.items()]
         return [
-            (robot, judge, located(verdict, self._stopped.get(robot, judge.place)))
-            for robot, judge, verdict in verdicts
+            (robot, judge, located(self._completed(judge.verdict()), self._stopped.get(robot, judge.place)))
+            for robot, judge in judges.items()
         ]
 
     def _completed(self, verdict: Verdict) -> Verdict:

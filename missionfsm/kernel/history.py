@@ -54,13 +54,13 @@ class Returned:
 
 @value
 class Received:
-    """A message arrives on a stream, or a line on a connection; `again` is one that says all that the last one said."""
+    """A message arrives on a stream, or a line on a connection; one that `repeats_last` says all that the last one said."""
 
     channel: Name
     content: Hashable
     names: tuple[Name, ...] = ()
     marks: tuple[Mark, ...] = ()
-    again: bool = False
+    repeats_last: bool = False
 
 
 @value

@@ -61,7 +61,7 @@ class Delivery:
         first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
         unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
         malformed: ids of the rules that are broken by a message that cannot be read.
-        again: whether a message has to come although the one before it says the same (a line that is sent each time).
+        every_time: whether a message has to come even where the one before it says the same, as lines do.
     """
 
     skips: Assumption | None = None
@@ -73,7 +73,7 @@ class Delivery:
     first: tuple[str, ...] = ()
     unending: tuple[str, ...] = ()
     malformed: tuple[str, ...] = ()
-    again: bool = False
+    every_time: bool = False
 
 
 @frozen

@@ -227,7 +227,7 @@ class Belief:
             relations = self._relations(event.channel, event.marks) if event.marks else ()
             if event.names and self.automaton.spec.lasting is not None:
                 relations += self._changes(event)
-            if event.again and self.automaton.spec.transport:
+            if event.repeats_last and self.automaton.spec.transport:
                 relations = (*relations, REDELIVERED)
             return (Received, event.content, args, relations, channel), new
         if type(event) is Settled:

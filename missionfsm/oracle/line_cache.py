@@ -54,7 +54,7 @@ class Texts:
         self._called = _Named()
         self._answered = _Named()
 
-    def again(self, text: bytes) -> tuple[Event, ...] | None:
+    def known(self, text: bytes) -> tuple[Event, ...] | None:
         """The events of a line that says what one said before; None where it has to be read.
 
         Raises:
@@ -104,9 +104,9 @@ class Texts:
             names = tuple(map(self._name, found))
             if None in names:
                 return None
-        again = self._latest.get(number) == text
+        repeats_last = self._latest.get(number) == text
         self._latest[number] = text
-        return (Received(("stream", number), content, names, marks, again),)
+        return (Received(("stream", number), content, names, marks, repeats_last),)
 
     def _name(self, written: bytes) -> Name | None:
         """The name that is written so; None unless it is written just as it is."""
@@ -126,7 +126,7 @@ class Texts:
         if "stream" in line:
             if self._latest.get(line["stream"]) == text:
                 events = tuple(
-                    evolve(one, again=True) if type(one) is Received and one.marks else one for one in events
+                    evolve(one, repeats_last=True) if type(one) is Received and one.marks else one for one in events
                 )
             self._latest[line["stream"]] = text
         if len(text) <= LONG and len(events) == 1:

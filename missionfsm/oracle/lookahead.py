@@ -337,7 +337,7 @@ class Lookahead:
             led, shows = self._leading(trimmed, stretch, skips=skips, repeats=repeats)
             return (led and (led[0], led[1] or assumes, led[2])), shows
         owed, last, before = channel.owed, channel.last, stretch.before
-        again = repeats or self.spec.delivery(channel.topic).echoes is not None
+        can_repeat = repeats or self.spec.delivery(channel.topic).echoes is not None
         passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
         places = {0}
         for position, message in enumerate(stretch.due):
@@ -348,7 +348,7 @@ class Lookahead:
                         following.add(index if owed[index].stays else index + 1)
                     if not passable[index]:
                         break
-            if again and any(self._may_show(one, message) for one in (last, *owed) if one is not None):
+            if can_repeat and any(self._may_show(one, message) for one in (last, *owed) if one is not None):
                 following |= places
             if not following:
                 # What is owed before it has to go unsaid then, and the message to show what is to come.
@@ -386,7 +386,7 @@ class Lookahead:
         one = channel.owed[index]
         if one.passing or not one.names:
             return True  # without names, it may look like what was shown before it
-        if self.spec.delivery(channel.topic).again:
+        if self.spec.delivery(channel.topic).every_time:
             return False
         return any(
             other.view == one.view

@@ -281,13 +281,13 @@ class Transcript:
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
         found = []
         parts = self.codec.strip(message)
-        again = bool(self.codec.streams) and self._comes_again(channel, message, parts)
+        repeats_last = bool(self.codec.streams) and self._comes_again(channel, message, parts)
         for names, marks, rest in parts:
             key = self._fingerprint(rest)
             content = self._contents.get(key)
             if content is None:
                 content = self._content(key, rest)
-            found.append(Received(channel, content, names, marks, again))
+            found.append(Received(channel, content, names, marks, repeats_last))
         return tuple(found)
 
     def _make_room(self, key: Hashable) -> None:
@@ -300,9 +300,9 @@ class Transcript:
         """Whether a message is the last one of its channel about the same, with the same number and all."""
         tracks = tuple(track for _, marks, _ in parts for track, _ in marks)
         latest = self._latest.setdefault(channel, {})
-        again = bool(tracks) and latest.get(tracks) == message
+        repeats_last = bool(tracks) and latest.get(tracks) == message
         latest[tracks] = message
-        return again
+        return repeats_last
 
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
         self._make_room(key)

@@ -266,9 +266,9 @@ class TransitionFunction:
         relations: tuple[str, ...],
         channel: int,
     ) -> Iterator[Successor]:
-        again = REDELIVERED in relations
+        redelivered = REDELIVERED in relations
         relations = tuple(relation for relation in relations if relation != REDELIVERED)
-        if again:
+        if redelivered:
             # One that may send a message again under its number has said it twice.
             once = (one for one in explanations if not self._echoed(one, channel))
             yield from lenient.redelivered(explanations if self._lenient else once, channel)
@@ -336,7 +336,7 @@ class TransitionFunction:
             if topic is not None and one.topic != topic:
                 continue
             if one.name == name or (one.name < GONE and name not in known):
-                yield from self._shown(successor, position, name, content, names, echo=echo, again=topic is None)
+                yield from self._shown(successor, position, name, content, names, echo=echo, may_repeat=topic is None)
 
     def _echoed(self, explanation: Explanation, name: int) -> bool:
         """Whether a channel of that name may send its last message again under its old number."""
@@ -344,12 +344,12 @@ class TransitionFunction:
         return any(self.spec.delivery(channel.topic).echoes for channel in channels)
 
     def _candidates(
-        self, channel: Channel, assumed: int, *, echo: bool, again: bool
+        self, channel: Channel, assumed: int, *, echo: bool, may_repeat: bool
     ) -> Iterator[tuple[Owed, tuple[Owed, ...], int]]:
         """What a channel may show next: the message, those owed after it, and what is assumed then."""
         delivery = self.spec.delivery(channel.topic)
         repeats = delivery.echoes if echo else delivery.repeats
-        if channel.last and repeats and again:
+        if channel.last and repeats and may_repeat:
             yield channel.last, channel.owed, self.successors.meet(assumed, (repeats,))
         ways: tuple[int, ...] = (assumed,)
         for index, owed in enumerate(() if echo else channel.owed):
@@ -380,7 +380,7 @@ class TransitionFunction:
     def _unchanged(self, channel: Channel, owed: Owed, assumed: int) -> tuple[int, ...]:
         """What is assumed where an owed message shows what the channel showed last, so that nobody could tell it."""
         last = channel.last
-        if last is None or self.spec.delivery(channel.topic).again:
+        if last is None or self.spec.delivery(channel.topic).every_time:
             return ()
         if (owed.view, owed.names) == (last.view, last.names):
             return (assumed,)
@@ -400,12 +400,12 @@ class TransitionFunction:
         names: Names,
         *,
         echo: bool,
-        again: bool,
+        may_repeat: bool,
     ) -> Iterator[Successor]:
-        """The explanations in which the message shows one of those that the channel owes, or its last one `again`."""
+        """The explanations in which the message shows one of those that the channel owes, or repeats its last one."""
         here = successor.explanation
         channel = here.channels[position]
-        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo, again=again):
+        for owed, left, assumption in self._candidates(channel, here.assumed, echo=echo, may_repeat=may_repeat):
             matches = self.successors.matches(owed, content)
             if not assumption or isinstance(matches, Mismatch):
                 continue

@@ -113,7 +113,7 @@ call, answer = (
 def read(transcript: Transcript, texts: Texts | None, text: str) -> tuple[Event, ...] | str:
     """The events of a line, or what is wrong with it."""
     try:
-        known = texts.again(text.encode()) if texts else None
+        known = texts.known(text.encode()) if texts else None
         if known is not None:
             return known
         parsed: JSON = orjson.loads(text)
@@ -164,10 +164,10 @@ def test_what_comes_again_is_known() -> None:
     )
     once = ['{"call":1' + ENDS[0], '{"return":1' + ENDS[11], WHOLE[0], WHOLE[2], long, named]
     for text in once:
-        assert texts.again(text.encode()) is None
+        assert texts.known(text.encode()) is None
         read(transcript, texts, text)
-    again = [text.replace(":1,", ":2,").replace(":5,", ":7,").replace(":6,", ":8,") for text in once]
-    assert [texts.again(text.encode()) is not None for text in again] == [True, True, True, True, False, True]
+    repeats = [text.replace(":1,", ":2,").replace(":5,", ":7,").replace(":6,", ":8,") for text in once]
+    assert [texts.known(text.encode()) is not None for text in repeats] == [True, True, True, True, False, True]
 
 
 def test_a_message_is_known_whatever_its_ids_and_its_metadata_are() -> None:
@@ -175,9 +175,9 @@ def test_a_message_is_known_whatever_its_ids_and_its_metadata_are() -> None:
     transcript = Transcript(CODEC)
     texts = Texts(transcript, orjson.dumps)
     form, two = MESSAGES[0], f"{MISSIONS[0]},{MISSIONS[0]}"
-    assert texts.again((form % (1, METADATA[1], two % ("a", "b"))).encode()) is None
+    assert texts.known((form % (1, METADATA[1], two % ("a", "b"))).encode()) is None
     read(transcript, texts, form % (1, METADATA[1], two % ("a", "b")))
-    known = texts.again((form % (3, METADATA[4], two % ("n-2", "a b"))).encode())
+    known = texts.known((form % (3, METADATA[4], two % ("n-2", "a b"))).encode())
     assert known is not None
     (event,) = known
     assert isinstance(event, Received)
@@ -190,10 +190,10 @@ def test_a_message_is_known_whatever_its_ids_and_its_metadata_are() -> None:
         form % (3, METADATA[4], two % ("a", "b") + "," + MISSIONS[0] % "c"),
         form % ("03", METADATA[4], two % ("a", "b")),
     ):
-        assert texts.again(other.encode()) is None
+        assert texts.known(other.encode()) is None
     twice = MESSAGES[3] % (1, METADATA[1], MISSIONS[0] % "a")
     read(transcript, texts, twice)
-    assert texts.again(twice.encode()) is None
+    assert texts.known(twice.encode()) is None
 
 
 @pytest.mark.parametrize("number", ["02", "2.0", "true", '"2"', " 2", "-2", "2e0", "9" * 30, ""])
@@ -201,5 +201,5 @@ def test_only_plain_numbers_are_known(number: str) -> None:
     """A number that is written in another way, or is none, is left to be read."""
     texts = Texts(Transcript(CODEC), orjson.dumps)
     read(texts._transcript, texts, '{"call":1' + ENDS[0])
-    assert texts.again(f'{{"call":{number}{ENDS[0]}'.encode()) is None
-    assert texts.again(f'{{"call":2{ENDS[0]}'.encode()) is not None
+    assert texts.known(f'{{"call":{number}{ENDS[0]}'.encode()) is None
+    assert texts.known(f'{{"call":2{ENDS[0]}'.encode()) is not None

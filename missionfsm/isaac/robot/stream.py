@@ -79,7 +79,7 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
     return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
-_ANY = Delivery(unending=(rules.ENVELOPE.id,), malformed=(rules.ENVELOPE.id,), again=True)
+_ANY = Delivery(unending=(rules.ENVELOPE.id,), malformed=(rules.ENVELOPE.id,), every_time=True)
 _NAMES = evolve(_ANY, unowed=(rules.NAMED.id,))
 _STATUSES = evolve(_ANY, unowed=(rules.RUNNING.id,), named=(rules.ABOUT.id,))
 

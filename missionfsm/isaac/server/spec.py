@@ -304,7 +304,9 @@ def _says(content: LineContent, mission: Mission) -> bool:
     return (content.channel, content.what) == (mission.channel, mission.config)
 
 
-_DELIVERY = Delivery(unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), malformed=(rules.ENVELOPE.id,), again=True)
+_DELIVERY = Delivery(
+    unowed=(rules.SENT.id,), unending=(rules.OTHER.id,), malformed=(rules.ENVELOPE.id,), every_time=True
+)
 """What is broken by a line that nothing owes, by one that does not come, and by a connection that is ended."""
 
 

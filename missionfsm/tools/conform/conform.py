@@ -170,7 +170,7 @@ def search(run: Run, plan: Plan, seed: int) -> None:
     tours, fills = plan.led(run.system)
     if (
         play(run, plan.scripts)
-        and tour(run, chance, tours, plan.steps, again=AGAIN)
+        and tour(run, chance, tours, plan.steps, repeats=AGAIN)
         and fill(run, chance, fills, plan.steps)
         and plan.examples
     ):

@@ -127,18 +127,18 @@ def tour(  # noqa: PLR0913 - the last two have a default
     conversations: int,
     steps: int,
     favour: str | None = None,
-    again: float = 0.0,
+    repeats: float = 0.0,
 ) -> bool:
     """Systematic conversations: every step walks the edge that was walked least, mostly with a stream watched.
 
     Args:
         favour: an operation or drive to turn to again and again.
-        again: how often what the surroundings just did happens once more at once, where it leads elsewhere.
+        repeats: how often what the surroundings just did happens once more at once, where it leads elsewhere.
 
     Returns:
         whether everything could be explained.
     """
-    return _Tour(run, draw, steps, favour, again).run_all(conversations)
+    return _Tour(run, draw, steps, favour, repeats).run_all(conversations)
 
 
 @define(eq=False)
@@ -147,7 +147,7 @@ class _Tour:
     draw: random.Random
     steps: int
     favour: str | None
-    again: float
+    repeats: float
 
     def run_all(self, conversations: int) -> bool:
         return all(self._conversation(number) for number in range(conversations) if not self.run.enough())
@@ -174,7 +174,7 @@ class _Tour:
     def _repeated(self, done: Proposal, world: int, left: Iterator[int]) -> bool:
         """The same again, as often as chance has it: whether everything could be explained."""
         run = self.run
-        while self.again and self.draw.random() < self.again and not run.over:
+        while self.repeats and self.draw.random() < self.repeats and not run.over:
             more = self._once_more(done, world)
             if more is None or run.enough() or next(left, None) is None:
                 break

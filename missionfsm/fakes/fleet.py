@@ -32,7 +32,7 @@ from missionfsm.bear.status.messages import (
     Wifi,
 )
 from missionfsm.bear.status.state import GET, Endpoint
-from missionfsm.bear.status.stream import show
+from missionfsm.bear.status.stream import rendered
 from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.status.views import Promised
 from missionfsm.bear.wire.messages import EventMetadata
@@ -280,7 +280,7 @@ class Fleet:
                 self._shown_so_far += 1
                 seconds = self._shown_so_far if now is None else now
                 timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
-                shown = show(sent.view, self._model.choice)
+                shown = rendered(sent.view, self._model.choice)
                 updates._show(shown.robot, timestamp, shown.value)  # noqa: SLF001 - as above
 
     def _give_up(self) -> None:

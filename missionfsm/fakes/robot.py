@@ -21,7 +21,7 @@ from attrs import frozen
 
 from missionfsm.bear.mission.codec import EPOCH
 from missionfsm.bear.mission.describe import describe
-from missionfsm.bear.mission.render import show
+from missionfsm.bear.mission.render import rendered
 from missionfsm.bear.mission.state import Family, World
 from missionfsm.bear.mission.stream import Listing, listing
 from missionfsm.bear.mission.system import SYSTEM
@@ -331,7 +331,7 @@ class Robot:
         raise KeyError(message)
 
     def _message(self, view: Listing, names: tuple[Name, ...]) -> MissionStates:
-        return show(view, tuple(map(str, names)), self._model.choice)
+        return rendered(view, tuple(map(str, names)), self._model.choice)
 
     def _deliver(self, reply: Reply, opened: Updates | None = None) -> None:
         """Hand out what was sent; what a callback causes comes after what caused it."""

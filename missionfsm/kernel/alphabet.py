@@ -44,14 +44,18 @@ def _plainly(name: Name) -> JSON:
 class Naming:
     """How a tester writes names into params, and what names it may make up.
 
-    A name is ``(kind, value)``. `write` gives its JSON, `make` a name of a kind that belongs to a serial number, which
-    is 0 for one that is never anything's; `shown` one as messages carry it; `given` one that the reference gives out
-    where it is not said what it is a name of.
+    A name is ``(kind, value)``.
+
+    Attributes:
+        write: a name to its JSON.
+        make: (kind, serial number) to a name; the number is 0 for one that is never anything's.
+        in_message: serial number to a name as messages carry it.
+        given: serial number to a name that the reference gives out where its kind is not known.
     """
 
     write: Callable[[Name], JSON] = _plainly
     make: Callable[[str, int], Name] = lambda kind, serial: (kind, serial)
-    shown: Callable[[int], Name] = lambda serial: f"n{serial}"
+    in_message: Callable[[int], Name] = lambda serial: f"n{serial}"
     given: Callable[[int], Name] = lambda serial: f"name-{serial}"
 
 

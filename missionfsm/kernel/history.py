@@ -54,7 +54,7 @@ class Returned:
 
 @value
 class Received:
-    """A message arrives on a stream, or a line on a connection; one that `repeats_last` says all that the last one said."""
+    """A message arrives on a stream, or a line on a connection; it `repeats_last` if it says the same."""
 
     channel: Name
     content: Hashable

@@ -134,7 +134,7 @@ class Glimpses:
 
     Attributes:
         world: state to the world that it is in, as `Spec.initial` takes it.
-        shown: (world, content) to states that a message may show, each with the view of it, as long as it is well
+        states: (world, content) to those that a message may show, each with the view of it, as long as it is well
             formed. The names of each are those of the content, as `Spec.matches` pairs them.
         samples: world to states that stand for all there are as far as answers differ.
         topic: content to the topic of a channel that shows it.
@@ -143,7 +143,7 @@ class Glimpses:
     """
 
     world: Callable[[State], Hashable]
-    shown: Callable[[World, Content], tuple[tuple[State, View], ...]]
+    states: Callable[[World, Content], tuple[tuple[State, View], ...]]
     samples: Callable[[World], tuple[State, ...]]
     topic: Callable[[Content], Hashable]
     follows: Callable[[State, tuple[int, ...], State, tuple[int, ...]], bool]

@@ -76,7 +76,7 @@ def answered(
         yield Successor(tidy(rest.but(channels=channels)))
 
 
-def shown(  # noqa: PLR0913 - a message, and what is known
+def states_shown(  # noqa: PLR0913 - a message, and what is known
     successors: Successors,
     here: Explanation,
     channel: int,
@@ -98,7 +98,7 @@ def shown(  # noqa: PLR0913 - a message, and what is known
             yield Successor(here)  # it shows what was before
         return
     world = here.state.world if is_unknown(here) else glimpses.world(here.state)
-    for state, view in glimpses.shown(world, content):
+    for state, view in glimpses.states(world, content):
         matches = spec.matches(view, content)
         if isinstance(matches, Mismatch):
             continue
@@ -178,7 +178,7 @@ def unforeseen(
             continue
         if kind is Received:
             content, names, _, channel = what
-            yield from shown(successors, here, channel, content, names, then=True)
+            yield from states_shown(successors, here, channel, content, names, then=True)
             yield from _late(here, channel, content)
         elif kind is Returned:
             answer, names, call = what
@@ -222,4 +222,4 @@ def wild(
                 yield here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
 
 
-__all__ = ["answered", "is_unknown", "joined", "shown", "unforeseen", "wild"]
+__all__ = ["answered", "is_unknown", "joined", "states_shown", "unforeseen", "wild"]

@@ -283,7 +283,7 @@ class TransitionFunction:
                 continue
             start = Successor(explanation.but(assumed=assumed))
             if middle.is_unknown(explanation):
-                yield from middle.shown(self.successors, start.explanation, channel, content, names)
+                yield from middle.states_shown(self.successors, start.explanation, channel, content, names)
                 continue
             if self.spec.anywhere:
                 joined, unjudged = middle.joined(self.successors, start.explanation, channel, content)
@@ -336,7 +336,9 @@ class TransitionFunction:
             if topic is not None and one.topic != topic:
                 continue
             if one.name == name or (one.name < GONE and name not in known):
-                yield from self._shown(successor, position, name, content, names, echo=echo, may_repeat=topic is None)
+                yield from self._shown_on(
+                    successor, position, name, content, names, echo=echo, may_repeat=topic is None
+                )
 
     def _echoed(self, explanation: Explanation, name: int) -> bool:
         """Whether a channel of that name may send its last message again under its old number."""
@@ -391,7 +393,7 @@ class TransitionFunction:
             return ()
         return tuple(after for match in matches if (after := self.successors.meet(assumed, match.assumes)))
 
-    def _shown(  # noqa: PLR0913 - what a message is made of
+    def _shown_on(  # noqa: PLR0913 - what a message is made of
         self,
         successor: Successor,
         position: int,
@@ -414,8 +416,8 @@ class TransitionFunction:
                 if not agreed:
                     continue
                 last = Owed(owed.view, owed.names, looks=self.spec.looks(owed.view, content))
-                shown = Channel(channel.name, channel.topic, last, left)
-                channels = (*here.channels[:position], shown, *here.channels[position + 1 :])
+                after_it = Channel(channel.name, channel.topic, last, left)
+                channels = (*here.channels[:position], after_it, *here.channels[position + 1 :])
                 after = here.but(assumed=agreed, channels=channels)
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
                 bound = unify(after, pairs)

@@ -190,13 +190,13 @@ class ServerSubject(_InProcess):
     def _entry(self, mission: JSON) -> MissionEntry | str:
         """The entry as a mission file would have it; its upstreams are positions among the missions so far."""
         if not isinstance(mission, dict):
-            return f"wanted an object, found {strictjson.shown(mission)}"
+            return f"wanted an object, found {strictjson.brief_json(mission)}"
         upstream = mission.get("upstream", [])
         if not isinstance(upstream, list):
-            return f"upstream: wanted a list of missions, found {strictjson.shown(upstream)}"
+            return f"upstream: wanted a list of missions, found {strictjson.brief_json(upstream)}"
         for handle in upstream:
             if isinstance(handle, bool) or not isinstance(handle, int) or not 1 <= handle <= len(self._missions):
-                return f"upstream: there is no mission {strictjson.shown(handle)}"
+                return f"upstream: there is no mission {strictjson.brief_json(handle)}"
         rest = {key: value for key, value in mission.items() if key != "upstream"}
         read = missionfile.parse(json.dumps({"missions": [rest]}), self.profile)
         if not isinstance(read, MissionFile):

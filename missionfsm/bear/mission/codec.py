@@ -11,7 +11,7 @@ import attrs
 
 from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.operations import OPERATIONS
-from missionfsm.bear.mission.render import show, with_bare_feedback
+from missionfsm.bear.mission.render import rendered, with_bare_feedback
 from missionfsm.bear.mission.request_codec import REQUESTS, request, split, write_request
 from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Family, Fault, World
@@ -236,7 +236,7 @@ EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
 
 def write_message(view: Listing, names: tuple[Name, ...], choice: int, number: int, seconds: float) -> JSON:
     """The status message that shows a listing."""
-    states = with_bare_feedback(write(show(view, tuple(map(str, names)), choice)), choice)
+    states = with_bare_feedback(write(rendered(view, tuple(map(str, names)), choice)), choice)
     timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
     return {"metadata": {"timestamp": timestamp, "sequenceNumber": number}, "missionStates": states}
 

@@ -35,7 +35,7 @@ MAX_STATES = 32
 
 
 @functools.lru_cache(maxsize=1_000)
-def shown(world: World, content: Seen | Malformed) -> tuple[tuple[Robot, Listing], ...]:
+def states_shown(world: World, content: Seen | Malformed) -> tuple[tuple[Robot, Listing], ...]:
     """Robots that a message may show, the likeliest first, each with the view of it."""
     if isinstance(content, Malformed):
         return ()
@@ -160,7 +160,9 @@ def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tu
 
 
 MIDDLE = Middle(
-    Glimpses(world=lambda robot: robot.world, shown=shown, samples=samples, topic=lambda _: TOPIC, follows=follows)
+    Glimpses(
+        world=lambda robot: robot.world, states=states_shown, samples=samples, topic=lambda _: TOPIC, follows=follows
+    )
 )
 
 

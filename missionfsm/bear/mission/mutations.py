@@ -184,17 +184,17 @@ def _start_last(_: Robot, step: Step) -> Step:
     )
 
 
-def _shown(twist: Callable[[Robot, Step], Step]) -> Callable[[Robot, Step], Step]:
+def _showing_it(twist: Callable[[Robot, Step], Step]) -> Callable[[Robot, Step], Step]:
     """The twisted step, showing subscribers what it really did."""
 
-    def shown(before: Robot, step: Step) -> Step:
+    def twisted_openly(before: Robot, step: Step) -> Step:
         twisted = twist(before, step)
         if twisted is step or not step.emits:
             return twisted
         view = status.listing(twisted.after)
         return evolve(twisted, emits=(evolve(step.emits[-1], view=view, refs=twisted.names),))
 
-    return shown
+    return twisted_openly
 
 
 def _rule(*place: str) -> str:
@@ -206,27 +206,27 @@ TWISTS = (
         StepMutation(
             _rule(operation, "the-answer-names-the-new-missions-in-order"),
             "leaves out the last",
-            _shown(_last_added_left_out),
+            _showing_it(_last_added_left_out),
         )
         for operation in ("CreateMissionBatch", "AppendMissionBatch")
     ),
     *(
-        StepMutation(_rule(operation, "missions-are-appended-at-the-end"), "puts them first", _shown(_put_first))
+        StepMutation(_rule(operation, "missions-are-appended-at-the-end"), "puts them first", _showing_it(_put_first))
         for operation in ("AppendMission", "AppendMissionBatch")
     ),
-    StepMutation(_rule("UpdateMission", "cancel"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
-    StepMutation(_rule("UpdateMission", "finish"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
-    StepMutation(_rule("UpdateMission", "finish"), "ends it as failed", _shown(_ended(State.STATE_FAILED))),
-    StepMutation(_rule("UpdateMission", "pause"), "goes to the next goal", _shown(_goal(_skips_one))),
-    StepMutation(_rule("UpdateMission", "resume"), "goes to the next goal", _shown(_goal(_skips_one))),
-    StepMutation(_rule("SkipGoal", "the-next-goal-is-taken-up"), "skips two", _shown(_goal(_skips_one))),
-    StepMutation(_rule("lifecycle", "goals-are-taken-up-in-order"), "skips one", _shown(_goal(_skips_one))),
+    StepMutation(_rule("UpdateMission", "cancel"), "ends it as failed", _showing_it(_ended(State.STATE_FAILED))),
+    StepMutation(_rule("UpdateMission", "finish"), "ends it as cancelled", _showing_it(_ended(State.STATE_CANCELED))),
+    StepMutation(_rule("UpdateMission", "finish"), "ends it as failed", _showing_it(_ended(State.STATE_FAILED))),
+    StepMutation(_rule("UpdateMission", "pause"), "goes to the next goal", _showing_it(_goal(_skips_one))),
+    StepMutation(_rule("UpdateMission", "resume"), "goes to the next goal", _showing_it(_goal(_skips_one))),
+    StepMutation(_rule("SkipGoal", "the-next-goal-is-taken-up"), "skips two", _showing_it(_goal(_skips_one))),
+    StepMutation(_rule("lifecycle", "goals-are-taken-up-in-order"), "skips one", _showing_it(_goal(_skips_one))),
     StepMutation(
-        _rule("lifecycle", "goals-are-taken-up-in-order"), "ends as failed", _shown(_ended(State.STATE_FAILED))
+        _rule("lifecycle", "goals-are-taken-up-in-order"), "ends as failed", _showing_it(_ended(State.STATE_FAILED))
     ),
-    StepMutation(_rule("lifecycle", "succeed"), "ends it as cancelled", _shown(_ended(State.STATE_CANCELED))),
-    StepMutation(_rule("lifecycle", "fail"), "ends it as succeeded", _shown(_ended(State.STATE_SUCCEEDED))),
-    StepMutation(_rule("lifecycle", "start"), "starts the last", _shown(_start_last)),
+    StepMutation(_rule("lifecycle", "succeed"), "ends it as cancelled", _showing_it(_ended(State.STATE_CANCELED))),
+    StepMutation(_rule("lifecycle", "fail"), "ends it as succeeded", _showing_it(_ended(State.STATE_SUCCEEDED))),
+    StepMutation(_rule("lifecycle", "start"), "starts the last", _showing_it(_start_last)),
     StepMutation(
         _rule("ClearMissionStatus", "the-answer-names-the-cleared-missions"),
         "answers no ids",

@@ -40,7 +40,7 @@ from missionfsm.bear.wire.messages import (
 from missionfsm.kernel.readings import Assumption, meet
 
 
-def show(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
+def rendered(view: Listing, ids: tuple[str, ...], choice: int) -> MissionStates:
     """The message that an implementation with these readings sends; `choice` leaves one of each (see `choose`)."""
     if not view.missions:
         unnamed = meet(choice, (AM_36["b"] if view.fresh else AM_35["c"],))

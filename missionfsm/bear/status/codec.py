@@ -18,7 +18,7 @@ from missionfsm.bear.status.state import (
     Request,
     Value,
 )
-from missionfsm.bear.status.stream import show
+from missionfsm.bear.status.stream import rendered
 from missionfsm.bear.status.views import Promised, Seen, View, canonical
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import EventMetadata
@@ -254,7 +254,7 @@ EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
 def write_message(view: View, _: tuple[Name, ...], choice: int, number: int, seconds: float) -> JSON:
     """The message that shows a view."""
     timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
-    return message_of(show(view, choice), {"timestamp": timestamp, "sequenceNumber": number})
+    return message_of(rendered(view, choice), {"timestamp": timestamp, "sequenceNumber": number})
 
 
 def message_of(shown: Seen, metadata: JSON) -> JSON:

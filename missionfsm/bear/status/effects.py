@@ -33,7 +33,7 @@ from missionfsm.bear.status.state import (
     Request,
     Robot,
 )
-from missionfsm.bear.status.stream import shows
+from missionfsm.bear.status.stream import renderings
 from missionfsm.bear.status.views import About, Assumed, Promised, Seen, Topic, View, blank, view
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
@@ -131,11 +131,11 @@ def _latest(fleet: Fleet, request: Request) -> Iterator[Step]:
         return
     full = View(robot.id, Endpoint.ROBOT, robot.state, got=True)
     question = AS_07 if robot.offline else None if robot.seen else AS_07_UNKNOWN
-    for seen, assumes in shows(full):
+    for seen, assumes in renderings(full):
         yield _got(fleet, full, evolve(seen, robot=""), (*assumes, *((question["a"],) if question else ())))
     if question is AS_07:
         bare = evolve(full, value=RobotState(connection=robot.state.connection))
-        for seen, assumes in shows(bare):
+        for seen, assumes in renderings(bare):
             yield _got(fleet, bare, evolve(seen, robot=""), (*assumes, AS_07["c"]))
     if question:
         yield Step(fleet, answer=Answer(INTERNAL), assumes=(question["b"],))

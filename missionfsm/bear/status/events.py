@@ -102,11 +102,11 @@ def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assu
         question = AS_09_UNSET[endpoint.value]
         for letter in question.readings:
             after = reporting(robot, part, None, keep=letter == "a")
-            yield from _shown(
+            yield from _reporting_steps(
                 fleet, robot, after, part, (*assumes, question[letter]), unset=_unset(after, endpoint, letter)
             )
     else:
-        yield from _shown(fleet, robot, reporting(robot, part, value), part, assumes)
+        yield from _reporting_steps(fleet, robot, reporting(robot, part, value), part, assumes)
 
 
 def _unset(robot: Robot, endpoint: Endpoint, letter: str) -> View | None:
@@ -119,7 +119,7 @@ def _unset(robot: Robot, endpoint: Endpoint, letter: str) -> View | None:
 _UNSET = tuple(one for one in Endpoint if one.value in AS_09_UNSET)
 
 
-def _shown(  # noqa: PLR0913 - what a report is made of
+def _reporting_steps(  # noqa: PLR0913 - what a report is made of
     fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: View | None = None
 ) -> Iterator[Step]:
     """What a change of a robot shows, in every combination of the readings that matter."""

@@ -175,16 +175,16 @@ def _network(view: View, value: Value) -> tuple[Assumed, ...] | str:
 
 
 @functools.lru_cache(maxsize=10_000)
-def shows(view: View) -> tuple[tuple[Seen, Assumed], ...]:
+def renderings(view: View) -> tuple[tuple[Seen, Assumed], ...]:
     """Every message that shows a view and that differs by a reading, with what it assumes; the usual one first."""
-    shown = Seen(view.robot, view.endpoint, view.value)
+    usual = Seen(view.robot, view.endpoint, view.value)
     if view.endpoint is Endpoint.NETWORK and view.unlinked and view.value is not None:
-        return (shown, (view.unlinked["a"],)), (evolve(shown, value=None), (view.unlinked["b", "c"],))
+        return (usual, (view.unlinked["a"],)), (evolve(usual, value=None), (view.unlinked["b", "c"],))
     if view.endpoint is not Endpoint.ROBOT or view.value in (None, RobotState()):
-        return ((shown, ()),)
+        return ((usual, ()),)
     return tuple(whole_shown(view, view.value))
 
 
-def show(view: View, choice: int = UNCONSTRAINED) -> Seen:
+def rendered(view: View, choice: int = UNCONSTRAINED) -> Seen:
     """The message that an implementation with these readings sends."""
-    return next(seen for seen, assumes in shows(view) if meet(choice, assumes))
+    return next(seen for seen, assumes in renderings(view) if meet(choice, assumes))

@@ -27,7 +27,7 @@ from missionfsm.isaac.runtime.server import MissionServerCore
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import MAX_LINE
 from missionfsm.isaac.wire.messages import Uuid
-from missionfsm.isaac.wire.strictjson import JsonFault, JsonObject, shown
+from missionfsm.isaac.wire.strictjson import JsonFault, JsonObject, brief_json
 
 _LONG: Final = 40  # letters of an unknown key that are compared with the known ones
 _KEYS: Final = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
@@ -140,13 +140,13 @@ class _Reader:
 
     def file(self, value: object) -> tuple[MissionEntry, ...]:
         if not isinstance(value, JsonObject):
-            self._wrong("file", f'wanted an object with the key "missions", found {shown(value)}')
+            self._wrong("file", f'wanted an object with the key "missions", found {brief_json(value)}')
             return ()
         self._doubled(value, "", ("missions",))
         self._unknown(value, "", ("missions",))
         missions = value.get("missions")
         if not isinstance(missions, list):
-            found = "is missing" if "missions" not in value else f"wanted a list, found {shown(missions)}"
+            found = "is missing" if "missions" not in value else f"wanted a list, found {brief_json(missions)}"
             self._wrong("missions", found)
             return ()
         entries = tuple(
@@ -178,7 +178,7 @@ class _Reader:
 
     def _entry(self, value: object, path: str, index: int, count: int) -> MissionEntry:
         if not isinstance(value, JsonObject):
-            self._wrong(path, f"wanted an object, found {shown(value)}")
+            self._wrong(path, f"wanted an object, found {brief_json(value)}")
             return MissionEntry()
         self._doubled(value, path, _KEYS)
         self._unknown(value, path, _KEYS)
@@ -205,12 +205,12 @@ class _Reader:
             return None
         name = self._text(value, path)
         if isinstance(value, str) and not (name.strip() if self._profile.ai_37 == "b" else name):
-            self._wrong(path, f"{shown(value)} is no name that a robot can have")
+            self._wrong(path, f"{brief_json(value)} is no name that a robot can have")
         return name
 
     def _text(self, value: object, path: str) -> str:
         if not isinstance(value, str):
-            self._wrong(path, f"wanted a string, found {shown(value)}")
+            self._wrong(path, f"wanted a string, found {brief_json(value)}")
             return ""
         self._all_wrong(strictjson.faults(value, path))
         return value
@@ -219,7 +219,7 @@ class _Reader:
         if value is None:  # AI-33
             return "{}"
         if not isinstance(value, JsonObject):
-            self._wrong(path, f"wanted an object, found {shown(value)}")
+            self._wrong(path, f"wanted an object, found {brief_json(value)}")
             return "{}"
         found = tuple(strictjson.faults(value, path))
         self._all_wrong(found)
@@ -227,7 +227,7 @@ class _Reader:
 
     def _seconds(self, value: object, path: str) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            self._wrong(path, f"wanted a number of seconds, found {shown(value)}")
+            self._wrong(path, f"wanted a number of seconds, found {brief_json(value)}")
             return 0.0
         try:
             seconds = float(value)
@@ -235,13 +235,13 @@ class _Reader:
             self._wrong(path, "is too large; leave the timeout out for none")
             return 0.0
         if not seconds >= 0:
-            self._wrong(path, f"wanted 0 seconds or more, found {shown(value)}")
+            self._wrong(path, f"wanted 0 seconds or more, found {brief_json(value)}")
             return 0.0
         return seconds
 
     def _upstream(self, value: object, path: str, index: int, count: int) -> Iterator[int]:
         if not isinstance(value, list):
-            self._wrong(path, f"wanted a list of indices, found {shown(value)}")
+            self._wrong(path, f"wanted a list of indices, found {brief_json(value)}")
             return
         seen: set[int] = set()
         for position, upstream in enumerate(value):
@@ -258,8 +258,8 @@ class _Reader:
 
     def _upstream_problem(self, upstream: object, index: int, count: int) -> str | None:
         if isinstance(upstream, bool) or not isinstance(upstream, int):
-            return f"wanted the index of a mission, found {shown(upstream)}"
+            return f"wanted the index of a mission, found {brief_json(upstream)}"
         if not 0 <= upstream < count:
             missions = "1 mission" if count == 1 else f"{count} missions"
-            return f"there is no mission {shown(upstream)} in a file of {missions}, counted from 0"
+            return f"there is no mission {brief_json(upstream)} in a file of {missions}, counted from 0"
         return "the mission waits for itself" if upstream == index else None

@@ -46,7 +46,7 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.isaac.wire.strictjson import shown
+from missionfsm.isaac.wire.strictjson import brief_json
 
 _ENDS: Final = {WireStatus.SUCCESS: Status.SUCCESS, WireStatus.FAILURE: Status.FAILED}
 _EARLY: Final = 64  # messages kept of a connection without a name, under AI-18 b
@@ -330,7 +330,7 @@ class MissionServerCore:
         if refused:
             self._ignore(connection, refused)
         elif self._tokens is not None and not _same(self._tokens.get(key), connection.token):
-            self._close(connection, f"it says the name {shown(text)} without its token")
+            self._close(connection, f"it says the name {brief_json(text)} without its token")
         else:
             self._claim(connection, text)
 

@@ -191,11 +191,11 @@ def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     missions = result.get("missions") if isinstance(result, dict) else None
     if not isinstance(missions, dict) or not all(map(_is_number, missions)):
         return Answer(OK, Malformed(f"missions: {brief(missions)} is no object from handles to statuses")), ()
-    shown = sorted(((int(key), value) for key, value in missions.items()), key=operator.itemgetter(0))
-    names = tuple(("mission", handle) for handle, _ in shown)
-    words = tuple(_word(value) for _, value in shown)
+    in_order = sorted(((int(key), value) for key, value in missions.items()), key=operator.itemgetter(0))
+    names = tuple(("mission", handle) for handle, _ in in_order)
+    words = tuple(_word(value) for _, value in in_order)
     if None in words:
-        unknown = shown[words.index(None)][1]
+        unknown = in_order[words.index(None)][1]
         return Answer(OK, Malformed(f"{brief(unknown)} is not the name of a status")), names
     return Answer(OK, words), names
 

@@ -45,7 +45,7 @@ from missionfsm.isaac.server.state import (
     emissions,
     topic,
 )
-from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, shown
+from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
 from missionfsm.isaac.server.time import calmed, passes, settled, unseen
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
@@ -93,7 +93,7 @@ def _outcomes(
     refs: tuple[int | None, ...],
 ) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
-        return tuple(shown(server))
+        return tuple(status_answers(server))
     return _submitted(operations["submit"], server, request, tuple(_mission_at(server, ref) for ref in refs))
 
 

@@ -56,7 +56,7 @@ def _called(server: Server, mission: Mission) -> Called:
     return (("lost" if status is Status.LOST else status.value.lower(), ()),)
 
 
-def shown(server: Server) -> Iterator[Step]:
+def status_answers(server: Server) -> Iterator[Step]:
     """The answers to ``statuses``, one for each way in which the readings name what is there."""
     found: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {((), UNCONSTRAINED): ()}
     for mission in server.missions:

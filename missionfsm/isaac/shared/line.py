@@ -97,7 +97,7 @@ def _plain(value: JSON) -> JSON:
 def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], LineContent | Malformed]:
     """The names in a line (the payload's identifier, then if `header` is asked for the header's), and the rest."""
     if not isinstance(line, str):
-        return (), Malformed(f"a line is text, not {strictjson.shown(line)}")
+        return (), Malformed(f"a line is text, not {strictjson.brief_json(line)}")
     if "\n" in line.removesuffix("\n"):
         return (), Malformed("the line holds newlines, which separate messages")
     found = decode_line(line.removesuffix("\n").removesuffix("\r").encode(errors="surrogatepass"))
@@ -156,7 +156,7 @@ def _status(payload: MissionStatusProto, raw: JSON) -> tuple[str, str, str] | Ma
     written = raw["payload"].get("missionStatus")
     form = "number" if isinstance(written, int) else "lower" if written == written.lower() else "upper"
     if form == "upper" and written != written.upper():
-        return Malformed(f"payload.missionStatus is written {strictjson.shown(written)}")
+        return Malformed(f"payload.missionStatus is written {strictjson.brief_json(written)}")
     return "status", payload.mission_status.value, form
 
 

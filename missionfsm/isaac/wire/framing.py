@@ -30,7 +30,7 @@ from missionfsm.isaac.wire.messages import (
     signed,
     unsigned,
 )
-from missionfsm.isaac.wire.strictjson import JsonFault, shown
+from missionfsm.isaac.wire.strictjson import JsonFault, brief_json
 
 MAX_LINE: Final = 1 << 20
 """Bytes of one line without its end, unless told otherwise."""
@@ -151,7 +151,7 @@ class _Reader:
 
     def message(self, value: object) -> Message | None:
         if not isinstance(value, dict):
-            self.wrong("", f"wanted an object with header and payload, found {shown(value)}")
+            self.wrong("", f"wanted an object with header and payload, found {brief_json(value)}")
             return None
         raw_header = self._object(value, "header")
         raw_payload = self._object(value, "payload")
@@ -166,7 +166,7 @@ class _Reader:
         found = value.get(key)
         if isinstance(found, dict):
             return found
-        self.wrong(key, "is missing" if found is None else f"wanted an object, found {shown(found)}")
+        self.wrong(key, "is missing" if found is None else f"wanted an object, found {brief_json(found)}")
         return None
 
     def _header(self, raw: dict[str, Any]) -> Header:
@@ -212,7 +212,7 @@ class _Reader:
         if isinstance(raw, dict):
             serialized = raw.get("serialized")
             return serialized if isinstance(serialized, str) else strictjson.compact(raw)
-        self.wrong("payload.config", f"wanted an object or JSON text, found {shown(raw)}")
+        self.wrong("payload.config", f"wanted an object or JSON text, found {brief_json(raw)}")
         return "{}"
 
     def _status(self, raw: object) -> WireStatus:
@@ -220,7 +220,7 @@ class _Reader:
             return WireStatus[raw.upper()]
         if isinstance(raw, int) and not isinstance(raw, bool) and 0 <= raw < len(_STATUSES):
             return _STATUSES[raw]
-        found = "nothing" if raw is None else shown(raw)
+        found = "nothing" if raw is None else brief_json(raw)
         self.wrong("payload.missionStatus", f"wanted running, success or failure, found {found}")
         return WireStatus.RUNNING
 
@@ -228,14 +228,14 @@ class _Reader:
         found = raw.get(key, default)
         if isinstance(found, str):
             return found
-        self.wrong(f"{inside}.{key}", "is missing" if found is None else f"wanted a string, found {shown(found)}")
+        self.wrong(f"{inside}.{key}", "is missing" if found is None else f"wanted a string, found {brief_json(found)}")
         return ""
 
     def _uuid(self, raw: object, path: str) -> Uuid | None:
         if raw is None or raw == {}:
             return None
         if not isinstance(raw, dict):
-            self.wrong(path, f"wanted an object with lower and upper, found {shown(raw)}")
+            self.wrong(path, f"wanted an object with lower and upper, found {brief_json(raw)}")
             return None
         lower = self._integer(raw.get("lower", "0"), f"{path}.lower", 0, U64)
         upper = self._integer(raw.get("upper", "0"), f"{path}.upper", 0, U64)
@@ -250,12 +250,12 @@ class _Reader:
         elif isinstance(raw, int) and not isinstance(raw, bool):
             number = raw
             if not self._numbers:
-                self.wrong(path, f"wanted a 64-bit integer as a string, found the number {shown(raw)}")
+                self.wrong(path, f"wanted a 64-bit integer as a string, found the number {brief_json(raw)}")
                 return None
         if number is None:
-            self.wrong(path, f"wanted a 64-bit integer, found {shown(raw)}")
+            self.wrong(path, f"wanted a 64-bit integer, found {brief_json(raw)}")
         elif not lowest <= number < beyond:
-            self.wrong(path, f"{shown(raw)} is outside {lowest} … {beyond - 1}")
+            self.wrong(path, f"{brief_json(raw)} is outside {lowest} … {beyond - 1}")
             return None
         return number
 

@@ -110,17 +110,17 @@ def _key_faults(value: dict[str, Any], path: str) -> Iterator[tuple[str, str]]:
         yield below(path, key), "is given more than once"
     for key in value:
         if not _is_unicode(key):
-            yield path, f"has the key {shown(key)}, which is no Unicode text"
+            yield path, f"has the key {brief_json(key)}, which is no Unicode text"
 
 
 def below(path: str, key: str) -> str:
     """The path of a member of an object: ``a.b``, or ``a["odd key"]`` where a dot would mislead."""
     if key.isidentifier():
         return f"{path}.{key}" if path else key
-    return f"{path}[{shown(key)}]"
+    return f"{path}[{brief_json(key)}]"
 
 
-def shown(value: object) -> str:
+def brief_json(value: object) -> str:
     """A value in a message for people: one line, short, ASCII."""
     if isinstance(value, dict):
         return "an object"

@@ -48,10 +48,10 @@ def shortened(run: Run, found: Conversation, *, known: Callable[[Conversation], 
         attempt = _Attempt(run, found, 1 if shows(again) else TRIES)
         _shorten(run, found, attempt, best, shows)
         while tried < TRIES and not run.enough():
-            shown = shows(_again(run, best[0], found.judge.automaton))
-            if run.enough() and not shown:
+            still_shows = shows(_again(run, best[0], found.judge.automaton))
+            if run.enough() and not still_shows:
                 break  # it was not had to its end
-            tried, seen = tried + 1, seen + shown
+            tried, seen = tried + 1, seen + still_shows
     except SubjectError as error:
         run.ledger.note(f"the violation was found before the adapter failed while it was made short: {error}")
     if seen < tried:

@@ -71,7 +71,7 @@ class ReferenceSteps:
         self._sets: dict[frozenset[str], frozenset[str]] = {}
         self._known: dict[Hashable, tuple[Step, Options, frozenset[str]]] = {}
         self._urgent: dict[Hashable, tuple[tuple[Step, ...], Step | None]] = {}
-        self._shown: dict[Hashable, tuple[tuple[Match, ...], ...] | Mismatch] = {}
+        self._renderings: dict[Hashable, tuple[tuple[Match, ...], ...] | Mismatch] = {}
 
     def answers(
         self,
@@ -99,12 +99,12 @@ class ReferenceSteps:
             found = self._urgent[here] = (allowed, own)
         return found
 
-    def shows(self, emission: Emission, named: int) -> tuple[tuple[Match, ...], ...] | Mismatch:
+    def renderings(self, emission: Emission, named: int) -> tuple[tuple[Match, ...], ...] | Mismatch:
         """Ways to explain each part of the message that the reference makes of an emission."""
         key = (emission, named)
-        found = self._shown.get(key)
+        found = self._renderings.get(key)
         if found is None:
-            found = self._shown[key] = shown(self.model, emission, named)
+            found = self._renderings[key] = renderings(self.model, emission, named)
         return found
 
 
@@ -305,7 +305,11 @@ class _Explorer:
         if emission.only and not meet(self.model.choice, (emission.only,)):
             return
         straightforward = self.bend is straight
-        found = self.honest.shows(emission, named) if straightforward else shown(self.model, emission, named, self.bend)
+        found = (
+            self.honest.renderings(emission, named)
+            if straightforward
+            else renderings(self.model, emission, named, self.bend)
+        )
         if isinstance(found, Mismatch):
             raise _GuiltyError
         for matches in found:
@@ -313,7 +317,7 @@ class _Explorer:
             self._require(frozenset(match.assumes for match in matches))
 
 
-def shown(
+def renderings(
     model: Reference, emission: Emission, named: int, bend: Callable[[JSON], JSON] = straight
 ) -> tuple[tuple[Match, ...], ...] | Mismatch:
     """Ways to explain each part of the message that a model makes of an emission, or what is wrong with one.
@@ -324,7 +328,7 @@ def shown(
     """
     system = model.system
     count = 1 + max((*(emission.refs or ()), named - 1), default=0)
-    names = tuple(map(system.naming.shown, range(count if emission.refs is None else len(emission.refs))))
+    names = tuple(map(system.naming.in_message, range(count if emission.refs is None else len(emission.refs))))
     found: list[tuple[Match, ...]] = []
     for matches in recognised(system, emission.view, names, model.choice, bend):
         if isinstance(matches, Mismatch):

@@ -35,14 +35,14 @@ def test_every_rule_has_a_mutant() -> None:
 def test_a_broken_rule_is_noticed(only: str) -> None:
     """Every mutant of these rules is killed."""
     found = teeth(system("bear.mission"), only=only)
-    assert (len(found.bites) > 0, [bite.mutant for bite in found.bites if not bite.killed]) == (True, [])
+    assert (len(found.results) > 0, [result.mutant for result in found.results if not result.killed]) == (True, [])
 
 
 @pytest.mark.long
 def test_a_mutant_that_follows_another_reading_is_allowed() -> None:
     """Not refusing what only one reading refuses is no violation, and is told apart from one that was missed."""
     found = teeth(system("bear.mission"), only="ClearMissionStatus/FAILED_PRECONDITION/nothing-is-listed is dropped")
-    assert (found.missed, [bite.mutant.split("/")[-1] for bite in found.allowed]) == (
+    assert (found.survived, [result.mutant.split("/")[-1] for result in found.allowed]) == (
         (),
         ["nothing-is-listed is dropped"],
     )
@@ -60,8 +60,10 @@ def test_processes_find_what_one_finds() -> None:
     only, progress = "a-line-is-one-message", itertools.count()
     several = teeth_on(2, "isaac.robot", seed=0, only=only, progress=lambda: next(progress))
     one = teeth(system("isaac.robot"), only=only)
-    assert {bite.mutant: bite.killed for bite in several.bites} == {bite.mutant: bite.killed for bite in one.bites}
-    assert next(progress) == len(one.bites) > 1
+    assert {result.mutant: result.killed for result in several.results} == {
+        result.mutant: result.killed for result in one.results
+    }
+    assert next(progress) == len(one.results) > 1
 
 
 def children(process: int) -> list[int]:

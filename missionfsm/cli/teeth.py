@@ -52,7 +52,7 @@ def teeth(  # noqa: PLR0913 - options of the command
     troubles = print_result(found, json)
     with troubles.kept():
         write_teeth(html, judged, found)
-    troubles.end(FAILED if found.missed or found.untested else DONE)
+    troubles.end(FAILED if found.survived or found.untested else DONE)
 
 
 def _foreign(  # noqa: PLR0913 - options of the command

@@ -23,27 +23,28 @@ class MessageMutation:
 
     rule: str
     says: str
-    bend: Callable[[JSON], JSON]
+    mutate_message: Callable[[JSON], JSON]
 
 
 @frozen
 class StepMutation:
     """A way to take wrong steps: the rule that it breaks, what it does, and how it changes a step.
 
-    `twist` takes the state before and a step that the rule justifies, or the rule `at` where the one that is broken
-    justifies none (it is about what steps show).
+    `mutate_step` takes the state before and a step that the rule justifies; where the rule that is broken justifies
+    none (it is about what steps show), a step that the rule `at` justifies.
     """
 
     rule: str
     says: str
-    twist: Callable[[State, Step], Step | None]
+    mutate_step: Callable[[State, Step], Step | None]
     at: str = ""
 
 
 def breaks(rule: Rule, **step_mutations: Callable[[State, Step], Step | None]) -> tuple[StepMutation, ...]:
-    """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the twist."""
+    """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the mutation."""
     return tuple(
-        StepMutation(rule.id, says.replace("_", " "), twist, at=rule.id) for says, twist in step_mutations.items()
+        StepMutation(rule.id, says.replace("_", " "), mutate_step, at=rule.id)
+        for says, mutate_step in step_mutations.items()
     )
 
 

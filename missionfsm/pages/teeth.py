@@ -17,27 +17,27 @@ class Bitten:
     """A rule with what came of every implementation that breaks it."""
 
     rule: Rule
-    bites: tuple[tuple[str, MutantResult], ...]
+    results: tuple[tuple[str, MutantResult], ...]
 
     @property
     def killed(self) -> int:
         """How many were noticed."""
-        return sum(bite.killed for _, bite in self.bites)
+        return sum(result.killed for _, result in self.results)
 
     @property
     def allowed(self) -> int:
         """How many do nothing that the documents forbid."""
-        return sum(bool(bite.because) for _, bite in self.bites)
+        return sum(bool(result.because) for _, result in self.results)
 
     @property
-    def missed(self) -> int:
+    def survived(self) -> int:
         """How many were not noticed though they should have been."""
-        return len(self.bites) - self.killed - self.allowed
+        return len(self.results) - self.killed - self.allowed
 
     @property
     def slug(self) -> str:
         """The name that the style sheet knows its standing by."""
-        if self.missed or not self.bites:
+        if self.survived or not self.results:
             return "violated"
         return "exercised" if self.killed else "otherwise"
 
@@ -45,8 +45,8 @@ class Bitten:
 def teeth_page(system: System, teeth: MutationReport, made: str = "") -> str:
     """The page on all mutants of a system."""
     by_rule: dict[str, list[tuple[str, MutantResult]]] = {}
-    for bite in teeth.bites:
-        by_rule.setdefault(bite.rule, []).append((bite.mutant.removeprefix(bite.rule).strip(), bite))
+    for result in teeth.results:
+        by_rule.setdefault(result.rule, []).append((result.mutant.removeprefix(result.rule).strip(), result))
     topics: dict[str, list[Bitten]] = {}
     for rule in system.spec.all_rules:
         if rule.id in by_rule or rule.id in teeth.untested:
@@ -58,6 +58,6 @@ def teeth_page(system: System, teeth: MutationReport, made: str = "") -> str:
 def _scores(topics: Mapping[str, list[Bitten]]) -> Mapping[str, tuple[int, int]]:
     """Of each topic how many mutants were noticed, and how many break something."""
     return {
-        name: (sum(one.killed for one in some), sum(one.killed + one.missed for one in some))
+        name: (sum(one.killed for one in some), sum(one.killed + one.survived for one in some))
         for name, some in topics.items()
     }

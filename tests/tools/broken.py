@@ -22,11 +22,11 @@ NEVER = "bear.mission/SkipGoal/FAILED_PRECONDITION/the-robot-is-not-on-a-mission
 def answering(code: str, *rules: str) -> ReferenceSubject:
     """A reference that answers with a code wherever one of these rules refuses."""
 
-    def twist(_: Any, step: Step | None) -> Step | None:
+    def mutate_step(_: Any, step: Step | None) -> Step | None:
         refuses = step is not None and step.answer is not None and set(rules) & set(step.rules)
         return evolve(step, answer=Answer(code)) if step is not None and refuses else step
 
-    return ReferenceSubject(MISSION, twist=twist)
+    return ReferenceSubject(MISSION, mutate_step=mutate_step)
 
 
 class Fickle:

@@ -42,7 +42,7 @@ class TestRight(Suite):
 
 class TestWrong(TestRight):
     def subject(self):
-        return ReferenceSubject(system(self.system), twist=broken)
+        return ReferenceSubject(system(self.system), mutate_step=broken)
 
 
 class TestKnown(TestWrong):

@@ -221,12 +221,12 @@ def test_survivors_are_told_apart() -> None:
     """A survivor that is excused shows why, one that is not is missed, and a rule that nothing broke is untested."""
     robot = systems.system("isaac.robot")
     first, second, third, *_ = (rule.id for rule in robot.spec.all_rules)
-    bites = (
+    results = (
         MutantResult(f"{first} is dropped", first, killed=True, length=4),
         MutantResult(f"{first} has no effect", first, killed=False, because="which <AI-01> allows"),
         MutantResult(f"{second} is dropped", second, killed=False),
     )
-    page = teeth_page(robot, MutationReport("isaac.robot", bites, (third,)))
+    page = teeth_page(robot, MutationReport("isaac.robot", results, (third,)))
     marks = re.findall(r'<li><span class="mark (\w+)">(\w+)</span>', page)
     assert marks == [
         ("exercised", "noticed"),

@@ -19,22 +19,22 @@ from missionfsm.kernel.system import MessageMutation, StepMutation
 def _each(change: Callable[[JSON], None]) -> Callable[[JSON], JSON]:
     """A change of every listed mission of a message."""
 
-    def bend(message: JSON) -> JSON:
+    def mutate_message(message: JSON) -> JSON:
         changed = copy.deepcopy(message)
         for mission in changed["missionStates"]["missions"]:
             change(mission)
         return changed
 
-    return bend
+    return mutate_message
 
 
 def _whole(change: Callable[[JSON], None]) -> Callable[[JSON], JSON]:
-    def bend(message: JSON) -> JSON:
+    def mutate_message(message: JSON) -> JSON:
         changed = copy.deepcopy(message)
         change(changed)
         return changed
 
-    return bend
+    return mutate_message
 
 
 def _running_as_paused(mission: JSON) -> None:
@@ -69,7 +69,7 @@ def _twice(message: JSON) -> None:
     message["missionStates"]["missions"] *= 2
 
 
-BENDS = (
+MESSAGE_MUTATIONS = (
     MessageMutation(
         status.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))
     ),
@@ -143,24 +143,24 @@ def _put_first(before: Robot, step: Step) -> Step:
 def _ended(state: State) -> Callable[[Robot, Step], Step]:
     """A mission ends in another state than it should."""
 
-    def twist(_: Robot, step: Step) -> Step:
+    def mutate_step(_: Robot, step: Step) -> Step:
         robot: Robot = step.after
         if not robot.done or robot.active is not None:
             return step
         done = (*robot.done[:-1], evolve(robot.done[-1], state=state))
         return evolve(step, after=evolve(robot, done=done), emits=())
 
-    return twist
+    return mutate_step
 
 
 def _goal(change: Callable[[Mission], int]) -> Callable[[Robot, Step], Step]:
-    def twist(_: Robot, step: Step) -> Step:
+    def mutate_step(_: Robot, step: Step) -> Step:
         robot: Robot = step.after
         if robot.active is None or not robot.active.goals:
             return step
         return evolve(step, after=evolve(robot, active=evolve(robot.active, goal=change(robot.active))), emits=())
 
-    return twist
+    return mutate_step
 
 
 def _skips_one(mission: Mission) -> int:
@@ -184,11 +184,11 @@ def _start_last(_: Robot, step: Step) -> Step:
     )
 
 
-def _showing_it(twist: Callable[[Robot, Step], Step]) -> Callable[[Robot, Step], Step]:
+def _showing_it(mutate_step: Callable[[Robot, Step], Step]) -> Callable[[Robot, Step], Step]:
     """The twisted step, showing subscribers what it really did."""
 
     def twisted_openly(before: Robot, step: Step) -> Step:
-        twisted = twist(before, step)
+        twisted = mutate_step(before, step)
         if twisted is step or not step.emits:
             return twisted
         view = status.listing(twisted.after)
@@ -201,7 +201,7 @@ def _rule(*place: str) -> str:
     return "/".join((SPEC.system, *place))
 
 
-TWISTS = (
+STEP_MUTATIONS = (
     *(
         StepMutation(
             _rule(operation, "the-answer-names-the-new-missions-in-order"),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from missionfsm.bear.mission.codec import CODEC
 from missionfsm.bear.mission.matrix import MATRIX
-from missionfsm.bear.mission.mutations import BENDS, REACHING, TWISTS
+from missionfsm.bear.mission.mutations import MESSAGE_MUTATIONS, REACHING, STEP_MUTATIONS
 from missionfsm.bear.mission.pictures import SKETCHES
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
 from missionfsm.bear.mission.scripts import CREATED, SCRIPTS
@@ -278,8 +278,8 @@ SYSTEM = System(
     CODEC,
     alphabet,
     NAMING,
-    message_mutations=BENDS,
-    step_mutations=TWISTS,
+    message_mutations=MESSAGE_MUTATIONS,
+    step_mutations=STEP_MUTATIONS,
     reaching=REACHING,
     sketches=SKETCHES,
     shapes=shapes,

@@ -32,13 +32,13 @@ def _entries(message: JSON) -> Iterator[dict[str, JSON]]:
 def _each(change: Change) -> Callable[[JSON], JSON]:
     """A change of everything in a message that is about one robot."""
 
-    def bend(message: JSON) -> JSON:
+    def mutate_message(message: JSON) -> JSON:
         changed = copy.deepcopy(message)
         for entry in _entries(changed):
             change(entry)
         return changed
 
-    return bend
+    return mutate_message
 
 
 def _numbered(number: Callable[[int], int]) -> Callable[[JSON], JSON]:
@@ -52,7 +52,7 @@ def _of(endpoint: Endpoint, change: Change) -> Callable[[JSON], JSON]:
     """A change of the messages of one subscription; of others nothing."""
     field = SINGLES.get(endpoint) or MAPS[endpoint]
 
-    def bend(message: JSON) -> JSON:
+    def mutate_message(message: JSON) -> JSON:
         if field not in message:
             return message
         changed = copy.deepcopy(message)
@@ -60,7 +60,7 @@ def _of(endpoint: Endpoint, change: Change) -> Callable[[JSON], JSON]:
             change(entry)
         return changed
 
-    return bend
+    return mutate_message
 
 
 def _elsewhere(message: JSON) -> JSON:
@@ -101,7 +101,7 @@ def _moving(state: dict[str, JSON]) -> None:
     state["navigationState"] = {"stuckState": {"state": "STATE_STUCK"}}
 
 
-BENDS = (
+MESSAGE_MUTATIONS = (
     MessageMutation(WELL_FORMED.id, "has no metadata", _each(lambda entry: entry.pop("metadata"))),
     MessageMutation(WELL_FORMED.id, "has a battery in words", _battery(chargePercent="half")),
     MessageMutation(SEQUENCE.id, "never changes", _numbered(lambda _: 7)),
@@ -182,5 +182,5 @@ def _without_battery(_: object, step: Step) -> Step:
 
 
 (_ANSWERED,) = OPERATIONS[GET].promises
-TWISTS = (StepMutation(VALUES[GET].id, "leaves out the battery", _without_battery, at=_ANSWERED.id),)
+STEP_MUTATIONS = (StepMutation(VALUES[GET].id, "leaves out the battery", _without_battery, at=_ANSWERED.id),)
 """Ways to take wrong steps that show in no message."""

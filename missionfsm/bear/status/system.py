@@ -5,7 +5,7 @@ from __future__ import annotations
 from missionfsm.bear.status.alphabet import alphabet
 from missionfsm.bear.status.codec import CODEC
 from missionfsm.bear.status.matrix import MATRIX
-from missionfsm.bear.status.mutations import BENDS, TWISTS
+from missionfsm.bear.status.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.bear.status.pictures import SKETCHES
 from missionfsm.bear.status.shapes import shapes
 from missionfsm.bear.status.spec import SPEC
@@ -17,8 +17,8 @@ SYSTEM = System(
     SPEC,
     CODEC,
     alphabet,
-    message_mutations=BENDS,
-    step_mutations=TWISTS,
+    message_mutations=MESSAGE_MUTATIONS,
+    step_mutations=STEP_MUTATIONS,
     sketches=SKETCHES,
     shapes=shapes,
     matrix=MATRIX,

@@ -13,9 +13,9 @@ from missionfsm.isaac.shared.mutations import changed, line_mutations, mission_t
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
-Twist = Callable[[Codelet, Step], Step | None]
+StepMutator = Callable[[Codelet, Step], Step | None]
 
-BENDS = (
+MESSAGE_MUTATIONS = (
     MessageMutation(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
     MessageMutation(rules.TYPES.id, "sends the type id unsigned", changed(unsigned_type)),
     MessageMutation(rules.TYPES.id, "sends the type id of a mission", changed(mission_type)),
@@ -77,14 +77,14 @@ def _final_first(_: Codelet, step: Step) -> Step:
     return evolve(step, emits=(*(one for one in step.emits if not _final(one)), *finals))
 
 
-def _said_as(status: str) -> Twist:
+def _said_as(status: str) -> StepMutator:
     """Final statuses are another one."""
 
-    def twist(_: Codelet, step: Step) -> Step:
+    def mutate_step(_: Codelet, step: Step) -> Step:
         emits = tuple(evolve(one, view=evolve(one.view, status=status)) if _final(one) else one for one in step.emits)
         return evolve(step, emits=emits)
 
-    return twist
+    return mutate_step
 
 
 def _running_after(_: Codelet, step: Step) -> Step:
@@ -104,7 +104,7 @@ def _ends_what_runs(before: Codelet, step: Step) -> Step:
     return evolve(step, after=idle, names=(), emits=(Emission(STATUSES, report, before.mission, certain=True),))
 
 
-TWISTS = (
+STEP_MUTATIONS = (
     *breaks(rules.STARTS, is_not_run=_never_run),
     *breaks(rules.LISTENS, is_not_run=_never_run),
     *breaks(

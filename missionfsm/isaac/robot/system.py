@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.robot.alphabet import alphabet
 from missionfsm.isaac.robot.codec import CODEC
-from missionfsm.isaac.robot.mutations import BENDS, TWISTS
+from missionfsm.isaac.robot.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.isaac.robot.pictures import SKETCHES
 from missionfsm.isaac.robot.shapes import shapes
 from missionfsm.isaac.robot.spec import SPEC
@@ -21,8 +21,8 @@ SYSTEM = System(
     CODEC,
     alphabet,
     NAMING,
-    message_mutations=BENDS,
-    step_mutations=TWISTS,
+    message_mutations=MESSAGE_MUTATIONS,
+    step_mutations=STEP_MUTATIONS,
     sketches=SKETCHES,
     shapes=shapes,
     profiles=PROFILES,

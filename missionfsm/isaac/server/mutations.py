@@ -12,9 +12,9 @@ from missionfsm.isaac.shared.mutations import changed, line_mutations
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
 
-Twist = Callable[[Server, Step], Step | None]
+StepMutator = Callable[[Server, Step], Step | None]
 
-BENDS = (
+MESSAGE_MUTATIONS = (
     MessageMutation(
         rules.CONFIG.id,
         "sends another configuration",
@@ -28,19 +28,19 @@ def _nothing(before: Server, step: Step) -> Step:
     return evolve(step, after=before, names=None, emits=(), drains=())
 
 
-def _each(change: Callable[[Mission, Mission], Mission]) -> Twist:
+def _each(change: Callable[[Mission, Mission], Mission]) -> StepMutator:
     """A change of every mission that was there before: it takes that one and how it would be after the step."""
 
-    def twist(before: Server, step: Step) -> Step:
+    def mutate_step(before: Server, step: Step) -> Step:
         after: Server = step.after
         old = (*before.missions, *after.missions[len(before.missions) :])
         missions = tuple(change(one, other) for one, other in zip(old, after.missions, strict=True))
         return evolve(step, after=evolve(after, missions=missions))
 
-    return twist
+    return mutate_step
 
 
-def _became(status: Status, change: Callable[[Mission, Mission], Mission]) -> Twist:
+def _became(status: Status, change: Callable[[Mission, Mission], Mission]) -> StepMutator:
     """A change of every mission that a step gives this status."""
     return _each(lambda old, new: change(old, new) if new.status is status is not old.status else new)
 
@@ -87,7 +87,7 @@ def _revived(_: Server, step: Step) -> Step:
     return evolve(step, after=evolve(after, missions=tuple(missions)))
 
 
-TWISTS = (
+STEP_MUTATIONS = (
     *breaks(rules.SENT, is_sent_twice=_sent_twice, is_not_sent=_unsent),
     StepMutation(rules.UNNAMED.id, "goes to whoever connected first", _sent_elsewhere, at=rules.SENT.id),
     StepMutation(

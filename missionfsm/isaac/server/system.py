@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from missionfsm.isaac.server.codec import CODEC
-from missionfsm.isaac.server.mutations import BENDS, TWISTS
+from missionfsm.isaac.server.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.isaac.server.pictures import SKETCHES
 from missionfsm.isaac.server.plans import PLANS
 from missionfsm.isaac.server.scripts import SCRIPTS
@@ -173,8 +173,8 @@ SYSTEM = System(
     CODEC,
     alphabet,
     NAMING,
-    message_mutations=BENDS,
-    step_mutations=TWISTS,
+    message_mutations=MESSAGE_MUTATIONS,
+    step_mutations=STEP_MUTATIONS,
     sketches=SKETCHES,
     plans=PLANS,
     shapes=shapes,

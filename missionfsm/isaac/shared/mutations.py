@@ -14,12 +14,12 @@ from missionfsm.kernel.system import MessageMutation
 def changed(change: Callable[[JSON], object]) -> Callable[[JSON], JSON]:
     """A change of the object that a line holds."""
 
-    def bend(line: JSON) -> JSON:
+    def mutate_message(line: JSON) -> JSON:
         message = json.loads(line)
         change(message)
         return strictjson.compact(message)
 
-    return bend
+    return mutate_message
 
 
 def _bare_uuid(message: JSON) -> None:

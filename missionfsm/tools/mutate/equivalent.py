@@ -55,7 +55,7 @@ _FAILS = (LookupError, AssertionError, AttributeError, TypeError, ValueError, St
 """What a broken model may raise."""
 
 
-def straight(message: JSON) -> JSON:
+def unchanged_message(message: JSON) -> JSON:
     """The message itself."""
     return message
 
@@ -108,29 +108,29 @@ class ReferenceSteps:
         return found
 
 
-def excuse(  # noqa: PLR0913 - what an implementation is made of
-    honest: ReferenceSteps,
+def allowed_under(  # noqa: PLR0913 - what an implementation is made of
+    reference: ReferenceSteps,
     model: Reference,
     rule: str,
     operation: str | None,
-    bend: Callable[[JSON], JSON],
+    mutate_message: Callable[[JSON], JSON],
     worlds: tuple[JSON, ...],
 ) -> str:
     """The readings under which everything that a model does within bounds is allowed; empty if there are none.
 
     Args:
-        honest: the reference under the same readings, from which it may differ by a twist, and in the rules of one
-            operation.
+        reference: the reference under the same readings, from which it may differ by a mutation of a step, and
+            in the rules of one operation.
         model: the implementation.
         rule: the rule that it breaks; nothing is proved where that never comes up.
         operation: the operation whose rules differ.
-        bend: what it does to its messages.
+        mutate_message: what it does to its messages.
         worlds: those that it is explored in.
     """
-    system = honest.model.system
+    system = reference.model.system
     states, came_up = 0, False
     for scope in TIMED if system.spec.abstraction.outline else SCOPES:
-        explorer = _Explorer(system, model, honest, rule, operation, bend, scope)
+        explorer = _Explorer(system, model, reference, rule, operation, mutate_message, scope)
         states += sum(map(explorer.run, worlds[: scope.worlds]))
         came_up |= explorer.came_up
         if not explorer.alternatives:
@@ -150,7 +150,7 @@ def _words(system: System, model: Reference, alternatives: tuple[int, ...], stat
     return f"it only does, in the {states} states that it reaches, {why}"
 
 
-class _GuiltyError(Exception):
+class _NotAllowedError(Exception):
     """A step is allowed under no reading that agrees with those assumed before."""
 
 
@@ -160,29 +160,29 @@ class _Explorer:
     Attributes:
         alternatives: sets of readings, of which none holds another; empty once nothing explains the model.
         came_up: whether the broken rule did.
-        rules_differ: whether the model differs in the rules of the operation, and not just in a twist.
+        rules_differ: whether the model differs in the rules of the operation, and not just by a mutation of a step.
     """
 
     def __init__(  # noqa: PLR0913 - what an exploration is made of
         self,
         system: System,
         model: Reference,
-        honest: ReferenceSteps,
+        reference: ReferenceSteps,
         rule: str,
         operation: str | None,
-        bend: Callable[[JSON], JSON],
+        mutate_message: Callable[[JSON], JSON],
         scope: Scope,
     ) -> None:
         self.system = system
         self.spec = system.spec
         self.model = model
-        self.honest = honest
+        self.reference = reference
         self.rule = rule
         self.operation = operation
-        self.bend = bend
+        self.mutate_message = mutate_message
         self.scope = scope
         self.alternatives: tuple[int, ...] = (UNCONSTRAINED,)
-        self.came_up = bend is not straight
+        self.came_up = mutate_message is not unchanged_message
         self.rules_differ = model.system.spec is not system.spec
         self._required: set[Options] = {_FREE}
         self._judged: set[Any] = set()
@@ -193,7 +193,7 @@ class _Explorer:
             return 0
         try:
             return self._walk(world)
-        except _GuiltyError:
+        except _NotAllowedError:
             self.alternatives = ()
             return 0
 
@@ -226,25 +226,25 @@ class _Explorer:
         met = {agreed for one in self.alternatives for assumes in options if (agreed := meet(one, assumes))}
         self.alternatives = tuple(sorted(one for one in met if not any(one != two and one & two == one for two in met)))
         if not self.alternatives:
-            raise _GuiltyError
+            raise _NotAllowedError
 
     def _taken(self, here: State, labels: Labels) -> Iterator[Step]:
         """Every step that the model takes in a state, each explained; urgent ones come first."""
-        allowed, own = self.honest.urgent(here)
-        taken = self.model.twist(here, own)
+        allowed, own = self.reference.urgent(here)
+        taken = self.model.mutate_step(here, own)
         if taken is not None:
             self._require(self._explained(here, taken, allowed))
             yield taken
             return
         if own is not None:
-            raise _GuiltyError
+            raise _NotAllowedError
         yield from self._asked_all(here, labels)
         for event, free in labels.events:
             for refs in bindings(self.spec, here, free):
                 allowed = self.spec.drives[event.name].steps(here, event, refs)
                 own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
                 self.came_up = self.came_up or (own is not None and self.rule in own.rules)
-                happened = self.model.twist(here, own)
+                happened = self.model.mutate_step(here, own)
                 if happened is not None:
                     self._require(self._explained(here, happened, allowed))
                     yield happened
@@ -258,20 +258,20 @@ class _Explorer:
 
     def _passes(self, here: State) -> bool:
         """Whether a state of the model does not last."""
-        return self.model.twist(here, self.honest.urgent(here)[1]) is not None
+        return self.model.mutate_step(here, self.reference.urgent(here)[1]) is not None
 
     def _asked(self, here: State, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, Options]:
-        own, options, rules = self.honest.answers(here, request, refs)
+        own, options, rules = self.reference.answers(here, request, refs)
         self.came_up = self.came_up or self.rule in rules
         try:
             differs = self.rules_differ and self.spec.request_operation(request) == self.operation
-            step = self.model.outcome(here, request, refs) if differs else self.model.twist(here, own)
+            step = self.model.outcome(here, request, refs) if differs else self.model.mutate_step(here, own)
         except _FAILS:
-            raise _GuiltyError from None
+            raise _NotAllowedError from None
         if step is None:
-            raise _GuiltyError
+            raise _NotAllowedError
         self.came_up = self.came_up or self.rule in step.rules
-        if self.bend is not straight or (step is not own and (step.emits or step.opens)):
+        if self.mutate_message is not unchanged_message or (step is not own and (step.emits or step.opens)):
             self._see(step, passing=False)
         if step is own:
             return step, options
@@ -304,33 +304,33 @@ class _Explorer:
     def _require_shown(self, emission: Emission, named: int) -> None:
         if emission.only and not meet(self.model.choice, (emission.only,)):
             return
-        straightforward = self.bend is straight
+        straightforward = self.mutate_message is unchanged_message
         found = (
-            self.honest.renderings(emission, named)
+            self.reference.renderings(emission, named)
             if straightforward
-            else renderings(self.model, emission, named, self.bend)
+            else renderings(self.model, emission, named, self.mutate_message)
         )
         if isinstance(found, Mismatch):
-            raise _GuiltyError
+            raise _NotAllowedError
         for matches in found:
             self.came_up = self.came_up or any(self.rule in match.rules for match in matches)
             self._require(frozenset(match.assumes for match in matches))
 
 
 def renderings(
-    model: Reference, emission: Emission, named: int, bend: Callable[[JSON], JSON] = straight
+    model: Reference, emission: Emission, named: int, mutate_message: Callable[[JSON], JSON] = unchanged_message
 ) -> tuple[tuple[Match, ...], ...] | Mismatch:
     """Ways to explain each part of the message that a model makes of an emission, or what is wrong with one.
 
     Args:
         named: how many names the state has.
-        bend: what becomes of the message.
+        mutate_message: what becomes of the message.
     """
     system = model.system
     count = 1 + max((*(emission.refs or ()), named - 1), default=0)
     names = tuple(map(system.naming.in_message, range(count if emission.refs is None else len(emission.refs))))
     found: list[tuple[Match, ...]] = []
-    for matches in recognised(system, emission.view, names, model.choice, bend):
+    for matches in recognised(system, emission.view, names, model.choice, mutate_message):
         if isinstance(matches, Mismatch):
             return matches
         found.append(matches)

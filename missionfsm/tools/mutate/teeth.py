@@ -37,9 +37,8 @@ from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.tour import play, tour
-from missionfsm.tools.mutate.equivalent import ReferenceSteps, excuse
-from missionfsm.tools.mutate.equivalent import straight as as_it_is
-from missionfsm.tools.reference.model import Reference, Twist, straight
+from missionfsm.tools.mutate.equivalent import ReferenceSteps, allowed_under, unchanged_message
+from missionfsm.tools.reference.model import Reference, StepMutator, unchanged_step
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
@@ -65,8 +64,8 @@ class Mutant:
     choice: Mapping[str, str]
     favour: str | None
     spec: Spec
-    twist: Twist = straight
-    bend: Callable[[JSON], JSON] = as_it_is
+    mutate_step: StepMutator = unchanged_step
+    mutate_message: Callable[[JSON], JSON] = unchanged_message
 
     @property
     def name(self) -> str:
@@ -75,7 +74,9 @@ class Mutant:
 
     def subject(self, system: System, seconds: Callable[[int], float] = float) -> BrokenSubject:
         """The implementation, to be asked; `seconds` are its timestamps, see `ReferenceSubject`."""
-        return BrokenSubject(evolve(system, spec=self.spec), self.choice, self.twist, self.bend, seconds)
+        return BrokenSubject(
+            evolve(system, spec=self.spec), self.choice, self.mutate_step, self.mutate_message, seconds
+        )
 
 
 @frozen
@@ -94,23 +95,23 @@ class MutationReport:
     """What came of all mutants."""
 
     system: str
-    bites: tuple[MutantResult, ...]
+    results: tuple[MutantResult, ...]
     untested: tuple[str, ...]
 
     @property
     def killed(self) -> int:
         """How many mutants were noticed."""
-        return sum(bite.killed for bite in self.bites)
+        return sum(result.killed for result in self.results)
 
     @property
     def allowed(self) -> tuple[MutantResult, ...]:
         """Survivors that do nothing that the documents forbid, within the bounds that were explored."""
-        return tuple(bite for bite in self.bites if not bite.killed and bite.because)
+        return tuple(result for result in self.results if not result.killed and result.because)
 
     @property
-    def missed(self) -> tuple[MutantResult, ...]:
+    def survived(self) -> tuple[MutantResult, ...]:
         """Survivors that nothing excuses."""
-        return tuple(bite for bite in self.bites if not bite.killed and not bite.because)
+        return tuple(result for result in self.results if not result.killed and not result.because)
 
     @property
     def percent(self) -> int:
@@ -120,29 +121,29 @@ class MutationReport:
     @property
     def score(self) -> float:
         """Noticed, of those that break something; 1.0 is all."""
-        guilty = len(self.bites) - len(self.allowed)
-        return self.killed / guilty if guilty else 0.0
+        not_allowed = len(self.results) - len(self.allowed)
+        return self.killed / not_allowed if not_allowed else 0.0
 
     def to_json(self) -> JSON:
         """The result as the command line writes it."""
         return {
             "system": self.system,
-            "mutants": len(self.bites),
+            "mutants": len(self.results),
             "killed": self.killed,
-            "allowed": [{"mutant": bite.mutant, "because": bite.because} for bite in self.allowed],
-            "missed": [bite.mutant for bite in self.missed],
+            "allowed": [{"mutant": result.mutant, "because": result.because} for result in self.allowed],
+            "missed": [result.mutant for result in self.survived],
             "untested": list(self.untested),
             "score": self.score,
         }
 
     def __str__(self) -> str:
         lines = [
-            f"{self.system}: {self.killed} of {len(self.bites) - len(self.allowed)} mutants killed ({self.percent}%), "
-            f"{len(self.allowed)} more do nothing that is forbidden"
+            f"{self.system}: {self.killed} of {len(self.results) - len(self.allowed)} mutants killed "
+            f"({self.percent}%), {len(self.allowed)} more do nothing that is forbidden"
         ]
-        lines += [f"missed: {bite.mutant}" for bite in self.missed]
+        lines += [f"missed: {result.mutant}" for result in self.survived]
         lines += [f"no mutant breaks: {rule}" for rule in self.untested]
-        lines += [f"allowed: {bite.mutant}: {bite.because}" for bite in self.allowed]
+        lines += [f"allowed: {result.mutant}: {result.because}" for result in self.allowed]
         return "\n".join(lines)
 
 
@@ -163,21 +164,21 @@ def teeth(
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
     guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS)
-    bites, tested = [], set()
+    results, tested = [], set()
     which, parts = part
     for number, mutant in enumerate(mutants(system)):
         tested.add(mutant.rule)
         if only in mutant.name and number // BLOCK % parts == which:
-            bites.append(_bite(system, mutant, automaton, guide, seed))
-            progress(bites[-1])
+            results.append(_result(system, mutant, automaton, guide, seed))
+            progress(results[-1])
     untested = tuple(rule.id for rule in system.spec.all_rules if rule.id not in tested)
-    return MutationReport(system.name, tuple(bites), untested)
+    return MutationReport(system.name, tuple(results), untested)
 
 
 def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:
     """What came of all mutants, from what came of each part of them, in the order of the rules."""
     parts = tuple(parts)
-    found = {bite.mutant: bite for part in parts for bite in part.bites}
+    found = {result.mutant: result for part in parts for result in part.results}
     ordered = tuple(found[mutant.name] for mutant in mutants(system) if mutant.name in found)
     return MutationReport(system.name, ordered, parts[0].untested)
 
@@ -199,7 +200,7 @@ class BrokenSubject(ReferenceSubject):
             return Exchange({})
 
 
-def _bite(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> MutantResult:
+def _result(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> MutantResult:
     broken = mutant.subject(system)
     because = ""
     for fresh, conversations in enumerate((FIRST, *ROUNDS)):
@@ -228,7 +229,7 @@ def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
 
 
 @functools.lru_cache(maxsize=2)
-def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> ReferenceSteps:
+def _reference_steps(system: System, choice: tuple[tuple[str, str], ...]) -> ReferenceSteps:
     """The reference under some readings; the mutants of a rule follow each other and share it.
 
     Those with the readings of the reference come again and again, so that it is in nobody's way that two are kept.
@@ -237,8 +238,8 @@ def _honest(system: System, choice: tuple[tuple[str, str], ...]) -> ReferenceSte
 
 
 def _excuse(system: System, mutant: Mutant, model: Reference, worlds: tuple[JSON, ...]) -> str:
-    honest = _honest(system, tuple(sorted(mutant.choice.items())))
-    return excuse(honest, model, mutant.rule, mutant.favour, mutant.bend, worlds)
+    reference = _reference_steps(system, tuple(sorted(mutant.choice.items())))
+    return allowed_under(reference, model, mutant.rule, mutant.favour, mutant.mutate_message, worlds)
 
 
 # The mutants.
@@ -252,12 +253,12 @@ def mutants(system: System) -> Iterator[Mutant]:
             yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
         for promised in operation.promises:
             yield from _of_promise(spec, promised, operation.name)
-    own = {bend.rule for bend in system.message_mutations} | {one.rule for one in system.step_mutations if one.at}
+    own = {one.rule for one in system.message_mutations} | {one.rule for one in system.step_mutations if one.at}
     for rule in spec.rules:
         if rule.id not in own:
             yield from _of_promise(spec, rule, None)
-    for bend in system.message_mutations:
-        yield Mutant(bend.rule, bend.says, {}, None, spec, bend=bend.bend)
+    for mutation in system.message_mutations:
+        yield Mutant(mutation.rule, mutation.says, {}, None, spec, mutate_message=mutation.mutate_message)
     for one in system.step_mutations:
         yield Mutant(
             one.rule,
@@ -265,7 +266,7 @@ def mutants(system: System) -> Iterator[Mutant]:
             _in_force(spec, one.rule),
             _operation_of(spec, one.rule),
             spec,
-            _where(one.at or one.rule, one.twist),
+            _where(one.at or one.rule, one.mutate_step),
         )
 
 
@@ -310,17 +311,17 @@ def _always(_: object, __: object) -> bool:
 
 
 def _of_promise(spec: Spec, rule: Rule, operation: str | None) -> Iterator[Mutant]:
-    for kind, twist in (
+    for kind, mutate_step in (
         ("has no effect", _without_effect),
         ("is not shown", _unseen),
         ("answers its names in reverse", _reversed),
     ):
-        yield Mutant(rule.id, kind, {}, operation, spec, _where(rule.id, twist))
+        yield Mutant(rule.id, kind, {}, operation, spec, _where(rule.id, mutate_step))
 
 
-def _where(rule: str, twist: Callable[[Any, Step], Step | None]) -> Twist:
-    """A twist of the steps that a rule justifies, and of no others."""
-    return lambda state, step: twist(state, step) if step is not None and rule in step.rules else step
+def _where(rule: str, mutate_step: Callable[[Any, Step], Step | None]) -> StepMutator:
+    """A mutation of the steps that a rule justifies, and of no others."""
+    return lambda state, step: mutate_step(state, step) if step is not None and rule in step.rules else step
 
 
 def _coded(code: str) -> Callable[[Any, Step], Step]:

@@ -82,11 +82,11 @@ class Reply:
     happened: bool = True
 
 
-Twist = Callable[[Any, Step | None], Step | None]
+StepMutator = Callable[[Any, Step | None], Step | None]
 """(state, step) to the step that is taken in its place; for implementations with one thing broken."""
 
 
-def straight(_: State, step: Step | None) -> Step | None:
+def unchanged_step(_: State, step: Step | None) -> Step | None:
     """The step itself: nothing is broken."""
     return step
 
@@ -96,16 +96,16 @@ def recognised(
     view: View,
     names: tuple[Name, ...],
     choice: int,
-    bend: Callable[[JSON], JSON] = lambda message: message,
+    mutate_message: Callable[[JSON], JSON] = lambda message: message,
 ) -> tuple[tuple[Match, ...] | Mismatch, ...]:
     """For each part of the message that is made of a view: the ways in which it shows the view, or what is wrong.
 
     Args:
         choice: the readings under which it is made.
-        bend: what becomes of it on the way.
+        mutate_message: what becomes of it on the way.
     """
     codec = system.codec
-    message = bend(codec.write_message(view, names, choice, 1, 0.0))
+    message = mutate_message(codec.write_message(view, names, choice, 1, 0.0))
     return tuple(system.spec.matches(view, codec.content(rest)) for _, _, rest in codec.strip(message))
 
 
@@ -116,7 +116,7 @@ class Reference:
         system: the system.
         choice: ambiguity id to letter; the others follow their defaults.
         mint: serial number to a name that was never given out; by default as the system has it.
-        twist: what is broken, if anything.
+        mutate_step: what is broken, if anything.
 
     Raises:
         ValueError: `choice` names an ambiguity or a letter that does not exist.
@@ -127,12 +127,12 @@ class Reference:
         system: System,
         choice: Mapping[str, str] | None = None,
         mint: Callable[[int], Name] | None = None,
-        twist: Twist = straight,
+        mutate_step: StepMutator = unchanged_step,
     ) -> None:
         self.system = system
         self.choice = choose(system.spec.ambiguities, choice)
         self._mint = mint or system.naming.given
-        self.twist = twist
+        self.mutate_step = mutate_step
         self._chosen: dict[Any, Step | None] = {}
 
     def start(self, world: object) -> Snapshot:
@@ -196,7 +196,7 @@ class Reference:
             allowed = next((step for step in steps() if meet(self.choice, step.assumes)), None)
             if len(self._chosen) >= MAX_REMEMBERED:
                 self._chosen.clear()
-            self._chosen[key] = self.twist(key[0], allowed)
+            self._chosen[key] = self.mutate_step(key[0], allowed)
         return self._chosen[key]
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:

@@ -9,7 +9,7 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.tools.reference.model import Reference, Reply, Sent, Snapshot, Twist, straight
+from missionfsm.tools.reference.model import Reference, Reply, Sent, Snapshot, StepMutator, unchanged_step
 
 
 class ReferenceSubject:
@@ -17,8 +17,8 @@ class ReferenceSubject:
 
     Args:
         system: the system.
-        choice, twist: the readings that it follows, and what is broken; see `Reference`.
-        bend: a message to the one that is sent in its place; for one that is broken.
+        choice, mutate_step: the readings that it follows, and what is broken; see `Reference`.
+        mutate_message: a message to the one that is sent in its place; for one that is broken.
         seconds: the number of an event to its timestamp, in seconds since the epoch.
 
     Attributes:
@@ -29,14 +29,14 @@ class ReferenceSubject:
         self,
         system: System,
         choice: Mapping[str, str] | None = None,
-        twist: Twist = straight,
-        bend: Callable[[JSON], JSON] = lambda message: message,
+        mutate_step: StepMutator = unchanged_step,
+        mutate_message: Callable[[JSON], JSON] = lambda message: message,
         seconds: Callable[[int], float] = float,
     ) -> None:
-        self.model = Reference(system, choice, twist=twist)
+        self.model = Reference(system, choice, mutate_step=mutate_step)
         self.rules: tuple[str, ...] = ()
         self._says = {name: rule.says for name, rule in system.spec.rules_by_id.items()}
-        self._bend = bend
+        self._mutate_message = mutate_message
         self._seconds = seconds
         self._here: Snapshot | None = None
         self._minted = 0
@@ -136,7 +136,7 @@ class ReferenceSubject:
         codec, choice = self.model.system.codec, self.model.choice
         if same is None:
             seconds = self._seconds(sent.number)
-            message = self._bend(codec.write_message(sent.view, sent.names, choice, sent.number, seconds))
+            message = self._mutate_message(codec.write_message(sent.view, sent.names, choice, sent.number, seconds))
         else:
             message = same.get("message", same.get("line"))
         kind, number = _channel(sent.channel)

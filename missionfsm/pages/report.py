@@ -23,7 +23,7 @@ from missionfsm.pages.outline import (
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
 from missionfsm.tools.check.narrate import as_pytest
-from missionfsm.tools.check.verdict import CitedRule, Experiment, Outcome, Side, Verdict
+from missionfsm.tools.check.verdict import Experiment, Outcome, Side, Verdict
 
 _NUMBER = re.compile(r"\d+")
 _GRAVITY = (Outcome.VIOLATES, Outcome.INCONCLUSIVE, Outcome.CONFORMS)
@@ -129,15 +129,6 @@ class Story:
     history: str
     test: str
     sides: tuple[Conversation, ...] = ()
-
-    @property
-    def against(self) -> tuple[CitedRule, ...]:
-        """The rules that are broken and are not told with what was allowed."""
-        violation = self.judged.verdict.violation
-        if violation is None:
-            return ()
-        justified = {rule for one in violation.expected for rule in one.rules}
-        return tuple(rule for rule in violation.rules if rule not in justified)
 
 
 @frozen

@@ -312,6 +312,16 @@ def test_all_shapes_hold_all_states(explorers: Explorers, open_page: Opener) -> 
     assert page.evaluate("Object.values(graph.shapes).reduce((sum, one) => sum + one)") == MOST_STATES
 
 
+@pytest.mark.parametrize("size", ["desktop", "phone"])
+def test_all_shapes_leave_no_side_empty(size: str, explorers: Explorers, open_page: Opener) -> None:
+    """At the beginning, which is the first column, the map begins at its left, with what is next beside it."""
+    page = open_page(explorers["bear.mission"], size).page
+    page.get_by_role("button", name="All shapes").click()
+    here, frame = page.locator("#stage .here").bounding_box(), page.locator("#map").bounding_box()
+    assert here["x"] - frame["x"] == pytest.approx(12, abs=3)
+    assert page.locator("#stage .next").first.bounding_box()["x"] < frame["x"] + frame["width"]
+
+
 CROSSINGS = """
 () => {
   const boxes = [...document.querySelectorAll("#stage .shape")].map((one) => one.getBoundingClientRect());

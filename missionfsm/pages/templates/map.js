@@ -182,6 +182,8 @@ function showMap(frame) {
 function look() {
   at("stage").style.transform = `translate(${view.x}px, ${view.y}px) scale(${view.scale})`;
 }
+// Of what is larger than its room no side is left empty.
+const inside = (start, size, room) => Math.min(12, Math.max(start, room + 12 - size));
 // What is around fits whole, in as much height as it takes; all shapes are a map to move about in.
 function fit(least = 0) {
   const map = at("map"), stage = at("stage").dataset, room = map.clientWidth - 24;
@@ -189,12 +191,10 @@ function fit(least = 0) {
   view.scale = Math.max(least, Math.min(1, room / stage.width, tallest / stage.height));
   const [width, height] = [stage.width * view.scale, stage.height * view.scale];
   map.style.height = `${Math.min(height, tallest) + 26}px`;
-  [view.x, view.y] = [12 + (room - width) / 2, 12];
-  if (width > room || height > tallest) {
-    const here = at("stage").querySelector(".here");
-    view.x = map.clientWidth / 2 - (here.offsetLeft + here.offsetWidth / 2) * view.scale;
-    view.y = (Math.min(height, tallest) + 26) / 2 - (here.offsetTop + here.offsetHeight / 2) * view.scale;
-  }
+  const here = at("stage").querySelector(".here");
+  const middle = [here.offsetLeft + here.offsetWidth / 2, here.offsetTop + here.offsetHeight / 2];
+  view.x = width > room ? inside(map.clientWidth / 2 - middle[0] * view.scale, width, room) : 12 + (room - width) / 2;
+  view.y = height > tallest ? inside(tallest / 2 + 13 - middle[1] * view.scale, height, tallest) : 12;
   look();
 }
 function zoom(factor, x = at("map").clientWidth / 2, y = at("map").clientHeight / 2) {

@@ -23,6 +23,10 @@ SHORT = 72
 """How much of an event a line of the verdict has room for."""
 
 
+def _counted(number: int, thing: str) -> str:
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
 class Outcome(enum.Enum):
     """How it came out."""
 
@@ -99,7 +103,7 @@ class Violation:
     @property
     def sent(self) -> str:
         """The request as it was sent, as JSON, where it is in doubt whether it is one; else empty."""
-        doubtful = any(f"/{INVALID_ARGUMENT}/" in rule.id for rule in self.rules)
+        doubtful = not self.sides and any(f"/{INVALID_ARGUMENT}/" in rule.id for rule in self.rules)
         answered = self.history[-1].get("return") if doubtful and self.history else None
         calls = (line for line in reversed(self.history) if answered is not None and line.get("call") == answered)
         call = next(calls, None)
@@ -115,15 +119,16 @@ class Violation:
         else:
             lines.append("  nothing was allowed here")
         lines += [f"  {note}" for note in self.notes]
-        if self.rules and not self._told_as_allowed:
+        if self.against:
             lines.append("  against:")
-            lines += dict.fromkeys(f"    - {one}" for one in self.rules)
+            lines += dict.fromkeys(f"    - {one}" for one in self.against)
         return "\n".join(lines)
 
     @property
-    def _told_as_allowed(self) -> bool:
-        """Whether the rules that are broken are those by which the one thing that was allowed is right."""
-        return len(self.expected) == 1 and set(self.rules) == set(self.expected[0].rules)
+    def against(self) -> tuple[CitedRule, ...]:
+        """The rules that are broken and are not told with what was allowed."""
+        justified = {rule for one in self.expected for rule in one.rules}
+        return tuple(rule for rule in self.rules if rule not in justified)
 
 
 @frozen
@@ -349,9 +354,9 @@ class Verdict:
         """What is told only where it is wanted."""
         decided = sum(len(letters) == 1 for letters in self.readings.values())
         parts = (
-            f"what decided {decided} readings" if decided else "",
+            f"what decided {_counted(decided, 'reading')}" if decided else "",
             "what would decide the others" if self.experiments or self._unadvised else "",
-            f"{len(self.rare)} rules that came up seldom" if self.rare else "",
+            f"{_counted(len(self.rare), 'rule')} that came up seldom" if self.rare else "",
         )
         return ", ".join(filter(None, parts))
 

@@ -31,38 +31,45 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     Args:
         evidence: those of the ambiguity's letters that conversations ruled out, each to the judge of one.
     """
-    expected, notes, rules = [], [], list[str]()
+    expected, notes, others, rules = [], [], [], list[str]()
     last: Judge | None = None
-    ruled_out: list[tuple[Judge, str]] = []
+    ruled_out: list[tuple[Judge, str, str]] = []
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
         if judge is None or ruling is None:
-            notes.append(f"{letter} is ruled out: another reading had to be followed")
+            others.append(f"{letter} is ruled out: another reading had to be followed")
         else:
             rules += ruling.rules or _exercised(judge, ruling)
             notes.append(f"{letter} is ruled out: {ruling}")
             last = judge
         if judge is not None:
-            ruled_out.append((judge, f"not {letter}" + (f": {ruling}" if ruling else "")))
+            ruled_out.append((judge, letter, str(ruling or "")))
     sides = _sides(ruled_out)
     return Violation(
         rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
-        tuple(notes),
+        # Each of several conversations says by itself what it rules out.
+        tuple(others if len(sides) > 1 else [*notes, *others]),
         last.history if last else (),
         sides=sides if len(sides) > 1 else (),
     )
 
 
-def _sides(ruled_out: Iterable[tuple[Judge, str]]) -> tuple[Side, ...]:
-    """Each conversation once, with all that it rules out."""
-    says: dict[int, tuple[Judge, list[str]]] = {}
-    for judge, what in ruled_out:
-        says.setdefault(id(judge), (judge, []))[1].append(what)
-    return tuple(Side("; ".join(all_of_it), judge.history) for judge, all_of_it in says.values())
+def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
+    """Each conversation once, with all readings that it rules out, by event."""
+    found: dict[int, tuple[Judge, dict[str, list[str]]]] = {}
+    for judge, reading, event in ruled_out:
+        found.setdefault(id(judge), (judge, {}))[1].setdefault(event, []).append(reading)
+    return tuple(
+        Side(
+            "; ".join(f"not {', '.join(some)}" + (f": {event}" if event else "") for event, some in says.items()),
+            judge.history,
+        )
+        for judge, says in found.values()
+    )
 
 
 def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
@@ -129,11 +136,11 @@ def essential(system: System, judge: Judge, readings: Mapping[str, tuple[str, ..
 
 def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence: Evidence) -> Violation:
     """The violation with the conversations that rule out the other readings of the questions that it needs."""
-    ruled_out: list[tuple[Judge, str]] = []
+    ruled_out: list[tuple[Judge, str, str]] = []
     for (name, letter), judge in evidence.items():
         if name in needed and letter not in needed[name]:
             ruling = judge.rulings.found.get((name, letter))
-            ruled_out.append((judge, f"not {name}={letter}" + (f": {ruling}" if ruling else "")))
+            ruled_out.append((judge, f"{name}={letter}", str(ruling or "")))
     sides = _sides(ruled_out)
     if not sides:
         return violation

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import runpy
 import subprocess
 import sys
 import tarfile
@@ -15,6 +16,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 MAIN = re.search(r"<!-- ci: main -->\n```bash\n(.*?)\n```", (ROOT / "README.md").read_text(), re.DOTALL)
+REPOSITORY = "https://example.org/robots/missionfsm"
 RELATIVE = re.compile(r"\]\((?!https?:)")
 
 
@@ -33,10 +35,29 @@ def sources(*folders: str) -> set[str]:
     return {str(path) for path in own if not unwanted & set(path.parts) and not any(p[0] == "." for p in path.parts)}
 
 
+def test_the_readme_on_an_index_leads_to_the_repository_that_is_named() -> None:
+    """Links and picture have the address; without one the text of links is left, and no link or picture is broken."""
+    hook = runpy.run_path(str(ROOT / "hatch_build.py"))
+    readme = (ROOT / "README.md").read_text()
+    without, within = hook["shown"](readme, ""), hook["shown"](readme, REPOSITORY)
+    assert (RELATIVE.findall(without), RELATIVE.findall(within), "<!--" in without + within) == ([], [], False)
+    assert ("demo.svg" in without, f"]({REPOSITORY}/raw/HEAD/docs/demo.svg)\n\n" in within) == (False, True)
+    paths = re.findall(rf"\]\({REPOSITORY}/(?:blob|raw)/HEAD/([^)#]*)", within)
+    assert len(paths) > 10
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+    # What an index shows is the README but for where its links lead.
+    assert re.sub(rf"{REPOSITORY}/(?:blob|raw)/HEAD/", "", within) == re.sub(r"<!-- [^>]* -->\n", "", readme)
+    assert hook["urls"]("") == {}
+    assert set(hook["urls"](REPOSITORY)) == {"Repository", "Issues", "Documentation", "Changelog"}
+
+
 @pytest.mark.long
-def test_what_is_built_is_whole_and_works_where_nothing_else_is(tmp_path: Path) -> None:
+def test_what_is_built_is_whole_and_works_where_nothing_else_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The sdist has tests, pages and specifications, and the wheel made from it is installed and does the main job."""
     assert MAIN is not None
+    monkeypatch.setenv("MISSIONFSM_REPOSITORY", REPOSITORY)
     ran(sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path, ROOT, cwd=tmp_path)
     (sdist,), (wheel,) = tmp_path.glob("*.tar.gz"), tmp_path.glob("*.whl")
     ran(sys.executable, "-m", "twine", "check", "--strict", sdist, wheel, cwd=tmp_path)
@@ -46,12 +67,14 @@ def test_what_is_built_is_whole_and_works_where_nothing_else_is(tmp_path: Path) 
     with zipfile.ZipFile(wheel) as archive:
         installed = set(archive.namelist())
         (metadata,) = (name for name in installed if name.endswith("/METADATA"))
-        shown = message_from_bytes(archive.read(metadata)).get_payload()
+        about = message_from_bytes(archive.read(metadata))
+        shown = about.get_payload()
     assert sources("missionfsm") - installed == set()
     assert {name.partition("/")[0] for name in installed if ".dist-info" not in name} == {"missionfsm"}
     # Relative links lead nowhere on an index, and relative pictures are broken ones.
     assert isinstance(shown, str)
     assert (shown.startswith("# missionfsm\n"), RELATIVE.findall(shown), "<!--" in shown) == (True, [], False)
+    assert f"Repository, {REPOSITORY}" in about.get_all("Project-URL", [])
 
     job = MAIN[1].rpartition(" && ")[2]
     assert job.startswith(".venv/bin/missionfsm conform")

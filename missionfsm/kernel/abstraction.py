@@ -59,6 +59,8 @@ class Abstraction:
             outcomes, and the same events happen in the same ways.
         shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
         idle_shape: the same for what changes nothing; None where it is `shape`.
+        asked: state to what of it decides what the rules say to a call, and whether that changes anything; None where
+            that is `shape`.
         phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
         place: (state, position of a name) to where it stands, as far as a search tells places apart.
         size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
@@ -76,6 +78,7 @@ class Abstraction:
     situation: Callable[[State], Hashable] = lambda state: state
     shape: Callable[[State], Hashable] = lambda state: state
     idle_shape: Callable[[State], Hashable] | None = None
+    asked: Callable[[State], Hashable] | None = None
     phase: Callable[[State], Hashable] = lambda _: None
     place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
     size: Callable[[State], int] | None = None

@@ -212,7 +212,8 @@ class Operation:
 
     def blocking(self, state: State, call: Request) -> tuple[Rule, ...]:
         """The refusals whose condition holds."""
-        return tuple(rule for rule in self.refusals if rule(state, call))
+        # As `Rule.__call__`, without a call in between: the oracle and whoever looks for what to ask do little else.
+        return tuple([rule for rule in self.refusals if rule.holds is not None and rule.holds(state, call)])
 
 
 @frozen

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from attrs import evolve
 from status_helpers import ALPHABET, SETTLED, WORLDS, at, by_ids, judge, opened, refused
 
 from missionfsm.bear.status.codec import CODEC
 from missionfsm.bear.status.readings import AMBIGUITIES
 from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.spec import SPEC
-from missionfsm.bear.status.state import GET, STATUS, Endpoint, initial
+from missionfsm.bear.status.state import GET, STATUS, Endpoint, initial, whose
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import INTERNAL, INVALID_ARGUMENT, NOT_FOUND, OK, PERMISSION_DENIED
 from missionfsm.tools.check.verdict import Outcome
@@ -162,3 +163,15 @@ def test_a_robot_that_is_offline_may_be_answered_for_in_three_ways(letter: str, 
     state = {**WORLDS[1]["robots"][1]["state"], "connection": {"state": "STATE_CONNECTED"}}
     lie = {"return": 1, "result": {"robotState": state}}
     assert judge([call, lie], WORLDS[1]).verdict().outcome is Outcome.VIOLATES
+
+
+def test_whose_the_robots_are_and_where_decides_every_refusal() -> None:
+    """What robots report has no say in which rules refuse a request, so that it is decided without it."""
+    requests = [CODEC.request(one.method, one.params) for one in ALPHABET.inputs]
+    for world in WORLDS:
+        fleet = initial(CODEC.world(world))
+        assert whose(fleet) is whose(evolve(fleet, fault=True))
+        assert not any(one.seen for one in whose(fleet).robots)
+        for request in requests:
+            operation = OPERATIONS[request.operation]
+            assert operation.blocking(whose(fleet), request) == operation.blocking(fleet, request)

@@ -13,7 +13,7 @@ from attrs import evolve
 
 from missionfsm.bear.mission.adding import append, charge, create, create_workflow
 from missionfsm.bear.mission.inputs import Call, Request, Target
-from missionfsm.bear.mission.operations import OPERATIONS, ranking
+from missionfsm.bear.mission.operations import OPERATIONS, decisions
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings import (
     AM_09,
@@ -66,7 +66,6 @@ from missionfsm.kernel.rules import (
     UNIMPLEMENTED,
     Operation,
     Rule,
-    decide,
 )
 from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import ONCE_HAD
@@ -76,7 +75,7 @@ from missionfsm.kernel.step import ONCE_HAD
 def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcome, ...]:
     """Every answer that the rules of an operation allow to a call, success first."""
     found: list[Outcome] = []
-    for decision in decide(operation.blocking(robot, call), ranking(robot, call)):
+    for decision in decisions(operation.blocking(robot, call), robot, call):
         if decision.code is None:
             promises = tuple(rule.id for rule in operation.promises)
             found += (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator, Mapping
 
 from attrs import evolve
@@ -90,9 +91,10 @@ from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
     INTERNAL,
     INVALID_ARGUMENT,
+    Decision,
     Operation,
-    Ranking,
     Rule,
+    decide,
     promise,
 )
 
@@ -317,14 +319,19 @@ OPERATIONS: Mapping[str, Operation] = {
 }
 
 
-def ranking(robot: Situation, call: Call) -> Ranking:
-    """Which codes may be answered where several rules hold, and what that assumes about AM-01, AM-04 or AM-38."""
+def decisions(holding: tuple[Rule, ...], robot: Situation, call: Call) -> tuple[Decision, ...]:
+    """What may be answered where some rules hold, and what that assumes about AM-01, AM-04 or AM-38."""
     operation = call.request.operation
+    return _decisions(operation, id_situation(robot, call) if operation == "UpdateMission" else "", holding)
+
+
+@functools.lru_cache(maxsize=10_000)
+def _decisions(operation: str, about: str, holding: tuple[Rule, ...]) -> tuple[Decision, ...]:
     if operation == "UpdateMission":
-        return lambda holding: _rank_update(id_situation(robot, call), holding)
+        return decide(holding, functools.partial(_rank_update, about))
     if operation == "ChargeRobot":
-        return _rank_charge
-    return lambda holding: _rank_format_and_state(operation, holding)
+        return decide(holding, _rank_charge)
+    return decide(holding, functools.partial(_rank_format_and_state, operation))
 
 
 Ranked = Iterator[tuple[str, tuple[Assumption, ...]]]

@@ -32,6 +32,7 @@ from missionfsm.bear.status.state import (
     Fleet,
     Request,
     Robot,
+    whose,
 )
 from missionfsm.bear.status.stream import renderings
 from missionfsm.bear.status.views import About, Assumed, Promised, Seen, Topic, View, blank, view
@@ -45,6 +46,7 @@ from missionfsm.kernel.rules import (
     UNAUTHENTICATED,
     UNAVAILABLE,
     UNIMPLEMENTED,
+    Decision,
     Operation,
     decide,
 )
@@ -72,7 +74,7 @@ def outcomes(
     operation = operations[request.operation]
     found: list[Step] = []
     for asked, assumed in _arms(request):
-        for decision in decide(operation.blocking(fleet, asked), functools.partial(ranking, asked, fleet)):
+        for decision in _decisions(operation, whose(fleet), asked):
             assumes = (*assumed, *decision.assumes)
             if decision.code is None:
                 rules = tuple(rule.id for rule in operation.promises)
@@ -85,6 +87,12 @@ def outcomes(
         found = [_failed(fleet, one) for one in found]
     found.sort(key=lambda one: one.answer != Answer(OK))
     return tuple(found)
+
+
+@functools.lru_cache(maxsize=10_000)
+def _decisions(operation: Operation, fleet: Fleet, asked: Request) -> tuple[Decision, ...]:
+    """What the rules decide about a request; whose robots and locations there are is all that it depends on."""
+    return decide(operation.blocking(fleet, asked), functools.partial(ranking, asked, fleet))
 
 
 def _arms(request: Request) -> Iterator[tuple[Request, Assumed]]:

@@ -62,12 +62,16 @@ def _of_request(fleet: Fleet, streams: Streams, asked: Request) -> Iterator[str]
         yield "the same subscription" if asked.operation in watched else "another subscription"
 
 
-@functools.lru_cache(maxsize=100)
+@functools.lru_cache(maxsize=1_000)
 def _outline(fleet: Fleet) -> Fleet:
-    """All of a fleet that decides whom a request is about."""
-    return Fleet(tuple(map(_as_known, fleet.robots)), fleet.locations)
+    """All of a fleet that decides whom a request is about; the same object for fleets that are alike in it."""
+    return _outlined(tuple(map(_as_known, fleet.robots)), fleet.locations)
 
 
+_outlined = functools.lru_cache(maxsize=1_000)(Fleet)
+
+
+@functools.lru_cache(maxsize=1_000)
 def _as_known(robot: Robot) -> Robot:
     said = RobotState(connection=robot.state.connection or RobotConnection()) if robot.seen else RobotState()
     return Robot(robot.id, robot.location, robot.owned, said)
@@ -121,13 +125,13 @@ def _of_event(fleet: Fleet, streams: Streams, event: Event) -> str:
     if not any(event.part in _parts_of(one.endpoint) for one in topics):
         return f"{whose} reports what is not shown"
     change = _change(robot.part(event.part), event.value)
-    whole = any(one.endpoint is Endpoint.ROBOT for one in topics)
-    return f"{_part(event.part, change, offline, whole=whole)} {change}, of {whose}{offline}"
+    many = len(streams) > 1 or any(one.endpoint is Endpoint.ROBOT for one in topics)
+    return f"{_part(event.part, change, offline, many=many)} {change}, of {whose}{offline}"
 
 
-def _part(part: str, change: str, offline: str, *, whole: bool) -> str:
-    """What changed: of the many parts of a robot's whole state any will do for what is the same for all."""
-    return "a part" if whole and (offline or change in (AGAIN, UP)) else part.replace("_", " ")
+def _part(part: str, change: str, offline: str, *, many: bool) -> str:
+    """What changed: of many parts that are shown any will do for what is the same for all."""
+    return "a part" if many and (offline or change in (AGAIN, UP)) else part.replace("_", " ")
 
 
 def _follows(topic: Topic, robot: Robot) -> bool:
@@ -174,7 +178,12 @@ def _ways() -> Iterator[tuple[str, tuple[tuple[ScriptStep, ...], ...]]]:
     battery, robot = (ScriptStep(one.value, _SELECTIONS[ONE]) for one in (Endpoint.BATTERY, Endpoint.ROBOT))
     yield (
         SEVERAL,
-        ((battery, battery, _SETTLE), (battery, robot, _CARTI, _SETTLE), (battery, robot, *_forgets(*STATE_PARTS))),
+        (
+            (battery, battery, _SETTLE),
+            (battery, robot, _CARTI, _SETTLE),
+            (battery, robot, *_forgets(*STATE_PARTS)),
+            (battery, robot, _OFF, _SETTLE),
+        ),
     )
 
 

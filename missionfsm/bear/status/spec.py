@@ -34,8 +34,10 @@ from missionfsm.bear.status.state import (
     Event,
     Fleet,
     Request,
+    Robot,
     World,
     initial,
+    whose,
 )
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, WELL_FORMED, answers, matches
 from missionfsm.bear.status.values import faults
@@ -185,11 +187,12 @@ def _names(_: Fleet) -> int:
 
 def _shape(fleet: Fleet) -> tuple[object, ...]:
     """Fleets that differ in values alone are of one shape: what is reported, who is offline, what is armed."""
-    reported = tuple(
-        (one.connection, one.moved, *(part for part in STATE_PARTS if one.part(part) is not None))
-        for one in fleet.robots
-    )
-    return (reported, fleet.fault, fleet.unheard)
+    return (tuple(map(_outline, fleet.robots)), fleet.fault, fleet.unheard)
+
+
+@functools.lru_cache(maxsize=10_000)
+def _outline(robot: Robot) -> tuple[object, ...]:
+    return (robot.connection, robot.moved, *(part for part in STATE_PARTS if robot.part(part) is not None))
 
 
 # A fleet falls into robots: what is streamed of one says nothing of another.
@@ -255,7 +258,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         answers=answers,
-        abstraction=Abstraction(shape=_shape),
+        abstraction=Abstraction(shape=_shape, asked=lambda fleet: (whose(fleet), fleet.fault)),
         parting=Parting(_parts, _alone, _whose),
         rebuilt=specification,
         # No call changes a fleet. What robots reported before a log, and a fault that waits, nobody has seen.

@@ -272,6 +272,16 @@ def _by_id(robots: tuple[Robot, ...]) -> Mapping[str, Robot]:
     return {robot.id: robot for robot in robots}
 
 
+def whose(fleet: Fleet) -> Fleet:
+    """The fleet without what robots report: whose they are, and where; the same object for fleets alike in that."""
+    return _without_reports(tuple((one.id, one.location, one.owned) for one in fleet.robots), fleet.locations)
+
+
+@functools.lru_cache(maxsize=1_000)
+def _without_reports(robots: tuple[tuple[str, str, bool], ...], locations: tuple[Location, ...]) -> Fleet:
+    return Fleet(tuple(Robot(*one) for one in robots), locations)
+
+
 @functools.lru_cache(maxsize=64)
 def initial(world: World) -> Fleet:
     """The fleet of a world."""

@@ -112,6 +112,7 @@ class Guide:
         self.visited: Counter[Hashable] = Counter()
         self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
         self._growth: dict[Any, int] = {}
+        self._idle: dict[Hashable, tuple[str, tuple[str, ...]]] = {}
 
     def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
         """The calls of each operation; those that are the same request in other words only once."""
@@ -240,8 +241,13 @@ class Guide:
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        size = self.system.spec.size
-        key = (here.state if exact else shape, request, self._places(here, refs))
+        size, places = self.system.spec.size, self._places(here, refs)
+        idle = None
+        if self.abstraction.asked is not None and not exact:
+            idle = self.abstraction.asked(here.state), request, places
+            if idle in self._idle:
+                return (self._where(here, shape, []), *self._idle[idle]), shape
+        key = (here.state if exact else shape, request, places)
         if key not in self._edges:
             successors = conversation.judge.automaton.successors
             steps = [
@@ -249,8 +255,10 @@ class Guide:
             ]
             operation = self.system.spec.request_operation(request)
             says = tuple(sorted({rule for step in steps for rule in step.rules}))
+            if idle and steps and all(step.after is here.state for step in steps):
+                self._idle[idle] = operation, says
             after = next((step.after for step in steps if step.after is not here.state), here.state)
-            leads_to = self.abstraction.shape(after)
+            leads_to = shape if after is here.state else self.abstraction.shape(after)
             where = self._where(here, shape, steps)
             self._edges[key] = ((where, operation, says), leads_to) if steps else None
             self._growth[key] = size(after) - size(here.state)
@@ -284,7 +292,9 @@ class Guide:
             if not steps:
                 says = (event.name, "does not happen")
             where = self._where(here, shape, steps)
-            self._edges[key] = ((where, says), self.abstraction.shape(steps[0].after) if steps else shape)
+            after = steps[0].after if steps else here.state
+            leads_to = shape if after is here.state else self.abstraction.shape(after)
+            self._edges[key] = ((where, says), leads_to)
         return self._edges[key]  # type: ignore[return-value]  # a drive always has one
 
     def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:

@@ -17,7 +17,7 @@ from missionfsm.kernel.alphabet import ANY_NAME
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.matrix import Matrix, Open
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident, Request
+from missionfsm.kernel.terms import Incident, Refs, Request, State
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.actions import CANCEL, Action, Bindings, NameRef, filled
@@ -30,6 +30,9 @@ ALIKE = 8
 
 Cell = tuple[str, str]
 """A situation and a kind of action."""
+
+Columns = dict[tuple[Request | Incident, Refs], tuple[Cell, ...]]
+"""What is asked where something stands, to the cells that it meets; it is worked out once."""
 
 
 @frozen
@@ -60,6 +63,8 @@ class Reach:
     times: dict[Cell, int] = field(factory=dict)
     _read: dict[tuple[str, str], Any] = field(factory=dict)
     _guide: Guide | None = None
+    _columns: dict[tuple[State, Open], tuple[State, Open, Columns]] = field(factory=dict)
+    _at: tuple[Explanation, State, Open, Columns] | None = None
 
     @property
     def guide(self) -> Guide:
@@ -187,7 +192,16 @@ class Reach:
         self, here: Explanation, situation: str, asked: Request | Incident, refs: tuple[int | None, ...]
     ) -> tuple[Cell, ...]:
         """The cells of the matrix that asking for something meets."""
-        return tuple((situation, kind) for kind in self.matrix.columns(here.state, opened(here), asked, refs))
+        if self._at is None or self._at[0] is not here:
+            there = here.state, opened(here)
+            # What equals a state that was looked at is that one from now on, so that nobody compares the two again.
+            self._at = here, *self._columns.setdefault(there, (*there, {}))
+        _, state, streams, known = self._at
+        cells = known.get((asked, refs))
+        if cells is None:
+            kinds = self.matrix.columns(state, streams, asked, refs)
+            cells = known[asked, refs] = tuple((situation, kind) for kind in kinds)
+        return cells
 
     def _lack(self, cells: tuple[Cell, ...]) -> bool:
         return any(self.times.get(cell, 0) < OFTEN for cell in cells)

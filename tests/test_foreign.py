@@ -9,6 +9,8 @@ import orjson
 import pytest
 from commandline import CommandLine
 
+from missionfsm.app import foreign
+
 FAULTY = """
 import json, sys
 for line in sys.stdin:
@@ -36,11 +38,11 @@ RIGHT = [sys.executable, "-m", "missionfsm", "adapter", "bear.status"]
 WRONG = [sys.executable, "faulty.py"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_subjects_are_judged_as_they_deserve(command_line: CommandLine, tmp_path: Path) -> None:
     """A right one is accepted, one with a fault is noticed; commands run in the folder, and the status is 0."""
     folder = table(tmp_path, ("theirs", RIGHT, "conforms"), ("its mutant", WRONG, "violates"))
-    ended = command_line("teeth", "bear.status", "--subjects", folder, "--time", 15, "--jobs", 1, "--json", "-")
+    ended = command_line("teeth", "bear.status", "--subjects", folder, "--time", 120, "--jobs", 1, "--json", "-")
     found = orjson.loads(ended.out)
     assert ended.status == 0, ended.out
     assert [(one["name"], one["verdict"], one["right"]) for one in found["subjects"]] == [
@@ -60,6 +62,22 @@ def test_a_wrong_verdict_is_named(command_line: CommandLine, tmp_path: Path) -> 
     assert first == "bear.status: 0 of 1 that are right accepted, 0 of 1 that have a fault noticed"
     assert wrong[0].split(",")[0].strip() == "said to be right: violates"
     assert "dies: no verdict (" in wrong[1]
+
+
+def test_what_is_flagged_of_the_right_one_too_notices_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fault that conforms is noticed by what is flagged of it alone."""
+    flags = {"right": {"AM-09=b"}, "its mutant": {"AM-09=b"}, "another": {"AM-09=b", "an unknown member"}}
+
+    def judge(_name: str, subject: foreign.Subject, _seed: int, _seconds: float) -> foreign.Judged:
+        return foreign.Judged(subject, "conforms", frozenset(flags[subject.name]))
+
+    monkeypatch.setattr(foreign, "judge", judge)
+    given = [foreign.Subject(name, (), "conforms" if name == "right" else "violates", ".") for name in flags]
+    report = foreign.judge_all("bear.status", given, seed=1, seconds=1.0, jobs=1)
+    assert [one.right for one in report.judged] == [True, False, True]
+    assert str(report).splitlines()[0] == (
+        "bear.status: 1 of 1 that are right accepted, 1 of 2 that have a fault noticed (1 of them flagged)"
+    )
 
 
 @pytest.mark.parametrize(

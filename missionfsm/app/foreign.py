@@ -10,13 +10,14 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.text import brief
 from missionfsm.systems import system
+from missionfsm.tools.check.basis import departing
 from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.conform.conform import conform
 
@@ -49,18 +50,20 @@ class Judged:
     Attributes:
         subject: the subject.
         said: the verdict, or why there is none: what its adapter did.
-        flagged: whether the verdict names a reading that departs from the text.
+        flags: what the verdict flags: readings that depart from the text by their names, all else by its line.
         rules: ids of the rules that it breaks.
         lines: how long the history is that shows a violation, in lines.
         seconds: how long it took.
+        usual: what is flagged of the folder's first subject that deserves ``conforms``: no fault is noticed by that.
     """
 
     subject: Subject
     said: str
-    flagged: bool = False
+    flags: frozenset[str] = frozenset()
     rules: tuple[str, ...] = ()
     lines: int | None = None
     seconds: float = 0.0
+    usual: frozenset[str] = frozenset()
 
     @property
     def right(self) -> bool:
@@ -69,8 +72,8 @@ class Judged:
 
     @property
     def only_flagged(self) -> bool:
-        """Whether it conforms by a reading that departs from the text."""
-        return self.said == Outcome.CONFORMS.value and self.flagged
+        """Whether it conforms, and something is flagged that the right one without a fault does not have."""
+        return self.said == Outcome.CONFORMS.value and not self.flags <= self.usual
 
 
 @frozen
@@ -97,7 +100,7 @@ class ForeignReport:
                     "name": one.subject.name,
                     "deserves": one.subject.verdict,
                     "verdict": one.said,
-                    "flagged": one.flagged,
+                    "flagged": bool(one.flags),
                     "right": one.right,
                     "rules": list(one.rules),
                     "lines": one.lines,
@@ -181,10 +184,11 @@ def judge(name: str, subject: Subject, seed: int, seconds: float) -> Judged:
     except SubjectError as error:
         return Judged(subject, f"no verdict ({brief(str(error))})", seconds=time.monotonic() - begin)
     violation = found.violation
+    named = departing(found.flagged)
     return Judged(
         subject,
         found.outcome.value,
-        bool(found.flagged),
+        frozenset((*named, *(line for line in found.flagged if not line.startswith(named)))),
         tuple(rule.id for rule in violation.rules) if violation else (),
         len(violation.history) if violation else None,
         time.monotonic() - begin,
@@ -206,9 +210,14 @@ def judge_all(  # noqa: PLR0913 - all but the first two have a default on the co
         for one in given:
             found.append(judge(name, one, seed, seconds))
             progress()
-        return ForeignReport(name, tuple(found))
+        return _reported(name, found)
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
         for pending in [pool.submit(judge, name, one, seed, seconds) for one in given]:
             found.append(pending.result())
             progress()
-    return ForeignReport(name, tuple(found))
+    return _reported(name, found)
+
+
+def _reported(name: str, found: Sequence[Judged]) -> ForeignReport:
+    usual = next((one.flags for one in found if one.subject.verdict == "conforms"), frozenset())
+    return ForeignReport(name, tuple(evolve(one, usual=usual) for one in found))

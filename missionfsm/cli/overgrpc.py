@@ -120,8 +120,8 @@ class Beginning(enum.Enum):
     ANYWHERE = "anywhere"
 
 
-DRIVEN_SETTLE_SECONDS, SETTLE_SECONDS = 0.02, 0.2
-"""Silence that is waited for where nothing else is said: of a server with the control service, and of any other."""
+COUNTED_SETTLE_SECONDS, SETTLE_SECONDS = 0.02, 0.2
+"""Silence that is waited for where nothing else is said: of a server that counts its messages, and of any other."""
 
 
 @frozen
@@ -192,8 +192,8 @@ class Wire:
             anywhere=self.anywhere,
             tell=complain,
         )
-        if self.settle is None and subject.driven:
-            subject.settle_within(DRIVEN_SETTLE_SECONDS)
+        if self.settle is None and subject.counts:
+            subject.settle_within(COUNTED_SETTLE_SECONDS)
         return subject
 
 

@@ -54,7 +54,9 @@ def serve(  # noqa: PLR0913 - options of the command
     ] = None,
     fault: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME:NUMBER", help="deadline, unavailable, internal, lost, doubled (0 to 1), ends (s)."),
+        typer.Option(
+            metavar="NAME:NUMBER", help="deadline, unavailable, internal, lost, doubled (0 to 1), late, ends (s)."
+        ),
     ] = None,
     broken: Annotated[
         str, typer.Option("--break", metavar="RULE", help="Break a rule on purpose: its id, or a name of `teeth`.")

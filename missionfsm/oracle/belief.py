@@ -132,6 +132,15 @@ class Belief:
             self._note(event)
         return True
 
+    @property
+    def awaits(self) -> bool:
+        """Whether more has to be seen before everything was, unless something was lost on the way."""
+        if self.broken:
+            return False
+        transitions = self.automaton.transitions
+        transitions.successors.reset()
+        return next(iter(transitions.explained(self.node.explanations, Settled)), None) is None
+
     def _note(self, event: Event) -> None:
         """Remember what an event says of the numbers on a channel."""
         if type(event) is Received:

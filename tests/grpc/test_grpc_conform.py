@@ -193,6 +193,16 @@ def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -
     assert found == {"imperfect": (True, True), "strict": (False, False)}
 
 
+@pytest.mark.parametrize("late", [0.3, pytest.param(0.9, marks=pytest.mark.long)])
+def test_a_network_that_is_slower_than_the_silence_is_no_violation(late: float) -> None:
+    """Updates that take many times as long as a silence are waited for, and silences become as long as they take."""
+    slow = serve("bear.mission", control=False, faults=[f"late:{late}"])
+    with slow as robot, subject("bear.mission", robot.target, settle=0.1) as server:
+        verdict = conform(system("bear.mission"), server, examples=1, tours=1, steps=4, seed=1, advice=False)
+        assert verdict.violation is None, str(verdict)
+        assert late < server.target.settle <= 5
+
+
 def test_the_transport_belongs_to_a_server(command_line: CommandLine) -> None:
     """Between the tester and its child process nothing is lost, so that nobody may say so."""
     ended = command_line("conform", "bear.mission", "--transport", "imperfect")

@@ -120,7 +120,7 @@ def test_metadata_and_token_are_sent_with_every_call(tmp_path: Path) -> None:
     for sent in ({"token": read_token(str(token))}, {"metadata": read_metadata(["Authorization: Bearer sesame"])}):
         with serve("bear.mission", token="sesame") as robot:  # noqa: S106 - it is nobody's
             server = GrpcSubject("bear.mission", Target(robot.target, keepalive=5, **sent))
-            assert server.driven
+            assert server.counts
             for method, params in (("reset", {}), ("SubscribeMissionStatus", {}), ("CreateMission", NAVIGATE)):
                 assert server.exchange(method, params).error is None
             server.close()

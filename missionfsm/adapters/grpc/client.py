@@ -19,6 +19,7 @@ from attrs import evolve
 from missionfsm.adapters.grpc import control
 from missionfsm.adapters.grpc.begun import Begun
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, methods, path, unknown
+from missionfsm.adapters.grpc.failures import as_json, in_words
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON
@@ -27,6 +28,10 @@ from missionfsm.kernel.text import brief
 
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
+PATIENCE = 10
+"""How many times as long as a silence usually is something is waited for that is missing."""
+MARGIN = 2
+"""How many times as long as the slowest message took the next ones may take."""
 MAX_ROUNDS = 100
 """Missions that are cancelled in one reset before it is given up."""
 
@@ -79,18 +84,19 @@ class GrpcSubject:
         self._came: dict[int, int] = {}
         self._last = clock()
         self._streams: dict[int, Any] = {}
-        self._counts = True
+        self._counts = False
         self._serial = 0
         self._created: set[str] = set()
         self._patience = max(target.settle_most, target.settle)
         self._control = self._described()
+        self._counts = bool(self._control) and self._is_counting()
         self.unknown: dict[str, int] = {}
         """Fields that the table does not know, by call and path, and how often they came."""
 
     @property
-    def driven(self) -> bool:
-        """Whether the server has the control service."""
-        return bool(self._control)
+    def counts(self) -> bool:
+        """Whether the server's control service tells how many messages it sent, so that none is waited for in vain."""
+        return self._counts
 
     def settle_within(self, seconds: float) -> None:
         """From now on so many seconds of silence mean that everything has been seen."""
@@ -110,9 +116,12 @@ class GrpcSubject:
             self._reset(params.get("world", {}))
             return Exchange({})
         if method == "settle":
-            if not self._all_came():
+            if params.get("patiently"):
+                if not earlier:
+                    self._settle_patiently()
+            elif not self._all_came():
                 self._settle()
-            return Exchange({}, before=self._taken(), earlier=earlier)
+            return Exchange({}, before=(*earlier, *self._taken()))
         if method == "cancel":
             self._cancel(params.get("stream"))
             return Exchange({}, earlier=earlier)
@@ -133,6 +142,8 @@ class GrpcSubject:
             "concurrent": False,
             "requests": "binary",
         }
+        if not self._counts:
+            said["settles"] = "silence"
         if not self._control or self._shared:
             said |= {"worlds": "fixed", "world": self.world, "reset": "soft"}
         return said
@@ -145,7 +156,7 @@ class GrpcSubject:
         try:
             data = ask(self._encoded(method, params), timeout=self.target.timeout, metadata=self.target.sent)
         except grpc.RpcError as error:
-            return Exchange(error=_error(error))
+            return Exchange(error=as_json(error))
         finally:
             self._last = self._clock()
         result = self._decoded(method, data)
@@ -181,10 +192,10 @@ class GrpcSubject:
         metadata = (*self.target.sent, *(named if self._control else ()))
         call = self._channel.unary_stream(path(method))(request, metadata=metadata)
         begun = Begun(call)
-        counted = self._control and self._counts  # such a server says by initial metadata that a stream has begun
-        begun.wait(self.target.timeout if counted else max(self.target.begin, self.target.settle))
+        # A server that counts says by initial metadata that a stream has begun.
+        begun.wait(self.target.timeout if self._counts else max(self.target.begin, self.target.settle))
         if begun.refusal is not None:
-            return Exchange(error=_error(begun.refusal))
+            return Exchange(error=as_json(begun.refusal))
         with self._change:
             self._streams[stream] = call
             self._came[stream] = 0
@@ -192,7 +203,7 @@ class GrpcSubject:
         threading.Thread(
             target=self._listen, args=(method, stream, call), name=f"missionfsm-stream-{stream}", daemon=True
         ).start()
-        if not (self._control and self._counts):
+        if not self._counts:
             self._first_message(stream)
         return Exchange({"stream": stream})
 
@@ -213,7 +224,7 @@ class GrpcSubject:
             for data in call:
                 self._arrive(stream, "message", {"message": self._decoded(method, data)})
         except grpc.RpcError as error:
-            self._arrive(stream, "closed", {"error": _error(error)})
+            self._arrive(stream, "closed", {"error": as_json(error)})
         else:
             self._arrive(stream, "closed", {})
 
@@ -254,21 +265,35 @@ class GrpcSubject:
 
     def _all_came(self) -> bool:
         """Wait until all has come that was sent, as the control service counts it; False where it does not."""
-        if not (self._control and self._counts):
+        if not self._counts:
             return False
         if not self._came:
             return True
         try:
-            said = self._asked_of_control("Settle", {"session": self._session})
-            sent = {int(stream): int(count) for stream, count in said["streams"].items()}
-        except (SubjectError, AttributeError, KeyError, TypeError, ValueError):
-            self._counts = False  # a control service of somebody else's, that has only the rest
+            sent = self._counted()
+        except SubjectError:  # it is away for a moment
             return False
         self._wait(
             lambda: all(self._came.get(stream, count) >= count for stream, count in sent.items()),
             self.target.settle_most,
         )
         return True
+
+    def _is_counting(self) -> bool:
+        """Whether the control service counts what it sends; one of somebody else's may have only the rest."""
+        try:
+            self._counted()
+        except SubjectError:
+            return False
+        return True
+
+    def _counted(self) -> dict[int, int]:
+        """How many messages each stream was sent, once none is on its way. Raises SubjectError."""
+        said = self._asked_of_control("Settle", {"session": self._session})
+        try:
+            return {int(stream): int(count) for stream, count in said["streams"].items()}
+        except (AttributeError, KeyError, TypeError, ValueError):
+            raise SubjectError(f"the control service answered Settle with {brief(said)}") from None
 
     def _settle(self) -> None:
         """Wait for a silence."""
@@ -279,6 +304,16 @@ class GrpcSubject:
             if rest <= 0:
                 return
             self._sleep(rest)
+
+    def _settle_patiently(self) -> None:
+        """Wait much longer for something that is missing; where it comes, from now on all are waited for so long."""
+        caused = self._last
+        with self._change:
+            self._change.wait_for(lambda: self._arrived, self.target.settle * PATIENCE)
+            took = self._last - caused
+        if took > 0:
+            self.settle_within(min(max(self.target.settle, MARGIN * took), self.target.settle_most))
+            self._settle()
 
     # The control service, and what is done without.
 
@@ -302,7 +337,7 @@ class GrpcSubject:
             )
             return control.unpack(answer)
         except grpc.RpcError as error:
-            raise SubjectError(f"the control service answered {name} with {_words(error)}") from None
+            raise SubjectError(f"the control service answered {name} with {in_words(error)}") from None
 
     def _reset(self, world: JSON) -> None:
         self._cancel_all()
@@ -344,7 +379,7 @@ class GrpcSubject:
         try:
             message = self._decoded(method, next(call))
         except (grpc.RpcError, StopIteration) as error:
-            raise SubjectError(f"SubscribeMissionStatus shows nothing: {_words(error)}") from None
+            raise SubjectError(f"SubscribeMissionStatus shows nothing: {in_words(error)}") from None
         finally:
             call.cancel()
         return list((message.get("missionStates") or {}).get("missions", ()))
@@ -369,12 +404,3 @@ class GrpcSubject:
         if answer.error is not None:
             said = f"{answer.error['status']}: {answer.error.get('message', '')}"
             raise SubjectError(f"the robot cannot be reset: {name} was answered {brief(said)}")
-
-
-def _error(error: Any) -> JSON:  # noqa: ANN401 - grpc's errors are calls as well
-    return {"status": error.code().name, "message": error.details() or ""}
-
-
-def _words(error: Any) -> str:  # noqa: ANN401 - as above
-    code = getattr(error, "code", None)
-    return f"{code().name}: {error.details()}" if callable(code) else "its end"

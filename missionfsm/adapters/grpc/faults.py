@@ -17,6 +17,7 @@ class Faults:
         unavailable: a call, or a subscription, answers UNAVAILABLE and has no effect.
         internal: the same with INTERNAL.
         lost: a message of a stream, but the first, is left out.
+        late: seconds that every message of a stream, but the first, is on its way; 0 for none.
         doubled: a message of a stream is sent twice, with the same number and timestamp.
         ends: seconds after which every stream ends cleanly; None: never.
     """
@@ -25,6 +26,7 @@ class Faults:
     unavailable: float = 0.0
     internal: float = 0.0
     lost: float = 0.0
+    late: float = 0.0
     doubled: float = 0.0
     ends: float | None = None
 
@@ -44,13 +46,14 @@ class Faults:
                 value = float(number)
             except ValueError:
                 raise ValueError(f"{text!r}: {number!r} is no number") from None
-            if not (0 < value < float("inf") if name == "ends" else 0 <= value <= 1):
-                raise ValueError(f"{text!r}: {'seconds are more than 0' if name == 'ends' else 'it is from 0 to 1'}")
+            if not (0 < value < float("inf") if name in _SECONDS else 0 <= value <= 1):
+                raise ValueError(f"{text!r}: {'seconds are more than 0' if name in _SECONDS else 'it is from 0 to 1'}")
             found = evolve(found, **{name: value})
         return found
 
 
-_NAMES = ("deadline", "unavailable", "internal", "lost", "doubled", "ends")
+_NAMES = ("deadline", "unavailable", "internal", "lost", "late", "doubled", "ends")
+_SECONDS = ("late", "ends")
 
 
 class Dice:

@@ -37,7 +37,7 @@ class Inbox:
         self._called = False  # before the queue is emptied, so that what comes meanwhile is not left in it
         while self._came:
             to, message = self._came.popleft()
-            to.waiting.put_nowait(message)
+            to.take(message)
 
 
 class Outgoing:
@@ -46,6 +46,7 @@ class Outgoing:
     Args:
         inbox: how messages of other threads get into the server's loop.
         metadata: what the subscriber sent along; it may name a session, and the stream within it.
+        late: how many seconds every message but the first is on its way.
 
     Attributes:
         session, stream: those names; "" for none.
@@ -53,12 +54,14 @@ class Outgoing:
         waiting: messages that did not, and marks that are to be set once all before them did.
     """
 
-    def __init__(self, inbox: Inbox, metadata: Mapping[str, str]) -> None:
+    def __init__(self, inbox: Inbox, metadata: Mapping[str, str], late: float = 0.0) -> None:
         self.session = metadata.get(control.SESSION_KEY, "")
         self.stream = metadata.get(control.STREAM_KEY, "")
         self.sent = 0
         self.waiting: asyncio.Queue[JSON | asyncio.Future[None]] = asyncio.Queue()
         self._inbox = inbox
+        self._late = late
+        self._begun = self._closed = False
 
     @property
     def unsent(self) -> int:
@@ -68,6 +71,20 @@ class Outgoing:
     def come(self, message: JSON) -> None:
         """Take a message, from whichever thread it comes."""
         self._inbox.put(self, message)
+
+    def take(self, what: JSON | asyncio.Future[None]) -> None:
+        """Let a message, or a mark, wait to go out, once it has been on its way."""
+        if self._late and self._begun:
+            self._inbox.loop.call_later(self._late, self._put, what)
+        else:
+            self._put(what)
+        self._begun = True
+
+    def _put(self, what: JSON | asyncio.Future[None]) -> None:
+        if not self._closed:
+            self.waiting.put_nowait(what)
+        elif isinstance(what, asyncio.Future):
+            what.set_result(None)
 
     async def next(self, seconds: float | None) -> JSON:
         """The next message, once all before it went out; None once so many seconds have passed."""
@@ -85,11 +102,12 @@ class Outgoing:
     def flushed(self) -> asyncio.Future[None]:
         """Done once all that waits now went out, or the stream ended."""
         found = self._inbox.loop.create_future()
-        self.waiting.put_nowait(found)
+        self.take(found)
         return found
 
     def close(self) -> None:
         """Nothing goes out any more."""
+        self._closed = True
         while not self.waiting.empty():
             found = self.waiting.get_nowait()
             if isinstance(found, asyncio.Future):

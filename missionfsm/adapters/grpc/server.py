@@ -170,7 +170,7 @@ class _Handlers(grpc.GenericRpcHandler):
     async def _stream(self, method: Method, request: bytes, context: Context) -> AsyncIterator[bytes]:
         params = await self._read(method, request, context)
         loop = asyncio.get_running_loop()
-        outgoing = Outgoing(self._inbox, dict(context.invocation_metadata() or ()))
+        outgoing = Outgoing(self._inbox, dict(context.invocation_metadata() or ()), self._dice.faults.late)
         answered = self._live.subscribe(method.name, params, outgoing.come, self._kept_from())
         if answered.error is not None:
             await _refuse(context, answered)

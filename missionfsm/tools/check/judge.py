@@ -134,6 +134,14 @@ class Judge:
             self.lines.append(line)
         return self.take(events, place)
 
+    @property
+    def awaits(self) -> bool:
+        """Whether a message has yet to come, as far as can be told, unless it was lost on the way."""
+        try:
+            return self.right and isinstance(self.belief, Belief) and self.belief.awaits
+        except ExhaustedError:
+            return False
+
     def take(self, events: tuple[Event, ...], place: int = 0) -> bool:
         """Take the events of a line into account that was read already and need not be shown; see `feed`.
 

@@ -31,6 +31,8 @@ from missionfsm.tools.conform.actions import SETTLE, WRONG_NAME, Action, NameRef
 from missionfsm.tools.conform.handshake import AdapterInfo
 from missionfsm.tools.placeholders import fill, is_template
 
+MAX_WAITS = 10
+"""How many times in a row something that is missing is waited for while something else comes."""
 _Read = TypeVar("_Read")
 
 
@@ -213,8 +215,21 @@ class Conversation:
         exchange = self._result(SETTLE, {})
         self._notifications(exchange.earlier)
         self._notifications(exchange.before)
+        if self.partner.info.silences:
+            self._wait_for_what_is_missing()
         self._note({"settled": True})
         self._notifications(exchange.after)
+
+    def _wait_for_what_is_missing(self) -> None:
+        """Where a silence was taken for the end, wait for what is missing until it comes, or until it does not.
+
+        A network that is slow is no robot that says nothing.
+        """
+        for _ in range(MAX_WAITS):
+            came = self._result(SETTLE, {"patiently": True}).before if self.judge.awaits else ()
+            if not came:
+                return
+            self._notifications(came)
 
     def _result(self, method: str, params: JSON) -> Exchange:
         exchange = self.partner.subject.exchange(method, params)

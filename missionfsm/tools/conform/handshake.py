@@ -33,6 +33,8 @@ class AdapterInfo:
         world: the one world that it has; None where it takes any.
         soft_reset: whether ids, numbers and what was before live on over a reset.
         binary: whether requests travel as binary protobuf.
+        silences: whether a silence is all that tells it that everything has been seen. Then something may still be on
+            its way, and it takes ``"patiently": true`` with ``settle``.
         unknown: what it declared that the system does not have, each in words, with what may be meant.
     """
 
@@ -42,6 +44,7 @@ class AdapterInfo:
     world: JSON = None
     soft_reset: bool = False
     binary: bool = False
+    silences: bool = False
     unknown: tuple[str, ...] = ()
 
 
@@ -62,6 +65,7 @@ def handshake(system: System, subject: Subject) -> AdapterInfo:
         _fixed_world(system, result) if _declared(result, "worlds", "fixed") else None,
         _declared(result, "reset", "soft"),
         _declared(result, "requests", "binary"),
+        _declared(result, "settles", "silence"),
         (
             *_unknown("drive", drives, system.spec.drives),
             *_unknown("method", methods, system.codec.methods),

@@ -21,6 +21,8 @@ from missionfsm.kernel.terms import Incident, State, View
 
 MAX_REMEMBERED = 1_000
 """How many steps a model remembers; states that list all that has ended are large."""
+_UNKNOWN = Step(None)
+"""Stands for what was not asked yet; None is a step that no reading allows."""
 
 
 @frozen
@@ -153,7 +155,10 @@ class Reference:
 
     def outcome(self, state: State, request: object, refs: tuple[int | None, ...] = ()) -> Step:
         """What the reference answers in a state: the first outcome that its readings allow."""
-        step = self._remembered((state, request, refs), lambda: self.system.spec.outcomes(state, request, refs))
+        key = (state, request, refs)
+        step = self._chosen.get(key)  # what is known is found without a detour: every call comes by here
+        if step is None:
+            step = self._remembered(key, self.system.spec.outcomes, state, request, refs)
         if step is None:
             message = f"{self.system.name}: no outcome under this choice of readings for {request!r}"
             raise AssertionError(message)
@@ -179,25 +184,28 @@ class Reference:
 
     def urgent(self, state: State) -> Step | None:
         """What the reference does by itself at once, if anything."""
-        return self._remembered((state,), lambda: self.system.spec.urgent(state))
+        return self._remembered((state,), self.system.spec.urgent, state)
 
     def driven(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
         """How something that the environment does comes about; None where it does not apply."""
         steps = self.system.spec.drives[event.name].steps
-        return self._remembered((state, "drive", event, refs), lambda: steps(state, event, refs))
+        return self._remembered((state, "drive", event, refs), steps, state, event, refs)
 
     def cancel(self, here: Snapshot, channel: Name) -> Snapshot:
         """Give a stream up; one that does not exist is no error."""
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
-    def _remembered(self, key: tuple[Hashable, ...], steps: Callable[[], tuple[Step, ...]]) -> Step | None:
+    def _remembered(
+        self, key: tuple[Hashable, ...], steps: Callable[..., tuple[Step, ...]], *arguments: object
+    ) -> Step | None:
         """The first of some steps that the readings allow; `key` begins with the state, and says which steps."""
-        if key not in self._chosen:
-            allowed = next((step for step in steps() if meet(self.choice, step.assumes)), None)
+        step = self._chosen.get(key, _UNKNOWN)
+        if step is _UNKNOWN:
+            allowed = next((step for step in steps(*arguments) if meet(self.choice, step.assumes)), None)
             if len(self._chosen) >= MAX_REMEMBERED:
                 self._chosen.clear()
-            self._chosen[key] = self.mutate_step(key[0], allowed)
-        return self._chosen[key]
+            step = self._chosen[key] = self.mutate_step(key[0], allowed)
+        return step
 
     def _settle(self, here: Snapshot, sent: list[Sent]) -> tuple[Snapshot, list[Sent]]:
         """Take everything urgent at once."""

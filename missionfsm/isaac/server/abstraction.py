@@ -16,7 +16,9 @@ def shape(server: Server) -> object:
 def _of_robot(server: Server, robot: str | None) -> object:
     own = [one for one in server.missions if one.robot == robot]
     under_way = tuple(
-        (one.status.value, one.run is not None, one.channel, one.link is None) for one in own if one.status in UNDER_WAY
+        (one.status.value, one.run is not None, one.channel, one.sent_on is None)
+        for one in own
+        if one.status in UNDER_WAY
     )
     queue = _queue([one for one in own if one.status is Status.QUEUED])
     lingers = any(one.lingers for one in own)

@@ -18,11 +18,12 @@ from missionfsm.isaac.server.state import (
     DAY,
     DOOM,
     DROP,
-    LOOK,
+    PASS_PERIOD,
     RUN,
     SILENCE,
     SILENT,
     START,
+    START_COUNTS_FROM,
     Clock,
     Move,
     Server,
@@ -37,7 +38,7 @@ def by(state: Server, due: int) -> int:
     return state.tolerance + (state.next_pass(due) if state.letters(AI_39) == "b" else due)
 
 
-def looks(move: Move) -> Move:
+def with_later_clocks(move: Move) -> Move:
     """AI-39 b has been decided: clocks that run may strike later than was thought."""
     missions = tuple(
         evolve(one, clocks=tuple(_later(move.state, clock) for clock in one.clocks)) if one.clocks else one
@@ -67,7 +68,7 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     if kind != SILENT and seconds < DAY and counts(move.state, kind, since, whole=True):
         whole = seconds * MICROSECONDS
         clocks.append(
-            Clock(kind, since, max(low, whole + low - tolerance), whole + high + LOOK + tolerance, whole=True)
+            Clock(kind, since, max(low, whole + low - tolerance), whole + high + PASS_PERIOD + tolerance, whole=True)
         )
     return ticking(move, index, clocks)
 
@@ -75,17 +76,17 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
 def ticking(move: Move, index: int, clocks: Iterable[Clock]) -> Move:
     """These are the clocks of a mission that run."""
     ordered = tuple(sorted(clocks, key=lambda one: (one.kind, one.since, one.whole)))
-    return move if ordered == move.state.missions[index].clocks else move.mission(index, clocks=ordered)
+    return move if ordered == move.state.missions[index].clocks else move.with_mission(index, clocks=ordered)
 
 
 def stopped(move: Move, index: int, *kinds: tuple[str, str]) -> Move:
     """Clocks of a mission, each a kind and a beginning, run no more."""
     mission = move.state.missions[index]
     left = tuple(one for one in mission.clocks if (one.kind, one.since) not in kinds)
-    return move if len(left) == len(mission.clocks) else move.mission(index, clocks=left)
+    return move if len(left) == len(mission.clocks) else move.with_mission(index, clocks=left)
 
 
-START_CLOCKS = tuple((START, since) for since in ("send", "submit", "ready", "connect"))
+START_CLOCKS = tuple((START, since) for since in START_COUNTS_FROM)
 
 
 def zero_means(move: Move, *times: int | None) -> Iterator[tuple[str, Move]]:

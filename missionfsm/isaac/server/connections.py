@@ -31,7 +31,8 @@ from missionfsm.isaac.server.readings import (
 from missionfsm.isaac.server.state import (
     DROP,
     ENDED,
-    LOOK,
+    NOBODYS,
+    PASS_PERIOD,
     START,
     UNDER_WAY,
     Link,
@@ -62,7 +63,7 @@ def drops(move: Move, link: Link, *, seen: bool = False) -> Moves:
 
 def _succeeded(move: Move, gone: Link) -> Moves:
     """Another connection that said the same name takes over, at once or when it says it again (AI-16.back)."""
-    holder = None if gone.over is None else move.state.link(gone.over)
+    holder = None if gone.over is None else move.state.link_at(gone.over)
     if gone.serves and holder is not None and holder.name == gone.name:
         # The pass comes only now: it finds the older connection, and never knew of the newer.
         unnoticed, _ = split(move, AI_39, "b")
@@ -82,7 +83,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
 
 def inherited(before: Server, move: Move) -> Moves:
     """A move that may have ended the connection of a robot, with what another of that name becomes then."""
-    ended = [one for one in before.links if one.serves and move.state.link(one.slot) is None]
+    ended = [one for one in before.links if one.serves and move.state.link_at(one.slot) is None]
     if ended:
         yield from _succeeded(move, ended[0])
     else:
@@ -167,7 +168,7 @@ def _renamed(move: Move, link: Link, key: str) -> Moves:
         yield ignored
     if bound is not None:
         for after in lost(bound, link):
-            for free in _succeeded(after.link(link.slot, name=None, serves=False), link):
+            for free in _succeeded(after.with_link(link.slot, name=None, serves=False), link):
                 yield from _claims(free, link, key)
 
 
@@ -187,7 +188,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
     """A connection that serves no robot says a name."""
     holder = move.state.serving(key)
     passes = "b" in move.state.letters(AI_39) and "s" in move.state.letters(AI_39_ORDER)
-    move = move.link(link.slot, name=key, held=(LOOK, move.state.next_pass(0)) if passes else (0, 0))
+    move = move.with_link(link.slot, name=key, held=(PASS_PERIOD, move.state.next_pass(0)) if passes else (0, 0))
     if holder is None:
         yield from _served(move, link)
         return
@@ -196,7 +197,9 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
     for letter, way in ways(move, AI_16, "a", "b", "d", "n"):
         if letter == "n" and "b" in way.state.letters(AI_39):
             fresh = way.state.next_pass(way.at[1])
-            yield from _takes_over(way.link(link.slot, over=holder.slot, fresh=fresh), link, holder, unnoticed=True)
+            yield from _takes_over(
+                way.with_link(link.slot, over=holder.slot, fresh=fresh), link, holder, unnoticed=True
+            )
         elif letter == "n" or (letter == "a" and newer):
             yield from _takes_over(way, link, holder)
         elif letter == "d":
@@ -216,9 +219,13 @@ def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False
 
 def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Moves:
     """A connection becomes the robot in the place of another, which is kept."""
-    displaced = move.link(holder.slot, serves=False)
-    under_way = any((one.status in UNDER_WAY or one.lingers) and one.link == holder.slot for one in move.state.missions)
-    kept = any(one.status in UNDER_WAY and one.link is None and one.robot == holder.name for one in move.state.missions)
+    displaced = move.with_link(holder.slot, serves=False)
+    under_way = any(
+        (one.status in UNDER_WAY or one.lingers) and one.sent_on == holder.slot for one in move.state.missions
+    )
+    kept = any(
+        one.status in UNDER_WAY and one.sent_on is None and one.robot == holder.name for one in move.state.missions
+    )
     if not under_way and not kept:
         yield from _served(displaced, link)
         return
@@ -235,16 +242,16 @@ def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Move
 def _untied(move: Move, holder: Link) -> Move:
     """What was sent on an older connection may time out or not until a pass has noticed that another took over."""
     for index, mission in enumerate(move.state.missions):
-        if mission.status in UNDER_WAY and mission.link == holder.slot:
-            move = move.mission(index, clocks=tuple(evolve(one, hi=None) for one in mission.clocks))
+        if mission.status in UNDER_WAY and mission.sent_on == holder.slot:
+            move = move.with_mission(index, clocks=tuple(evolve(one, hi=None) for one in mission.clocks))
     return move
 
 
 def _served(move: Move, link: Link) -> Moves:
     """A connection becomes the robot; what it said too early and was kept is taken up."""
-    found = move.state.link(link.slot)
+    found = move.state.link_at(link.slot)
     assert found is not None, "the connection is open"  # noqa: S101 - callers have it from the state
-    move = move.link(link.slot, serves=True, early=())
+    move = move.with_link(link.slot, serves=True, early=())
     for index, mission in enumerate(move.state.missions):
         if mission.robot == found.name and mission.status is Status.QUEUED:
             move = started(move, index, START, "connect")
@@ -266,7 +273,7 @@ def _reports(move: Move, link: Link, report: Report) -> Moves:
         ignored, kept = split(move, AI_18_EARLY, "a")
         if kept is not None:
             early = (*link.early, report) if report not in link.early else link.early
-            yield kept.link(link.slot, early=early)
+            yield kept.with_link(link.slot, early=early)
         if ignored is None:
             return
         move = ignored
@@ -274,7 +281,7 @@ def _reports(move: Move, link: Link, report: Report) -> Moves:
 
 
 def _could_matter(state: Server, report: Report) -> bool:
-    meant = {report.named, report.header} - {None, -1}
+    meant = {report.named, report.header} - {None, NOBODYS}
     if not meant:
         return any(one.status in UNDER_WAY for one in state.missions)
     return any(state.missions[index].sent for index in meant if index is not None)
@@ -282,7 +289,7 @@ def _could_matter(state: Server, report: Report) -> bool:
 
 def _believed(move: Move, slot: int, report: Report) -> Moves:
     """What a status does, for each way in which it may be matched to a mission (AI-10)."""
-    link = move.state.link(slot)
+    link = move.state.link_at(slot)
     assert link is not None, "the connection is open"  # noqa: S101 - callers have it from the state
     targets: dict[tuple[int, ...], str] = {}
     current = _current(move.state, link, report)
@@ -313,7 +320,7 @@ def _heard_out(move: Move, link: Link, report: Report) -> Moves:
     lingering = [index for index, one in enumerate(missions) if one.lingers and one.robot == link.name]
     if lingering and report.status != "running":
         for index in lingering:
-            move = move.mission(index, lingers=False)
+            move = move.with_mission(index, lingers=False)
         yield move
 
 
@@ -333,10 +340,12 @@ def _may_report(state: Server, link: Link, index: int) -> bool:
     mission = state.missions[index]
     if not mission.sent or any(one.kind == DROP for one in mission.clocks):
         return False
-    elsewhere = mission.link is not None and mission.link != link.slot and state.link(mission.link) is not None
+    elsewhere = (
+        mission.sent_on is not None and mission.sent_on != link.slot and state.link_at(mission.sent_on) is not None
+    )
     if link.serves and mission.robot == link.name:
         return not elsewhere or mission.status in ENDED
-    return mission.link == link.slot and mission.robot == link.name
+    return mission.sent_on == link.slot and mission.robot == link.name
 
 
 def _on_channel(move: Move, index: int, report: Report) -> Moves:
@@ -372,7 +381,7 @@ def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:
     final = {"success": Status.SUCCESS, "failure": Status.FAILED}.get(report.status)
     move = move.to(move.state, rules.LATE.id)
     if final is not None and mission.lingers:
-        move = move.mission(index, lingers=False)
+        move = move.with_mission(index, lingers=False)
     if final is None or mission.status not in ENDED or mission.status is final:
         yield move
         return
@@ -380,4 +389,4 @@ def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:
     if ignored is not None:
         yield ignored
     if believed is not None:
-        yield believed.mission(index, status=final)
+        yield believed.with_mission(index, status=final)

@@ -21,7 +21,18 @@ from missionfsm.isaac.server.readings import (
     AI_39_ORDER,
     AMBIGUITIES,
 )
-from missionfsm.isaac.server.state import DOOM, DROP, SILENT, START, WAITS, Left, Mission, Move, Server
+from missionfsm.isaac.server.state import (
+    DOOM,
+    DROP,
+    SILENT,
+    START,
+    START_COUNTS_FROM,
+    WAITS,
+    Left,
+    Mission,
+    Move,
+    Server,
+)
 from missionfsm.kernel.readings import Ambiguity, Assumption
 
 _ABOUT_CLOCKS = frozenset(one.id for one in (AI_05, AI_06, AI_07, AI_24_WHOLE, AI_31))
@@ -81,7 +92,7 @@ def counts(state: Server, kind: str, since: str, *, whole: bool) -> bool:
     if ("w" if whole else "x") not in state.letters(AI_24_WHOLE):
         return False
     if kind == START:
-        return {"send": "a", "submit": "b", "ready": "c", "connect": "d"}[since] in state.letters(AI_05)
+        return START_COUNTS_FROM[since] in state.letters(AI_05)
     if since == "send":
         return "b" in state.letters(AI_06) or ("a" in state.letters(AI_06) and "c" in state.letters(AI_07))
     if since == WAITS:

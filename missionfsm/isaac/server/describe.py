@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.inputs import DEFAULT_START, Connects, Drops, Incoming, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import (
+    BAD,
+    DEFAULT_START,
+    FOREIGN,
+    NAME,
+    NOISE,
+    STATUS,
+    Connects,
+    Drops,
+    Incoming,
+    Passes,
+    Statuses,
+    Submission,
+)
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.codec import Malformed
@@ -53,12 +66,12 @@ def _submission(asked: Submission) -> str:
 
 
 def _heard(heard: Incoming) -> str:
-    if heard.kind == "name":
+    if heard.kind == NAME:
         return f"a robot says its name, {heard.what!r}"
-    if heard.kind == "status":
+    if heard.kind == STATUS:
         about = "of a mission" if heard.named else "of no mission in particular"
         return f"a robot reports {heard.what.upper()} {about} on {heard.channel}"
-    kinds = {"noise": "a message for nobody", "bad": "a line that is no message", "foreign": "a message with buffers"}
+    kinds = {NOISE: "a message for nobody", BAD: "a line that is no message", FOREIGN: "a message with buffers"}
     return f"a robot sends {kinds[heard.kind]}"
 
 

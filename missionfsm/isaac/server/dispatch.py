@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.clocks import Moves, looks, started
+from missionfsm.isaac.server.clocks import Moves, started, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.lifecycle import becomes, cancellations, ends, failures_that_cancel, forgotten, sent_again
@@ -91,7 +91,7 @@ def _given(state: Server, link: Link) -> Iterator[Mission]:
     """The missions of a connection's robot, but for those that were sent elsewhere and keep nobody busy."""
     apart = state.letters(AI_16_UNDER_WAY) == "m"
     for one in state.missions:
-        if one.robot == link.name and not (apart and one.link is not None and one.link != link.slot):
+        if one.robot == link.name and not (apart and one.sent_on is not None and one.sent_on != link.slot):
             yield one
 
 
@@ -140,7 +140,7 @@ def _whether_anybody(move: Move) -> tuple[Move, ...]:
 def _sent_later(later: Move, chosen: Move, *, decides: bool) -> Moves:
     """Nothing is sent before the next pass: a move where that has just been decided, or something with it."""
     if later.state.letters(AI_39) != chosen.state.letters(AI_39):
-        yield looks(later)
+        yield with_later_clocks(later)
     elif decides:
         yield later
 
@@ -259,8 +259,8 @@ def sends(move: Move, link: Link, index: int) -> Moves:
         chosen, _ = split(move, AI_19, "b")
         if chosen is None:
             return
-        move = chosen.mission(index, robot=link.name)
-    move = becomes(move, index, "send").mission(index, link=link.slot, sent=True)
+        move = chosen.with_mission(index, robot=link.name)
+    move = becomes(move, index, "send").with_mission(index, sent_on=link.slot, sent=True)
     for kind, since in ((START, "send"), (RUN, "send"), (RUN, WAITS)):
         move = started(move, index, kind, since)
     because = [rules.SENT.id, rules.UNNAMED.id]
@@ -290,7 +290,7 @@ def in_vain(move: Move, gone: Link) -> Moves:
                 continue
             if gone.slot >= 0:
                 unheard = after
-            for letter, way in ways(unheard.mission(index, link=None), AI_15_SENT, "c", "a", "b"):
+            for letter, way in ways(unheard.with_mission(index, sent_on=None), AI_15_SENT, "c", "a", "b"):
                 if letter == "c":
                     yield ends(way, index, "lose")
                 else:

@@ -14,7 +14,7 @@ from attrs import define, field
 
 from missionfsm.isaac.server.inputs import NAME, Drops, Incoming, Submission
 from missionfsm.isaac.server.readings import AI_19
-from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Link, Mission, Server, topic
+from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Link, Mission, Server, first_link_ref, missions_of, topic
 from missionfsm.kernel.focus import DRIVEN, RETURNED, Focus
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
@@ -54,8 +54,8 @@ def _touched_by(index: int, mission: Mission, named: Container[str | None], *, a
     """What a mission that has not ended is of one part with: itself at least."""
     yield index
     yield from mission.waits
-    if mission.link is not None:
-        yield "link", mission.link
+    if mission.sent_on is not None:
+        yield "link", mission.sent_on
     if mission.robot in named or mission.status in UNDER_WAY:
         yield "robot", mission.robot
     if mission.robot is None and anybody:
@@ -113,7 +113,7 @@ def _about(server: Server, focus: Focus) -> tuple[set[int], set[int], set[str | 
     names: set[str | None] = set()
     asked = ((focus.what, focus.refs),) if focus.kind in (RETURNED, DRIVEN) else ()
     for what, refs in (*asked, *focus.calls):
-        missions |= _missions(server, refs)
+        missions |= missions_of(server, refs)
         if isinstance(what, Submission):
             names.add(what.robot)
         elif isinstance(what, Incoming | Drops):
@@ -123,10 +123,6 @@ def _about(server: Server, focus: Focus) -> tuple[set[int], set[int], set[str | 
     return missions, slots, names
 
 
-def _missions(server: Server, refs: Refs) -> set[int]:
-    return {ref // 2 for ref in refs if ref is not None and 0 <= ref < 2 * len(server.missions)}
-
-
 def _slots(server: Server, refs: Refs) -> set[int]:
-    first = 2 * len(server.missions)
+    first = first_link_ref(server)
     return {server.ends[ref - first].slot for ref in refs if ref is not None and ref >= first}

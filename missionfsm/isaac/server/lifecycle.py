@@ -36,6 +36,7 @@ from missionfsm.isaac.server.state import (
     RUN,
     SILENT,
     START,
+    START_COUNTS_FROM,
     UNDER_WAY,
     WAITS,
     Clock,
@@ -51,12 +52,12 @@ def becomes(move: Move, index: int, trigger: str) -> Move:
     """A mission moves on its chart."""
     after = LIFECYCLE.after(trigger, move.state.missions[index].status)
     assert after is not None, f"{trigger} is no move"  # noqa: S101 - callers look first
-    return move.mission(index, status=after)
+    return move.with_mission(index, status=after)
 
 
 def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
     """A mission ends; those that wait for it wait no longer, or are doomed."""
-    move = becomes(move, index, trigger).mission(index, clocks=())
+    move = becomes(move, index, trigger).with_mission(index, clocks=())
     status = move.state.missions[index].status
     for other, mission in enumerate(move.state.missions):
         if index in mission.waits:
@@ -64,7 +65,7 @@ def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
             if status in FAILURES or index in mission.fated:
                 status_then = status if status in FAILURES else Status.FAILED
                 doomed = tuple(sorted({*doomed, status_then}, key=lambda one: one.value))
-            move = move.mission(other, waits=tuple(one for one in mission.waits if one != index), doomed=doomed)
+            move = move.with_mission(other, waits=tuple(one for one in mission.waits if one != index), doomed=doomed)
             if move.state.missions[other].ready:
                 move = started(move, other, START, "ready")
     return move.to(move.state, *because)
@@ -118,7 +119,7 @@ def failures_that_cancel(mission: Mission) -> str:
 def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
     """Where a clock that is over aborts its mission, and where it means nothing (it runs no more)."""
     if clock.kind == DROP:
-        return tuple(_noticed(move, index)), ()
+        return tuple(_drop_noticed(move, index)), ()
     if clock.kind == DOOM:
         return (ends(move, index, "cancel", rules.CANCELED.id),), ()
     alike: Move | None = move
@@ -149,23 +150,19 @@ def _aborting(move: Move, index: int, clock: Clock) -> tuple[list[Move], list[Mo
     return aborting, meaningless
 
 
-_START_COUNTS_FROM = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}
-"""What the time to start counts from, with the letter of AI-05."""
-
-
 def _counts(mission: Mission, clock: Clock) -> tuple[tuple[Ambiguity, str], ...]:
     """The questions that make a clock count, each with the letters that do."""
     if clock.kind == SILENT:
         return ((AI_31, "a"),)
     if clock.kind == START:
-        since = (AI_05, _START_COUNTS_FROM[clock.since])
+        since = (AI_05, START_COUNTS_FROM[clock.since])
         return (since, (AI_07, "ab")) if mission.status is Status.STARTED else (since,)
     if clock.since in ("send", "status"):
         return (AI_06, "a"), (AI_07, "c" if clock.since == "send" else "ab")
     return ((AI_06, "d" if clock.since == WAITS else "c"),)
 
 
-def _noticed(move: Move, index: int) -> Moves:
+def _drop_noticed(move: Move, index: int) -> Moves:
     """A scheduling pass notices that the connection of a mission has dropped (AI-15.when p)."""
     for one in move.state.gone:
         if one.serves and one.name == move.state.missions[index].robot:
@@ -180,7 +177,7 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
     because = {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE}[kind].id
     mission = move.state.missions[index]
     after = ends(move, index, "time out", because)
-    link = None if mission.link is None else move.state.link(mission.link)
+    link = None if mission.sent_on is None else move.state.link_at(mission.sent_on)
     if link is None and mission.status in UNDER_WAY:
         link = move.state.serving(mission.robot)
     if link is None or mission.status not in UNDER_WAY:
@@ -189,7 +186,7 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
     quiet, closing = split(after, AI_08, "ad")
     if quiet is not None:
         lingers = "d" in quiet.state.letters(AI_08)
-        yield quiet.mission(index, link=link.slot, lingers=True) if lingers else quiet
+        yield quiet.with_mission(index, sent_on=link.slot, lingers=True) if lingers else quiet
     if closing is not None:
         yield from closed(closing, link)
 
@@ -197,8 +194,8 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
 def untimed(move: Move, slot: int) -> Move:
     """What was sent on an older connection goes on there without its timeouts (AI-16.under-way m)."""
     for index, mission in enumerate(move.state.missions):
-        if mission.status in UNDER_WAY and mission.link == slot:
-            move = move.mission(index, start=None, run=None, clocks=())
+        if mission.status in UNDER_WAY and mission.sent_on == slot:
+            move = move.with_mission(index, start=None, run=None, clocks=())
     return move
 
 
@@ -235,7 +232,7 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
                 move = stopped(move, index, (START, "connect"))
     for index, mission in enumerate(missions):
         if mission.lingers and _was_on(mission, link):
-            move = move.mission(index, lingers=False)
+            move = move.with_mission(index, lingers=False)
     affected = [index for index, one in enumerate(missions) if one.status in UNDER_WAY and _was_on(one, link)]
     moves = [move]
     for index in affected:
@@ -250,7 +247,7 @@ def dropped(mission: Mission) -> Ambiguity:
 
 def _lost_mission(move: Move, index: int, *, still: bool) -> Moves:
     for letter, way in ways(move, dropped(move.state.missions[index]), "c", "a", "b"):
-        here = way.mission(index, link=None)
+        here = way.with_mission(index, sent_on=None)
         if letter == "a":
             yield here
             continue
@@ -273,12 +270,12 @@ def _to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) ->
 
 
 def _was_on(mission: Mission, link: Link) -> bool:
-    return mission.link == link.slot or (link.serves and mission.link is None and mission.robot == link.name)
+    return mission.sent_on == link.slot or (link.serves and mission.sent_on is None and mission.robot == link.name)
 
 
 def sent_again(move: Move, index: int) -> Move:
     """A mission that was sent is queued again (AI-15 b)."""
-    move = becomes(move, index, "send again later").mission(index, link=None)
+    move = becomes(move, index, "send again later").with_mission(index, sent_on=None)
     gone = (
         (START, "send"),
         (START, "ready"),

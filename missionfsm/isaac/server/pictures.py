@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.inputs import Connects, Drops, Incoming, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.readings import AMBIGUITIES
-from missionfsm.isaac.server.state import ENDED, Mission, Sends, Server, Status
+from missionfsm.isaac.server.state import (
+    ENDED,
+    NOBODYS,
+    Mission,
+    Sends,
+    Server,
+    Status,
+    first_link_ref,
+    mission_of_uuid,
+    uuid_ref,
+)
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
 from missionfsm.kernel.alphabet import Input, as_text, pick
 from missionfsm.kernel.codec import JSON
@@ -59,13 +69,13 @@ def _label(
         return "time passes"
     if isinstance(what, Connects):
         return "it connects"
-    if refs[0] is None or refs[0] < 2 * len(server.missions):
+    if refs[0] is None or refs[0] < first_link_ref(server):
         return None
     if isinstance(what, Drops):
         return "its connection drops"
-    if isinstance(what, Incoming) and what.kind == "name":
+    if isinstance(what, Incoming) and what.kind == NAME:
         return "it says its name"
-    if isinstance(what, Incoming) and refs[1] in range(1, 2 * len(server.missions), 2):
+    if isinstance(what, Incoming) and mission_of_uuid(server, refs[1]) != NOBODYS:
         return f"it reports {what.what.upper()}"
     return None
 
@@ -96,11 +106,11 @@ def _depend_label(server: Server, what: Submission | Connects | Incoming | Passe
     """What robots report of their own missions; what they say of another's is not heeded."""
     if isinstance(what, Passes):
         return "time passes"
-    if not isinstance(what, Incoming) or what.kind == "name":
+    if not isinstance(what, Incoming) or what.kind == NAME:
         return None
     link, mission = ((-1 if ref is None else ref) for ref in refs)
-    robot = link - 2 * len(server.missions)
-    if robot < 0 or mission != 2 * robot + 1:
+    robot = link - first_link_ref(server)
+    if robot < 0 or mission != uuid_ref(robot):
         return None
     return f"the {('first', 'second')[robot]} robot reports {what.what.upper()}"
 

@@ -34,7 +34,7 @@ from missionfsm.isaac.server.state import (
     ENDED,
     FAILURES,
     LIFECYCLE,
-    LOOK,
+    PASS_PERIOD,
     RUN,
     START,
     SYSTEM,
@@ -43,10 +43,14 @@ from missionfsm.isaac.server.state import (
     Server,
     Status,
     emissions,
+    first_link_ref,
+    handle_ref,
+    mission_of_handle,
+    mission_of_uuid,
     topic,
 )
 from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
-from missionfsm.isaac.server.time import calmed, passes, settled, unseen
+from missionfsm.isaac.server.time import calmed, nothing_open_happened, passes, unseen
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
@@ -55,6 +59,11 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Delivery, Drive, Spec
 from missionfsm.kernel.step import Opening, Step
+
+
+def _names(server: Server) -> int:
+    """How many names a server has."""
+    return first_link_ref(server) + len(server.ends)
 
 
 def _step(
@@ -68,7 +77,7 @@ def _step(
     after = move.state
     if after is before and not move.sent:
         return Step(before, rules=move.rules, assumes=assumes)
-    missions, positions = 2 * len(before.missions), {one.slot: at for at, one in enumerate(before.ends)}
+    missions, positions = first_link_ref(before), {one.slot: at for at, one in enumerate(before.ends)}
     names = [*range(missions), *(one for one in new if one >= 0)]
     fresh = [one for one in new if one < 0]
     names += [missions + positions[one.slot] if one.slot in positions else fresh[0] for one in after.ends]
@@ -94,12 +103,7 @@ def _outcomes(
 ) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
         return tuple(status_answers(server))
-    return _submitted(operations["submit"], server, request, tuple(_mission_at(server, ref) for ref in refs))
-
-
-def _mission_at(server: Server, ref: int | None) -> int | None:
-    """The index of the mission whose handle stands at a position among the names."""
-    return None if ref is None or ref >= 2 * len(server.missions) or ref % 2 else ref // 2
+    return _submitted(operations["submit"], server, request, tuple(mission_of_handle(server, ref) for ref in refs))
 
 
 @functools.lru_cache(maxsize=20_000)
@@ -108,15 +112,15 @@ def _submitted(
 ) -> tuple[Step, ...]:
     ask = Ask(request, upstream)
     found: list[Step] = []
-    handles = tuple(None if one is None else 2 * one for one in upstream)
-    quiet = calmed(server, concerned(server, Focus(RETURNED, request, handles)))
+    handles = tuple(None if one is None else handle_ref(one) for one in upstream)
+    quiet = nothing_open_happened(server, concerned(server, Focus(RETURNED, request, handles)))
     for decision in decide(operation.blocking(server, ask)):
         if decision.code is not None:
             refusals = tuple(rule.id for rule in decision.rules)
             found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=refusals))
             continue
         for move in _taken(quiet, request, tuple(sorted({one for one in upstream if one is not None}))):
-            handle = 2 * len(server.missions) + len(server.ends)
+            handle = _names(server)
             step = _step(server, move, new=(handle, handle + 1), assumes=decision.assumes)
             found.append(evolve(step, answer=Answer(OK), refs=(handle,), kinds=("mission", "uuid")))
     return tuple(found)
@@ -180,7 +184,7 @@ def _connect(server: Server, _: Connects, __: tuple[int | None, ...]) -> tuple[S
 
 
 def _link_at(server: Server, ref: int | None) -> int | None:
-    position = -1 if ref is None else ref - 2 * len(server.missions)
+    position = -1 if ref is None else ref - first_link_ref(server)
     return position if 0 <= position < len(server.links) else None
 
 
@@ -189,31 +193,27 @@ def _line(server: Server, heard: Incoming, refs: tuple[int | None, ...]) -> tupl
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
-    named = _meant(server, refs[1]) if heard.named else None
-    header = _meant(server, refs[-1]) if heard.header else None
-    quiet = calmed(server, concerned(server, Focus(DRIVEN, heard, refs)))
+    named = mission_of_uuid(server, refs[1]) if heard.named else None
+    header = mission_of_uuid(server, refs[-1]) if heard.header else None
+    quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, heard, refs)))
     moves = merged(hears(Move(quiet), quiet.links[position], heard, named, header))
     return tuple(_step(server, move) for move in moves)
-
-
-def _meant(server: Server, ref: int | None) -> int:
-    return ref // 2 if ref is not None and ref < 2 * len(server.missions) and ref % 2 else -1
 
 
 def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
-    quiet = calmed(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
+    quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
     return tuple(_step(server, move) for move in merged(drops(Move(quiet), quiet.links[position], seen=True)))
 
 
 @functools.lru_cache(maxsize=20_000)
 def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[Step, ...]:
-    return tuple(_step(server, _quiet(server, move)) for move in merged(passes(server, event.time)))
+    return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
 
 
-def _quiet(before: Server, move: Move) -> Move:
+def _with_silence(before: Server, move: Move) -> Move:
     """The move with what it shows of missions that go on though their robots say nothing."""
     pairs = zip(before.missions, move.state.missions, strict=True)
     goes_on = any(one.status is Status.RUNNING is other.status for one, other in pairs)
@@ -312,7 +312,7 @@ _DELIVERY = Delivery(
 
 def _begins(server: Server) -> Server:
     """A server that has just begun: when in its first period the passes begin is not said."""
-    return evolve(server, slow=LOOK) if "b" in server.letters(AI_39) else server
+    return evolve(server, slow=PASS_PERIOD) if "b" in server.letters(AI_39) else server
 
 
 def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int = UNCONSTRAINED) -> Spec:
@@ -340,14 +340,14 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         urgent=_urgent,
         spontaneous=_spontaneous,
         silent_for=_silent_for,
-        calmed=settled,
+        calmed=calmed,
         matches=matches,
         delivery=lambda _: _DELIVERY,
         closing=_closing,
         unopened=(rules.UNNAMED.id,),
         unowed=_unowed,
         sequence=sequence,
-        names=lambda server: 2 * len(server.missions) + len(server.ends),
+        names=_names,
         request_operation=lambda request: str(request.operation),
         ambiguities=AMBIGUITIES,
         describe=describe,

@@ -18,10 +18,11 @@ from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.step import Emission
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
 SYSTEM = "isaac.server"
-LOOK = MICROSECONDS
+PASS_PERIOD = MICROSECONDS
 """How long a server that looks now and then may take to look, in microseconds (AI-39 b)."""
 
 DAY = 86_400
@@ -76,6 +77,8 @@ LIFECYCLE: Chart[Status] = Chart(
 
 ENDED = frozenset(LIFECYCLE.final)
 WAITS = "send acknowledged"
+START_COUNTS_FROM = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}
+"""What the time to start counts from (`Clock.since`), with the letter of AI-05."""
 START, RUN, SILENT, DROP, DOOM = "start", "run", "silent", "drop", "doom"
 
 
@@ -112,7 +115,7 @@ class Mission:
         doomed: how upstreams ended that did not succeed.
         fated: the upstreams that are as good as failed, however they end (AI-22.started j).
         lingers: whether it was aborted and its robot has not said since how it ended (AI-08 d).
-        link: the slot of the connection that it was sent on; None before, and where that is gone.
+        sent_on: the slot of the connection that it was sent on; None before, and where that is gone.
         sent: whether it was sent.
         depends: whether it has upstreams at all.
     """
@@ -127,7 +130,7 @@ class Mission:
     doomed: tuple[Status, ...] = ()
     status: Status = Status.QUEUED
     clocks: tuple[Clock, ...] = ()
-    link: int | None = None
+    sent_on: int | None = None
     sent: bool = False
     depends: bool = False
     fated: tuple[int, ...] = ()
@@ -146,11 +149,15 @@ class Mission:
         return self.status is Status.QUEUED and not self.waits and not self.doomed
 
 
+NOBODYS = -1
+"""The index of no mission: that of an identifier which nobody has."""
+
+
 @value(cache_hash=True)
 class Report:
     """A status message: what it says, where, and which missions its identifiers name.
 
-    `named` and `header` are indices of missions; -1 for an identifier that is nobody's; None for none.
+    `named` and `header` are indices of missions; `NOBODYS` for an identifier that is nobody's; None for none.
     """
 
     status: str
@@ -172,8 +179,8 @@ class Link:
         fresh: microseconds until a pass must have noticed it.
         held: microseconds until the pass that sends to a name may be the one after that which takes it up, and until
             it is (AI-39.order s).
-        look: how many microseconds ago a scheduling pass may have come that sent or cancelled something here and of
-            which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
+        pass_since: how many microseconds ago a scheduling pass may have come that sent or cancelled something here, and
+            of which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
     """
 
     slot: int
@@ -183,7 +190,7 @@ class Link:
     over: int | None = None
     fresh: int = 0
     held: tuple[int, int] = (0, 0)
-    look: int | None = None
+    pass_since: int | None = None
 
 
 Left = tuple[tuple[str, str], ...]
@@ -229,7 +236,7 @@ class Server:
         """The connections on which something may be seen: those that are open, and those that dropped just now."""
         return (*self.links, *(one for one in self.gone if one.slot >= 0)) if self.gone else self.links
 
-    def link(self, slot: int) -> Link | None:
+    def link_at(self, slot: int) -> Link | None:
         """The connection in a slot."""
         return next((one for one in self.links if one.slot == slot), None)
 
@@ -239,7 +246,7 @@ class Server:
 
     def next_pass(self, since: int) -> int:
         """Until when a scheduling pass has come after a moment, both in microseconds, where times are exact."""
-        return max(since, self.slow) + LOOK
+        return max(since, self.slow) + PASS_PERIOD
 
     def serving(self, robot: str | None) -> Link | None:
         """The connection that the missions of a robot go to."""
@@ -270,7 +277,7 @@ class Move:
         """The same with another state."""
         return Move(state, self.sent, (*self.rules, *rules), self.at)
 
-    def mission(self, index: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a mission
+    def with_mission(self, index: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a mission
         """The same with a mission changed."""
         server = self.state
         missions = list(server.missions)
@@ -286,7 +293,7 @@ class Move:
         )
         return Move(after, self.sent, self.rules, self.at)
 
-    def link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
+    def with_link(self, slot: int, **changes: Any) -> Move:  # noqa: ANN401 - attributes of a connection
         """The same with a connection changed."""
         links = tuple(evolve(one, **changes) if one.slot == slot else one for one in self.state.links)
         return evolve(self, state=evolve(self.state, links=links))
@@ -294,6 +301,39 @@ class Move:
     def emit(self, slot: int, index: int, view: Sends) -> Move:
         """The same with a line sent to a connection, about a mission."""
         return evolve(self, sent=(*self.sent, (slot, index, view)))
+
+
+# The names of a state: for each mission its handle and its identifier, and after those the connections, in order.
+
+
+def handle_ref(index: int) -> int:
+    """The position of a mission's handle among the names."""
+    return 2 * index
+
+
+def uuid_ref(index: int) -> int:
+    """The position of a mission's identifier among the names."""
+    return 2 * index + 1
+
+
+def first_link_ref(server: Server) -> int:
+    """The position of the first connection among the names; the missions' names are those before it."""
+    return 2 * len(server.missions)
+
+
+def mission_of_handle(server: Server, ref: int | None) -> int | None:
+    """The index of the mission whose handle stands at a position; None where no handle does."""
+    return None if ref is None or ref >= first_link_ref(server) or ref % 2 else ref // 2
+
+
+def mission_of_uuid(server: Server, ref: int | None) -> int:
+    """The index of the mission whose identifier stands at a position; `NOBODYS` where no identifier does."""
+    return ref // 2 if ref is not None and ref < first_link_ref(server) and ref % 2 else NOBODYS
+
+
+def missions_of(server: Server, refs: Refs) -> set[int]:
+    """The indices of the missions that any of some names belong to."""
+    return {ref // 2 for ref in refs if ref is not None and 0 <= ref < first_link_ref(server)}
 
 
 def topic(slot: int) -> tuple[str, int]:
@@ -305,6 +345,6 @@ def emissions(move: Move) -> tuple[Emission, ...]:
     """What a move owes to the connections; each gets its lines in order. What is sent in vain may be seen."""
     gone = {one.slot for one in move.state.gone}
     return tuple(
-        Emission(topic(slot), view, (2 * index + 1,), certain=True, optional=slot in gone)
+        Emission(topic(slot), view, (uuid_ref(index),), certain=True, optional=slot in gone)
         for slot, index, view in sorted(move.sent, key=lambda one: one[0])
     )

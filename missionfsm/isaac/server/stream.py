@@ -16,13 +16,8 @@ from missionfsm.isaac.server.readings import (
     AI_28_UUID,
 )
 from missionfsm.isaac.server.rules import OPERATIONS
-from missionfsm.isaac.server.state import (
-    Mission,
-    Sends,
-    Server,
-    Status,
-)
-from missionfsm.isaac.server.time import calmed
+from missionfsm.isaac.server.state import Mission, Sends, Server, Status, handle_ref
+from missionfsm.isaac.server.time import nothing_open_happened
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer
@@ -68,9 +63,9 @@ def status_answers(server: Server) -> Iterator[Step]:
                     both = tuple(dict.fromkeys((*assumes, *more)))
                     longer.setdefault(((*words, word), agreed), both)
         found = longer
-    handles = tuple(2 * index for index in range(len(server.missions)))
+    handles = tuple(handle_ref(index) for index in range(len(server.missions)))
     promised = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
-    quiet = calmed(server)
+    quiet = nothing_open_happened(server)
     for (words, _), assumes in found.items():
         yield Step(quiet, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
 

@@ -4,8 +4,8 @@ An exact simulation over intervals: everything that is due has an earliest and a
 things happen is any that these allow, in each part of the server by itself (`missionfsm.isaac.server.independence`).
 Only what must have happened by the end is decided. What may have happened is left open: its clock says since when it
 may have struck, its connection since when a pass may have come. It is decided when something is observed that tells of
-it (`unseen`), or turns out not to have happened before (`calmed`). Where all moments are exact, which they are unless
-AI-39 is read as b, nothing is left open but what falls on the very end.
+it (`unseen`), or turns out not to have happened before (`nothing_open_happened`). Where all moments are exact, which
+they are unless AI-39 is read as b, nothing is left open but what falls on the very end.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, u
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
-from missionfsm.isaac.server.state import DROP, ENDED, LOOK, Clock, Link, Mission, Move, Server
+from missionfsm.isaac.server.state import DROP, ENDED, PASS_PERIOD, Clock, Link, Mission, Move, Server
 from missionfsm.kernel.values import value
 
 EVER = 10**15
@@ -31,18 +31,18 @@ EVER = 10**15
 
 
 @value(cache_hash=True)
-class _Here:
+class _Moment:
     """A moment on the way, in one part: what was done until then, and what the server has yet to look at.
 
     Attributes:
         low: the moment at the earliest.
-        looks: slots of connections for which a pass would do something, each with since when, at the earliest and at
+        awaited: slots of connections for which a pass would do something, each with since when, at the earliest and at
             the latest.
     """
 
     move: Move
     low: int
-    looks: tuple[tuple[int, int, int], ...]
+    awaited: tuple[tuple[int, int, int], ...]
 
 
 def passes(state: Server, time: int) -> tuple[Move, ...]:
@@ -109,8 +109,8 @@ def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
     Args:
         due: whether a clock that must have struck by that very moment has; passes have come.
     """
-    start = _here(evolve(move, at=(0, 0)), -EVER, part, ())
-    seen: set[_Here] = set()
+    start = _moment(evolve(move, at=(0, 0)), -EVER, part, ())
+    seen: set[_Moment] = set()
     todo = [start]
     while todo:
         here = todo.pop()
@@ -119,28 +119,28 @@ def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
         seen.add(here)
         strike, comes = _latest(here, part)
         if comes > time and (strike > time or (strike == time and not due)):
-            since = {slot: first for slot, first, _ in here.looks if first <= time}
+            since = {slot: first for slot, first, _ in here.awaited if first <= time}
             after = here.move
             for slot in part.slots:
-                link = after.state.link(slot)
-                if link is not None and link.look != since.get(slot):
-                    after = after.link(slot, look=since.get(slot))
+                link = after.state.link_at(slot)
+                if link is not None and link.pass_since != since.get(slot):
+                    after = after.with_link(slot, pass_since=since.get(slot))
             yield evolve(after, at=(0, 0))
             continue
         todo += reversed(list(_next(here, part, int(min(strike, comes)))))
 
 
-def _here(move: Move, low: int, part: Part, looks: tuple[tuple[int, int, int], ...]) -> _Here:
+def _moment(move: Move, low: int, part: Part, awaited: tuple[tuple[int, int, int], ...]) -> _Moment:
     """The moment after a move, with the passes that are waited for."""
-    known = {slot: (first, last) for slot, first, last in looks}
+    known = {slot: (first, last) for slot, first, last in awaited}
     found = []
     for slot in part.slots:
-        link = move.state.link(slot)
+        link = move.state.link_at(slot)
         if link is not None and _waits_for_pass(move.state, link):
             first, last = known.get(slot, move.at)
-            since = first if link.look is None else min(first, -link.look)
+            since = first if link.pass_since is None else min(first, -link.pass_since)
             found.append((slot, max(since, _held(move.state, link)), last))
-    return _Here(move, low, tuple(found))
+    return _Moment(move, low, tuple(found))
 
 
 def _waits_for_pass(state: Server, link: Link) -> bool:
@@ -163,7 +163,7 @@ def _held(state: Server, link: Link) -> int:
 
 def _pass(state: Server, slot: int, last: int) -> int:
     """Until when a scheduling pass has come for a connection that waits for one since a moment, in microseconds."""
-    link = state.link(slot)
+    link = state.link_at(slot)
     if link is not None:
         last = max(last, link.held[1])
     return state.next_pass(last) + state.tolerance
@@ -182,22 +182,22 @@ def _overlooked(state: Server, part: Part) -> list[tuple[Link, Link]]:
     pairs = [
         (evolve(older, serves=True), link)
         for link in state.links
-        if link.slot in part.slots and link.over is not None and (older := state.link(link.over)) is not None
+        if link.slot in part.slots and link.over is not None and (older := state.link_at(link.over)) is not None
     ]
     return [(older, link) for older, link in pairs if possible(state, older)]
 
 
-def _latest(here: _Here, part: Part) -> tuple[float, float]:
+def _latest(here: _Moment, part: Part) -> tuple[float, float]:
     """Until when a clock has to have struck in a part, and a pass to have come, at the latest."""
     state = here.move.state
     due = (clock.hi for index in part.missions for clock in state.missions[index].ticking if clock.hi is not None)
-    looks = [_pass(state, slot, last) for slot, _, last in here.looks]
+    looks = [_pass(state, slot, last) for slot, _, last in here.awaited]
     looks += [gone.fresh for gone in _in_vain(state, part)]
     looks += [link.fresh for _, link in _overlooked(state, part)]
     return min(due, default=math.inf), min(looks, default=math.inf)
 
 
-def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+def _next(here: _Moment, part: Part, until: int) -> Iterator[_Moment]:
     """Everything that may happen next in a part, no later than `until`."""
     for index in part.missions:
         for clock in here.move.state.missions[index].ticking:
@@ -207,31 +207,31 @@ def _next(here: _Here, part: Part, until: int) -> Iterator[_Here]:
     yield from _unnoticed(here, part, until)
 
 
-def _passes(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+def _passes(here: _Moment, part: Part, until: int) -> Iterator[_Moment]:
     """A scheduling pass comes to a connection."""
-    for slot, first, last in here.looks:
+    for slot, first, last in here.awaited:
         when = (max(here.low, first), min(_pass(here.move.state, slot, last), until))
         if when[0] <= when[1]:
-            rest = tuple(one for one in here.looks if one[0] != slot)
-            for after in _looked(evolve(here.move, at=when), slot, part):
-                yield _here(after, when[0], part, rest)
+            rest = tuple(one for one in here.awaited if one[0] != slot)
+            for after in _after_pass(evolve(here.move, at=when), slot, part):
+                yield _moment(after, when[0], part, rest)
 
 
-def _unnoticed(here: _Here, part: Part, until: int) -> Iterator[_Here]:
+def _unnoticed(here: _Moment, part: Part, until: int) -> Iterator[_Moment]:
     """Something is sent that reaches nobody, since no pass has noticed yet who is there; or a pass notices it."""
     state = here.move.state
     for gone in _in_vain(state, part):
         when = (here.low, max(here.low, min(gone.fresh, until)))
         for sent in in_vain(evolve(here.move, at=when), gone):
-            yield from (_here(after, when[0], part, here.looks) for after in _followed(sent, part))
+            yield from (_moment(after, when[0], part, here.awaited) for after in _followed(sent, part))
         if gone.fresh <= until:
-            yield _here(forgotten(here.move, gone), here.low, part, here.looks)
+            yield _moment(forgotten(here.move, gone), here.low, part, here.awaited)
     for older, link in _overlooked(state, part):
         when = (here.low, max(here.low, min(link.fresh, until)))
         for after in _sent_before(evolve(here.move, at=when), older, link):
-            yield _here(after, when[0], part, here.looks)
+            yield _moment(after, when[0], part, here.awaited)
         if link.fresh <= until:
-            yield _here(_taken_up(here.move, link), here.low, part, here.looks)
+            yield _moment(_taken_up(here.move, link), here.low, part, here.awaited)
 
 
 def _sent_before(move: Move, older: Link, link: Link) -> Iterator[Move]:
@@ -245,20 +245,20 @@ def _sent_before(move: Move, older: Link, link: Link) -> Iterator[Move]:
 
 def _taken_up(move: Move, link: Link) -> Move:
     """A pass has noticed that a connection took over from another."""
-    after = move.link(link.slot, over=None, fresh=0)
+    after = move.with_link(link.slot, over=None, fresh=0)
     if link.over is not None and move.state.letters(AI_16_UNDER_WAY) == "m":
         return untimed(after, link.over)
     return after
 
 
-def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
+def _after_pass(move: Move, slot: int, part: Part) -> Iterator[Move]:
     """What a scheduling pass does for a connection at the moment of the move."""
-    link = move.state.link(slot)
+    link = move.state.link_at(slot)
     if link is None:
         return
-    here = move if link.look is None else move.link(slot, look=None)
-    quiet = link.look == 0
-    link = evolve(link, look=None)
+    here = move if link.pass_since is None else move.with_link(slot, pass_since=None)
+    quiet = link.pass_since == 0
+    link = evolve(link, pass_since=None)
     for lapsed in lapses(here.state, link):
         yield from _followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
     for index, chosen in possible(here.state, link) if here.state.letters(AI_39) == "b" else ():
@@ -267,16 +267,16 @@ def _looked(move: Move, slot: int, part: Part) -> Iterator[Move]:
                 yield from _followed(after, part)
 
 
-def _strike(here: _Here, part: Part, index: int, clock: Clock, until: int) -> Iterator[_Here]:
+def _strike(here: _Moment, part: Part, index: int, clock: Clock, until: int) -> Iterator[_Moment]:
     low = max(here.low, clock.lo)
     when = (low, max(low, until if clock.hi is None else min(clock.hi, until)))
     aborting, meaningless = strikes(evolve(here.move, at=when), index, clock)
     for one in aborting:
         for heard in inherited(here.move.state, one):
-            yield from (_here(after, low, part, here.looks) for after in _followed(heard, part))
+            yield from (_moment(after, low, part, here.awaited) for after in _followed(heard, part))
     if clock.hi is not None and clock.hi <= until:
         for one in meaningless:
-            yield from (_here(after, here.low, part, here.looks) for after in _followed(one, part))
+            yield from (_moment(after, here.low, part, here.awaited) for after in _followed(one, part))
 
 
 def _shifted(move: Move, time: int) -> Move:
@@ -295,13 +295,13 @@ def _shifted(move: Move, time: int) -> Move:
     )
     after = evolve(_tidy(move), state=evolve(move.state, missions=missions), at=(0, 0))
     for link in move.state.links:
-        if link.look is not None:
-            after = after.link(link.slot, look=time - link.look)
+        if link.pass_since is not None:
+            after = after.with_link(link.slot, pass_since=time - link.pass_since)
         if link.fresh:
-            after = _noticed(after, link, time)
+            after = _takeover_noticed(after, link, time)
         if link.held[1]:
             first, last = link.held
-            after = after.link(link.slot, held=(max(0, first - time), max(0, last - time)))
+            after = after.with_link(link.slot, held=(max(0, first - time), max(0, last - time)))
     state = after.state
     if state.slow or state.gone:
         gone = tuple(_gone(one, time) for one in state.gone if one.fresh > time or (one.fresh and one.slot >= 0))
@@ -315,27 +315,29 @@ def _gone(link: Link, time: int) -> Link:
     return evolve(link, fresh=left, serves=link.serves and left > 0)
 
 
-def _noticed(move: Move, link: Link, time: int) -> Move:
+def _takeover_noticed(move: Move, link: Link, time: int) -> Move:
     """A connection that took over from another, so much later: a pass has noticed it after a while."""
     if link.fresh <= time:
         return _taken_up(move, link)
-    return move.link(link.slot, fresh=link.fresh - time)
+    return move.with_link(link.slot, fresh=link.fresh - time)
 
 
 def unseen(state: Server, part: Part) -> Iterator[Move]:
     """What may have happened in a part by now though it need not: clocks that have struck, passes that have come."""
     for struck in _struck(state, part):
-        yield from (_looking(after, part) for after in _followed(struck, part))
+        yield from (_pass_possible_since(after, part) for after in _followed(struck, part))
     for slot in part.slots:
-        link = state.link(slot)
-        if link is not None and link.look is not None:
-            for one in _looked(Move(state, at=(-link.look, 0)), slot, part):
-                yield _looking(one, part)
+        link = state.link_at(slot)
+        if link is not None and link.pass_since is not None:
+            for one in _after_pass(Move(state, at=(-link.pass_since, 0)), slot, part):
+                yield _pass_possible_since(one, part)
     for gone in _in_vain(state, part):
-        for one in in_vain(Move(state, at=(-LOOK, 0)), gone):
-            yield from (_looking(after, part) for after in _followed(one, part))
+        for one in in_vain(Move(state, at=(-PASS_PERIOD, 0)), gone):
+            yield from (_pass_possible_since(after, part) for after in _followed(one, part))
     for older, link in _overlooked(state, part):
-        yield from (_looking(after, part) for after in _sent_before(Move(state, at=(-LOOK, 0)), older, link))
+        yield from (
+            _pass_possible_since(after, part) for after in _sent_before(Move(state, at=(-PASS_PERIOD, 0)), older, link)
+        )
 
 
 def _struck(state: Server, part: Part) -> Iterator[Move]:
@@ -347,31 +349,31 @@ def _struck(state: Server, part: Part) -> Iterator[Move]:
                     yield from inherited(state, one)
 
 
-def _looking(move: Move, part: Part) -> Move:
+def _pass_possible_since(move: Move, part: Part) -> Move:
     """After something that happened unseen: a pass may have come since."""
     low = move.at[0]
     for slot in part.slots:
-        link = move.state.link(slot)
+        link = move.state.link_at(slot)
         if link is None:
             continue
         look = None
         if _waits_for_pass(move.state, link) if low < 0 else _waits_quietly(move.state, link):
-            look = -low if link.look is None else min(link.look, -low)
-        if look != link.look:
-            move = move.link(slot, look=look)
+            look = -low if link.pass_since is None else min(link.pass_since, -low)
+        if look != link.pass_since:
+            move = move.with_link(slot, pass_since=look)
     return evolve(move, at=(0, 0))
 
 
-def settled(state: Server) -> Server:
+def calmed(state: Server) -> Server:
     """The server once all has been seen that was sent: what was cancelled in a pass would not have been."""
-    after = calmed(state)
+    after = nothing_open_happened(state)
     for link in state.links:
-        if link.look is not None and _waits_quietly(after, link):
-            after = Move(after).link(link.slot, look=0).state
+        if link.pass_since is not None and _waits_quietly(after, link):
+            after = Move(after).with_link(link.slot, pass_since=0).state
     return after
 
 
-def calmed(state: Server, only: tuple[Part, ...] | None = None) -> Server:
+def nothing_open_happened(state: Server, only: tuple[Part, ...] | None = None) -> Server:
     """The server where nothing that is left open has happened before now, in some of its parts or in all.
 
     When a drop is noticed is left open: what follows may look as before.
@@ -382,7 +384,10 @@ def calmed(state: Server, only: tuple[Part, ...] | None = None) -> Server:
     for part in only:
         for index in part.missions:
             missions[index] = _none_struck(missions[index])
-        links = [evolve(one, look=None) if one.look is not None and one.slot in part.slots else one for one in links]
+        links = [
+            evolve(one, pass_since=None) if one.pass_since is not None and one.slot in part.slots else one
+            for one in links
+        ]
     unchanged = all(map(operator.is_, missions, state.missions)) and all(map(operator.is_, links, state.links))
     return state if unchanged else evolve(state, missions=tuple(missions), links=tuple(links))
 

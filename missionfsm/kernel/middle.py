@@ -88,7 +88,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
         urgent=_of_known(spec.urgent, ()),
         spontaneous=_of_known(spec.spontaneous, ()),
         matches=functools.partial(_matches, spec),
-        looks=functools.partial(_looks, spec),
+        remembered=functools.partial(_remembered, spec),
         names=_of_known(spec.names, 0),
         describe=functools.partial(_describe, spec),
         foresees=foresees and _of_known(foresees, unknown=True),
@@ -128,8 +128,8 @@ def _matches(spec: Spec, view: View, content: Content) -> tuple[Match, ...] | Mi
     return spec.matches(view, content)
 
 
-def _looks(spec: Spec, view: View, content: Content) -> Hashable:
-    return None if view is ANY else spec.looks(view, content)
+def _remembered(spec: Spec, view: View, content: Content) -> Hashable:
+    return None if view is ANY else spec.remembered(view, content)
 
 
 def _describe(spec: Spec, what: Request | View | State) -> str:

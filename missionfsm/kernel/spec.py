@@ -189,9 +189,9 @@ class Spec:
         ambiguities: the questions that its documents leave open; an assumption is a set of their readings.
         failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated among
             the outcomes.
-        looks: (view, content) to what is remembered of a message that came, so that an owed one which looks the same is
-            not due: nobody could tell it from the one before. It is the content itself, or None where only an equal
-            view looks the same, as in systems whose messages have names.
+        remembered: (view, content) to what is remembered of a message that came, so that an owed one which looks the
+            same is not due: nobody could tell it from the one before. It is the content itself, or None where only an
+            equal view looks the same, as in systems whose messages have names.
         spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
         silent_for: (state, what is observed) to those among its urgent and spontaneous steps that are enough to be
             thought of before that, since the others can as well come after it; None: all are.
@@ -199,7 +199,7 @@ class Spec:
         closing: (state, topic) to the ways in which the system may at any time close the channel of that topic, and an
             end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
         concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
-        describe: a request, a view or a state in a few words for people.
+        describe: a request, an event, a state, a view or what a message says, in a few words for people.
         rules: all rules of the system that belong to no operation.
         charts: the state machines of its documents, each a table: what they are drawn from.
         invariants: what holds in every state that can be reached.
@@ -248,13 +248,13 @@ class Spec:
     request_operation: Callable[[Request], str]
     ambiguities: tuple[Ambiguity, ...] = ()
     failing: Callable[[Request, str], Failure | None] = lambda _, __: None
-    looks: Callable[[View, Content], Hashable] = lambda _, __: None
+    remembered: Callable[[View, Content], Hashable] = lambda _, __: None
     spontaneous: Callable[[State], tuple[Step, ...]] = lambda _: ()
     silent_for: Callable[[State, Focus], tuple[Step, ...]] | None = None
     calmed: Callable[[State], State] = lambda state: state
     closing: Callable[[State, Topic], tuple[Step, ...]] | None = None
     concerns: Callable[[Topic, Topic], bool] = operator.eq
-    describe: Callable[[Request | View | State], str] = repr
+    describe: Callable[[object], str] = repr
     rules: tuple[Rule, ...] = ()
     charts: tuple[Chart[State], ...] = ()
     invariants: tuple[Invariant, ...] = ()

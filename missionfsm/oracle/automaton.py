@@ -14,7 +14,7 @@ from missionfsm.oracle.calls import FEW, is_of_calls_alone
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.memory import MEMORY
 from missionfsm.oracle.subsumption import surviving_names
-from missionfsm.oracle.successors import BUDGET, Successor, Successors
+from missionfsm.oracle.successors import EVENT_BUDGET, Successor, Successors
 from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
@@ -81,7 +81,7 @@ class Automaton:
         spec: Spec,
         driven: Iterable[str] = (),
         assumed: int = UNCONSTRAINED,
-        budget: int = BUDGET,
+        budget: int = EVENT_BUDGET,
         *,
         eager: bool = False,
         memory: int = MEMORY,
@@ -110,12 +110,12 @@ class Automaton:
         if node is None:
             node = Node(explanations, width)
             if self._nodes and self.bytes + node.bytes > self.memory // memory.NODES:
-                self._start_over()
+                self._forget_nodes()
             self._nodes[explanations] = node
             self.bytes += node.bytes
         return node
 
-    def _start_over(self) -> None:
+    def _forget_nodes(self) -> None:
         """Forget everything but what the rules are that were exercised."""
         for node in self._nodes.values():
             node.next.clear()
@@ -128,11 +128,11 @@ class Automaton:
         kind, *what = symbol
         successors = self.successors
         if self._has_calls_alone and not successors.live and all(map(is_of_calls_alone, node.explanations)):
-            successors.most = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
+            successors.limit = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
         try:
             edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
         finally:
-            successors.most = successors.budget
+            successors.limit = successors.budget
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += memory.ENTRY

@@ -34,7 +34,6 @@ from missionfsm.oracle.explanation import GONE
 from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import Symbol
 
-"""How often which set of rules was exercised; an automaton numbers the sets."""
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
 NOBODY = -sys.maxsize
@@ -152,7 +151,7 @@ class Belief:
             if event.marks:
                 self._mark(event.channel, event.marks)
         elif type(event) is Driven:
-            self._start_over(event.event)
+            self._renumber(event.event)
         elif type(event) is Cancelled:
             self._given_up[event.channel] = None
             self._unmark(event.channel)
@@ -185,7 +184,7 @@ class Belief:
             for channel, event in self._latest.items()
         }
 
-    def foresee(self, event: Event) -> Symbol | None:
+    def number_for_good(self, event: Event) -> Symbol | None:
         """An event with numbers for names, and the new names numbered for good; None for one that means nothing."""
         if type(event) in (Received, Ended) and event.channel in self._given_up:  # type: ignore[union-attr]
             return None
@@ -313,7 +312,7 @@ class Belief:
             self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
         self._marks.pop(channel, None)
 
-    def _start_over(self, event: Incident) -> None:
+    def _renumber(self, event: Incident) -> None:
         renumbers = self.automaton.spec.drives[event.name].renumbers
         for track in renumbers(event) if renumbers else ():
             self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)

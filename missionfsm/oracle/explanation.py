@@ -68,7 +68,7 @@ class Owed:
 
     A `passing` one may be left out, since its state does not last or since nobody has to say it. In the second case,
     where it is `optional`, it may also come once things have settled; one that `stays` may come any number of times.
-    `looks` is what one that has come looked like, where the specification wants it to be remembered (`Spec.looks`).
+    `shown_as` is the content with which one came, where the specification wants that remembered (`Spec.remembered`).
     `lowest` is the lowest of its names, `GONE` at most: below that where nobody has seen one of them.
     """
 
@@ -78,7 +78,7 @@ class Owed:
     only: Assumption | None = None
     optional: bool = False
     stays: bool = False
-    looks: Hashable = None
+    shown_as: Hashable = None
     lowest: int = field(init=False, eq=False, repr=False, default=Factory(_lowest_of_owed, takes_self=True))
 
 
@@ -219,7 +219,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
     def owed(one: Owed) -> Owed:
         if stays(one.names):
             return one
-        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.looks)
+        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.shown_as)
 
     def channel(one: Channel) -> Channel:
         if unseen_only and one.lowest == GONE:

@@ -402,7 +402,7 @@ class Lookahead:
         if all(one.passing for one in over):
             return passed, None, False
         last = channel.last
-        if last and any(one.view == last.view or last.looks is not None for one in over if not one.passing):
+        if last and any(one.view == last.view or last.shown_as is not None for one in over if not one.passing):
             return channel, None, False  # what looks like what was shown last is not due
         skips = self.spec.delivery(channel.topic).skips
         return (passed, skips, False) if skips else None

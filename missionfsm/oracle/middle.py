@@ -107,8 +107,8 @@ def states_shown(  # noqa: PLR0913 - a message, and what is known
             assumed = meet(here.assumed, match.assumes)
             own = _names(spec, here, state, match, names)
             if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
-                looks = spec.looks(view, content)
-                after = _standing(here, state, own, channel, glimpses.topic(content), view, looks)
+                shown_as = spec.remembered(view, content)
+                after = _standing(here, state, own, channel, glimpses.topic(content), view, shown_as)
                 yield Successor(tidy(after.but(assumed=assumed)), match.rules)
 
 
@@ -125,7 +125,7 @@ def _standing(  # noqa: PLR0913 - what a message fixes
     name: int,
     topic: Hashable,
     view: View,
-    looks: Hashable,
+    shown_as: Hashable,
 ) -> Explanation:
     """The explanation in that state, shown on one channel; the others may show it as well, or what was on its way."""
     channels = [
@@ -137,7 +137,7 @@ def _standing(  # noqa: PLR0913 - what a message fixes
         one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
         for one in here.calls
     )
-    showing = Channel(name, topic, Owed(view, names, looks=looks))
+    showing = Channel(name, topic, Owed(view, names, shown_as=shown_as))
     gone = tuple(one for one in here.gone if one not in names)
     return Explanation(state, names, here.assumed, calls, here.lost, (showing, *channels), gone)
 

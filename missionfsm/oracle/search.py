@@ -174,7 +174,7 @@ class Search:
         """The same for a window of calls alone. Raises OtherwiseError where something else can happen."""
         successors = self.successors
         budget = successors.budget
-        successors.budget = successors.most = min(self._budget, self._memory // ENTRY)
+        successors.budget = successors.limit = min(self._budget, self._memory // ENTRY)
         successors.reset()
         try:
             self.layers = []
@@ -186,18 +186,18 @@ class Search:
                     self._end = search, end
                     return True
         finally:
-            successors.budget = successors.most = budget
+            successors.budget = successors.limit = budget
         return False
 
     def _spending(self, work: Callable[[], T]) -> T:
         """Do some work on the budget of the search."""
         successors = self.successors
         budget, successors.budget, successors.ahead = successors.budget, self._budget, self._ahead
-        successors.most = self._budget
+        successors.limit = self._budget
         try:
             return work()
         finally:
-            successors.ahead, successors.budget, successors.most = None, budget, budget
+            successors.ahead, successors.budget, successors.limit = None, budget, budget
 
     def _enter(self, found: tuple[Successor, ...]) -> None:
         rules = tuple(dict.fromkeys(rule for one in found for rule in one.rules))
@@ -249,7 +249,7 @@ class Search:
                     if narrow and not self._outdone(tried, narrow):
                         self._remember(narrow)
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
-                        successors.most = min(successors.budget, begun + here.effort)
+                        successors.limit = min(successors.budget, begun + here.effort)
                     if len(found) >= self.width:
                         break
                 else:
@@ -260,7 +260,7 @@ class Search:
             # It begins anew where these lead nowhere; what was tried is passed over then.
             here.begun, here.effort = False, here.effort * 4
         finally:
-            successors.most = successors.budget
+            successors.limit = successors.budget
             here.depends |= ahead.depends
         return prune(successors, found)
 

@@ -47,7 +47,7 @@ LAG = 6
 
 Messages that are known to come do not count."""
 
-BUDGET = 20_000
+EVENT_BUDGET = 20_000
 """How many explanations one event may cost before the run is given up as inconclusive."""
 
 
@@ -85,7 +85,7 @@ class Successors:
         spec: Spec,
         driven: Iterable[str] = (),
         assumed: int = UNCONSTRAINED,
-        budget: int = BUDGET,
+        budget: int = EVENT_BUDGET,
         *,
         memory: int = MEMORY,
     ) -> None:
@@ -106,7 +106,7 @@ class Successors:
         self.ahead: Lookahead | None = None
         self.live = True
         self.spent = 0
-        self.most = budget
+        self.limit = budget
 
     def reset(self) -> None:
         """Start counting against the budget anew."""
@@ -516,7 +516,7 @@ class Successors:
     def spend(self, cost: int = 1) -> None:
         """Count something more that was looked at. Raises ExhaustedError when it is too much for one event."""
         self.spent += cost
-        if self.spent > self.most:
+        if self.spent > self.limit:
             raise ExhaustedError
 
 

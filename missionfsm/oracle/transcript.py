@@ -85,34 +85,42 @@ class Head:
         return line
 
 
-def _wrong(says: str) -> UnreadableError:
-    return UnreadableError(says)
-
-
 def _known_keys(kind: str, line: dict[str, JSON], known: frozenset[str]) -> None:
     if not line.keys() <= known:
         unknown = next(key for key in line if key not in known)
-        raise _wrong(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
+        raise UnreadableError(f"{brief(unknown)} is not known in a {kind} line; it may have {', '.join(sorted(known))}")
+
+
+def _whole_number(line: dict[str, JSON], key: str) -> int:
+    number = line[key]
+    if type(number) is not int:  # a bool is none
+        raise UnreadableError(f"{key}: {brief(number)} is not a whole number")
+    return number
+
+
+def _must_be_true(line: dict[str, JSON], key: str) -> None:
+    if line.get(key) is not True:
+        raise UnreadableError(f"{key}: {brief(line.get(key))} is not true")
 
 
 def head(line: JSON) -> Head:
     """What the first line says. Raises UnreadableError."""
     if not isinstance(line, dict) or "missionfsm" not in line:
-        raise _wrong('the first line has to be {"missionfsm": 1, "system": …, "world": …}')
+        raise UnreadableError('the first line has to be {"missionfsm": 1, "system": …, "world": …}')
     if line["missionfsm"] != VERSION or isinstance(line["missionfsm"], bool):
-        raise _wrong(f"history format {brief(line['missionfsm'])} is not known; this is version {VERSION}")
+        raise UnreadableError(f"history format {brief(line['missionfsm'])} is not known; this is version {VERSION}")
     _known_keys("first", line, _HEAD_KEYS)
     name, drives = line.get("system"), line.get("drives", [])
     if not isinstance(name, str):
-        raise _wrong(f"system: {brief(name)} is not the name of a system")
+        raise UnreadableError(f"system: {brief(name)} is not the name of a system")
     if not isinstance(drives, list) or not all(isinstance(one, str) for one in drives):
-        raise _wrong(f"drives: {brief(drives)} is not a list of names")
+        raise UnreadableError(f"drives: {brief(drives)} is not a list of names")
     for key, value in (("begins", ANYWHERE), ("transport", STRICT)):
         if key in line and line[key] != value:
-            raise _wrong(f"{key}: {brief(line[key])} is not known; it is {value!r} or left out")
+            raise UnreadableError(f"{key}: {brief(line[key])} is not known; it is {value!r} or left out")
     others = line.get("others", False)
     if not isinstance(others, bool):
-        raise _wrong(f"others: {brief(others)} is neither true nor false")
+        raise UnreadableError(f"others: {brief(others)} is neither true nor false")
     return Head(name, line.get("world", {}), tuple(drives), "transport" in line, "begins" in line, others)
 
 
@@ -126,7 +134,7 @@ class Transcript:
         anywhere: whether calls were sent before the first line.
 
     Attributes:
-        answered: the request that the answer is to that was read last.
+        answered: the request whose answer was read last.
     """
 
     def __init__(
@@ -163,7 +171,7 @@ class Transcript:
     def read(self, line: JSON) -> tuple[Event, ...]:
         """The events that a line stands for; usually one. Raises UnreadableError."""
         if not isinstance(line, dict):
-            raise _wrong(f"{brief(line)} is not an object")
+            raise UnreadableError(f"{brief(line)} is not an object")
         form = tuple(line)
         reader = self._forms.get(form)
         return (reader or self._reader(form, line))(line)
@@ -176,28 +184,22 @@ class Transcript:
                 _known_keys(key, line, _KEYS[key])
                 self._forms[form] = reader
                 return reader
-        raise _wrong(f"{brief(line)} is none of {', '.join(self._kinds)}")
+        raise UnreadableError(f"{brief(line)} is none of {', '.join(self._kinds)}")
 
     @property
     def pending(self) -> Mapping[int, tuple[str, Request]]:
         """The calls that have no answer yet: their ids, in the order of sending, to the method and the request."""
         return self._open
 
-    def _number(self, line: dict[str, JSON], key: str) -> int:
-        number = line[key]
-        if type(number) is not int:  # a bool is none
-            raise _wrong(f"{key}: {brief(number)} is not a whole number")
-        return number
-
     def _call(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        number, method, params = self._number(line, "call"), line.get("method"), line.get("params", {})
+        number, method, params = _whole_number(line, "call"), line.get("method"), line.get("params", {})
         self.begins(number)
         if not isinstance(method, str):
-            raise _wrong(f"method: {brief(method)} is not the name of a call")
+            raise UnreadableError(f"method: {brief(method)} is not the name of a call")
         if method == "cancel":
             stream = params.get("stream") if isinstance(params, dict) else None
-            if isinstance(stream, bool) or not isinstance(stream, int):
-                raise _wrong(f"cancel: {brief(params)} names no stream")
+            if type(stream) is not int:  # a bool is none
+                raise UnreadableError(f"cancel: {brief(params)} names no stream")
             self._open[number] = method, None
             return (Cancelled(("stream", stream)),)
         request, names = self._request(method, params)
@@ -206,7 +208,7 @@ class Transcript:
     def begins(self, number: int) -> None:
         """A call has this id. Raises UnreadableError if another one had it."""
         if not self._sent.add(number):
-            raise _wrong(f"call {number} was sent before; ids are unique within a file")
+            raise UnreadableError(f"call {number} was sent before; ids are unique within a file")
 
     def sends(
         self,
@@ -238,15 +240,15 @@ class Transcript:
         return request, names
 
     def _return(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        number = self._number(line, "return")
+        number = _whole_number(line, "return")
         waiting = self._open.pop(number, None)
         if waiting is None and self._anywhere and self._sent.add(number):
             return ()  # the answer to a call that was sent before the log began
         if waiting is None:
-            raise _wrong(f"return {number}: no call with this id is waiting for an answer")
+            raise UnreadableError(f"return {number}: no call with this id is waiting for an answer")
         method, self.answered = waiting
         if ("result" in line) == ("error" in line):
-            raise _wrong(f"return {number}: expected either a result or an error")
+            raise UnreadableError(f"return {number}: expected either a result or an error")
         if method == "cancel":
             return ()
         if "error" in line:
@@ -261,19 +263,20 @@ class Transcript:
     def _status(self, error: JSON) -> str:
         status = error.get("status") if isinstance(error, dict) else None
         if not isinstance(status, str) or status not in STATUS_NUMBERS or status == OK:
-            raise _wrong(f"error.status: {brief(status)} is not the name of a gRPC error")
+            raise UnreadableError(f"error.status: {brief(status)} is not the name of a gRPC error")
         return status
 
     def _stream(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        stream = ("stream", self._number(line, "stream"))
+        stream = ("stream", _whole_number(line, "stream"))
         if "closed" not in line and "error" not in line:
             if "message" not in line:
-                raise _wrong(f"stream {stream[1]}: expected a message or closed")
+                raise UnreadableError(f"stream {stream[1]}: expected a message or closed")
             return self._received(stream, line["message"])  # nearly always
         if "message" in line:
-            raise _wrong(f"stream {stream[1]}: expected a message or closed (with an error or without), not both")
-        if line.get("closed") is not True:
-            raise _wrong(f"closed: {brief(line.get('closed'))} is not true")
+            raise UnreadableError(
+                f"stream {stream[1]}: expected a message or closed (with an error or without), not both"
+            )
+        _must_be_true(line, "closed")
         error = line.get("error")
         self._latest.pop(stream, None)
         return (Ended(stream, OK if error is None else self._status(error)),)
@@ -310,12 +313,11 @@ class Transcript:
         return content
 
     def _connection(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        connection = ("connection", self._number(line, "connection"))
+        connection = ("connection", _whole_number(line, "connection"))
         if ("line" in line) == ("closed" in line):
-            raise _wrong(f"connection {connection[1]}: expected either a line or closed")
+            raise UnreadableError(f"connection {connection[1]}: expected either a line or closed")
         if "closed" in line:
-            if line["closed"] is not True:
-                raise _wrong(f"closed: {brief(line['closed'])} is not true")
+            _must_be_true(line, "closed")
             return (Ended(connection, OK),)
         return self._received(connection, line["line"])
 
@@ -324,6 +326,5 @@ class Transcript:
         return (Driven(event, names),)
 
     def _settled(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        if line["settled"] is not True:
-            raise _wrong(f"settled: {brief(line['settled'])} is not true")
+        _must_be_true(line, "settled")
         return _SETTLED

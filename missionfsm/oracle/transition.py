@@ -386,9 +386,9 @@ class TransitionFunction:
             return ()
         if (owed.view, owed.names) == (last.view, last.names):
             return (assumed,)
-        if last.looks is None or owed.names:
+        if last.shown_as is None or owed.names:
             return ()
-        matches = self.successors.matches(owed, last.looks)
+        matches = self.successors.matches(owed, last.shown_as)
         if isinstance(matches, Mismatch):
             return ()
         return tuple(after for match in matches if (after := self.successors.meet(assumed, match.assumes)))
@@ -415,7 +415,7 @@ class TransitionFunction:
                 agreed = self.successors.meet(assumption, match.assumes)
                 if not agreed:
                     continue
-                last = Owed(owed.view, owed.names, looks=self.spec.looks(owed.view, content))
+                last = Owed(owed.view, owed.names, shown_as=self.spec.remembered(owed.view, content))
                 after_it = Channel(channel.name, channel.topic, last, left)
                 channels = (*here.channels[:position], after_it, *here.channels[position + 1 :])
                 after = here.but(assumed=agreed, channels=channels)

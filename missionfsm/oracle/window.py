@@ -15,7 +15,7 @@ from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import Symbol
 
-BUDGET, EACH = 100_000, 200
+WINDOW_BUDGET, EACH = 100_000, 200
 """How many explanations a window may cost before it is given up, and how many more for each of its events."""
 
 FIRST, MORE = 5_000, 50
@@ -43,7 +43,7 @@ class Window:
 
     def add(self, event: Event) -> None:
         """Hold back one event more."""
-        symbol = self._lookout.foresee(event)
+        symbol = self._lookout.number_for_good(event)
         if symbol is not None:
             self._symbols.append(symbol)
             self.positions.append(len(self.events))
@@ -73,7 +73,7 @@ class Window:
         if lost:
             start = tuple(self._given_up(one, lost) for one in start)
             symbols = [(*one[:3], True, one[4]) if one[0] is Called and one[4] in lost else one for one in symbols]
-        least, each = (FIRST, MORE) if lost is None else (BUDGET, EACH)
+        least, each = (FIRST, MORE) if lost is None else (WINDOW_BUDGET, EACH)
         budget = least + each * len(symbols)
         search = Search(
             self._belief.automaton.transitions, start, symbols, self._latest, budget, self._belief.automaton.memory

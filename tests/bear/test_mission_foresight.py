@@ -209,7 +209,7 @@ def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.Monkey
     """Small logs, right ones and such with a list that is turned round, are judged alike where nothing is foreseen."""
     right = busy(seed, 26, Habits(clients=2), readings_at_random(seed) if seed % 2 else None)
     wrong = disordered(right)
-    monkeypatch.setattr(window, "BUDGET", 1_500)
+    monkeypatch.setattr(window, "WINDOW_BUDGET", 1_500)
     led = [judged(tmp_path / "log", lines) for lines in (right, wrong)]
     as_it_is = recorded.judged_system
 

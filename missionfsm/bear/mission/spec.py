@@ -375,7 +375,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         spontaneous=_spontaneous,
         matches=matches,
         # Whether a mission was ever assigned nobody sees in an empty list.
-        looks=lambda view, content: None if view.missions else content,
+        remembered=lambda view, content: None if view.missions else content,
         answers=_answers,
         lasting=lasting,
         recalls=True,

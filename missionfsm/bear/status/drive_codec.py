@@ -46,28 +46,24 @@ _KINDS: Mapping[str, type] = {
 _PARTS: Mapping[str, str] = {name: part for part in PARTS for name in (camel(part), part)}
 
 
-def _refuse(says: str) -> UnreadableError:
-    return UnreadableError(says)
-
-
 def _text(given: Mapping[str, JSON], name: str, where: str) -> str:
     value = given.get(name)
     if not isinstance(value, str) or not value:
-        raise _refuse(f"{where}.{name}: {brief(value)} is not a text")
+        raise UnreadableError(f"{where}.{name}: {brief(value)} is not a text")
     return value
 
 
 def _objects(given: JSON, where: str) -> list[dict[str, JSON]]:
     found = [] if given is None else given
     if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
-        raise _refuse(f"{where}: {brief(given)} is not a list of objects")
+        raise UnreadableError(f"{where}: {brief(given)} is not a list of objects")
     return found
 
 
 def _owned(given: Mapping[str, JSON], where: str) -> bool:
     value = given.get("owned", True)
     if not isinstance(value, bool):
-        raise _refuse(f"{where}.owned: {brief(value)} is not true or false")
+        raise UnreadableError(f"{where}.owned: {brief(value)} is not true or false")
     return value
 
 
@@ -85,15 +81,15 @@ def _robot(given: dict[str, JSON], where: str) -> Robot:
     robot_id, state, wifi = _text(given, "robotId", where), given.get("state"), given.get("wifi")
     location = given.get("locationId", "")
     if not isinstance(location, str):
-        raise _refuse(f"{where}.locationId: {brief(location)} is not a text")
+        raise UnreadableError(f"{where}.locationId: {brief(location)} is not a text")
     try:
         known = read_state(state)[0]
         network = part_value(WIFI, wifi)
     except MalformedError as error:
-        raise _refuse(f"{where}: {error}") from None
+        raise UnreadableError(f"{where}: {error}") from None
     known = evolve(known, battery=clamped(known.battery))
     if known.servi_state is not None and known.carti_state is not None:
-        raise _refuse(f"{where}.state: servi_state and carti_state are both set")
+        raise UnreadableError(f"{where}.state: servi_state and carti_state are both set")
     return Robot(robot_id, location, _owned(given, where), known, clamped(network))
 
 
@@ -101,10 +97,10 @@ def world(given: JSON) -> World:
     """The world of a `reset` or of a history's first line."""
     given = {} if given is None else given
     if not isinstance(given, dict):
-        raise _refuse(f"world: {brief(given)} is not an object")
+        raise UnreadableError(f"world: {brief(given)} is not an object")
     unknown = [name for name in given if name not in ("robots", "locations")]
     if unknown:
-        raise _refuse(f"world.{unknown[0]}: there is no such field; there are robots, locations")
+        raise UnreadableError(f"world.{unknown[0]}: there is no such field; there are robots, locations")
     robots = tuple(
         _robot(one, f"world.robots[{index}]") for index, one in enumerate(_objects(given.get("robots"), "world.robots"))
     )
@@ -114,7 +110,7 @@ def world(given: JSON) -> World:
     )
     for kind, ids in (("robot", [one.id for one in robots]), ("location", [one.id for one in locations])):
         if len(set(ids)) < len(ids):
-            raise _refuse(f"world: a {kind} is listed twice")
+            raise UnreadableError(f"world: a {kind} is listed twice")
     return World(robots, locations)
 
 
@@ -138,14 +134,14 @@ def write_world(one: World) -> JSON:
 def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive."""
     if not isinstance(given, dict) or not isinstance(given.get("event"), str):
-        raise _refuse(f"drive: {brief(given)} names no event")
+        raise UnreadableError(f"drive: {brief(given)} names no event")
     name = given["event"]
     if name == "fault":
         if given.get("status") != INTERNAL:
-            raise _refuse(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
+            raise UnreadableError(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
         return Event("fault", value=INTERNAL), ()
     if name not in ("report", "restart", "move"):
-        raise _refuse(f"drive.event: {brief(name)} is not a drive of bear.status")
+        raise UnreadableError(f"drive.event: {brief(name)} is not a drive of bear.status")
     robot = _text(given, "robotId", "drive")
     if name == "restart":
         return Event("restart", robot), ()
@@ -154,11 +150,11 @@ def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     named = given.get("part")
     part = _PARTS.get(named) if isinstance(named, str) else None
     if part is None:
-        raise _refuse(f"drive.part: {brief(given.get('part'))} is not a part of a robot's state")
+        raise UnreadableError(f"drive.part: {brief(given.get('part'))} is not a part of a robot's state")
     try:
         value = part_value(part, given.get("value"))
     except MalformedError as error:
-        raise _refuse(f"drive.value: {error}") from None
+        raise UnreadableError(f"drive.value: {error}") from None
     return Event("report", robot, part, value), ()
 
 

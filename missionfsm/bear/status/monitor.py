@@ -31,7 +31,7 @@ from missionfsm.kernel.sequence import relation
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import brief
 
-MAX_REMEMBERED = 50_000
+MAX_VERDICTS = 50_000
 """How many different payloads a monitor remembers before it starts to remember anew."""
 
 
@@ -149,7 +149,7 @@ class StreamMonitor:
     def _remembered(self, payload: JSON, key: bytes) -> Verdict:
         verdict = self._verdicts.get(key)
         if verdict is None:
-            if len(self._verdicts) >= MAX_REMEMBERED:
+            if len(self._verdicts) >= MAX_VERDICTS:
                 self._verdicts.clear()
             verdict = self._verdicts[key] = _verdict(lambda: self._value(payload))
         return verdict
@@ -172,7 +172,7 @@ class StreamMonitor:
             key = marshal.dumps((part, value), 2)
             verdict = self._verdicts.get(key)
             if verdict is None:
-                if len(self._verdicts) >= MAX_REMEMBERED:
+                if len(self._verdicts) >= MAX_VERDICTS:
                     self._verdicts.clear()
                 state = {part: value}
                 verdict = self._verdicts[key] = _verdict(lambda given=state: read_state(given)[0])  # type: ignore[misc]

@@ -43,18 +43,14 @@ ANY_NAME = "robot"
 _WORLD = {"name": "name", "channel": "channel", "statusChannel": "status_channel", "nameChannel": "name_channel"}
 
 
-def _refuse(says: str) -> UnreadableError:
-    return UnreadableError(says)
-
-
 def world(given: JSON) -> World:
     """The world: the robot's name, which may be left untold, and its channels."""
     given = {} if given is None else given
     if not isinstance(given, dict) or not set(given) <= set(_WORLD):
-        raise _refuse(f"world: isaac.robot has {', '.join(_WORLD)} only, not {brief(given)}")
+        raise UnreadableError(f"world: isaac.robot has {', '.join(_WORLD)} only, not {brief(given)}")
     for key, value in given.items():
         if not isinstance(value, str) or not value:
-            raise _refuse(f"world.{key}: {brief(value)} is not a text with something in it")
+            raise UnreadableError(f"world.{key}: {brief(value)} is not a text with something in it")
     return World(**{_WORLD[key]: value for key, value in given.items()})
 
 
@@ -113,7 +109,7 @@ def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
         return Connection(event), ()
     if event == "advance":
         return Passes(seconds(given.get("seconds"))), ()
-    raise _refuse(f"drive.event: {brief(event)} is not a drive of isaac.robot")
+    raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.robot")
 
 
 _CONFIGURATIONS = {USABLE: "{}", NULL: "null", SHALLOW: '{"node":1}', ODD: "1", UNUSABLE: "no json"}
@@ -169,7 +165,7 @@ def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: 
 
 
 def _no_calls(method: str, *_: object) -> UnreadableError:
-    return _refuse(f"{brief(method)} is not a method of isaac.robot, which has none")
+    return UnreadableError(f"{brief(method)} is not a method of isaac.robot, which has none")
 
 
 def _split(method: str, _: JSON) -> tuple[tuple[Name, ...], JSON]:

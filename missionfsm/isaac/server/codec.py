@@ -42,18 +42,14 @@ _BUFFERS = "type"
 _MOST_DIGITS = 19
 
 
-def _refuse(says: str) -> UnreadableError:
-    return UnreadableError(says)
-
-
 def world(given: JSON) -> World:
     """The name channel of a world, and by how many seconds the times of a history may be off."""
     given = given or {}
     if not isinstance(given, dict) or not set(given) <= {"nameChannel", "tolerance"}:
-        raise _refuse(f"world: isaac.server has nameChannel and tolerance only, not {brief(given)}")
+        raise UnreadableError(f"world: isaac.server has nameChannel and tolerance only, not {brief(given)}")
     channel, tolerance = given.get("nameChannel", "name"), given.get("tolerance", 0)
     if not isinstance(channel, str) or not channel:
-        raise _refuse(f"world.nameChannel: {brief(channel)} is not the name of a channel")
+        raise UnreadableError(f"world.nameChannel: {brief(channel)} is not the name of a channel")
     return World(channel, seconds(tolerance, "world.tolerance"))
 
 
@@ -86,7 +82,7 @@ def request(method: str, params: JSON) -> Submission | Statuses:
     if method == "statuses":
         return Statuses()
     if method != "submit":
-        raise _refuse(f"{brief(method)} is not a method of isaac.server; those are submit, statuses")
+        raise UnreadableError(f"{brief(method)} is not a method of isaac.server; those are submit, statuses")
     mission = params.get("mission") if isinstance(params, dict) else None
     if not isinstance(mission, dict):
         return Submission(defects=(inputs.MALFORMED,))
@@ -237,7 +233,7 @@ def write_request(asked: Submission | Statuses, names: tuple[Name, ...]) -> JSON
 def _connection(given: JSON) -> Name:
     number = given.get("connection")
     if isinstance(number, bool) or not isinstance(number, int):
-        raise _refuse(f"drive.connection: {brief(number)} is not the number of a connection")
+        raise UnreadableError(f"drive.connection: {brief(number)} is not the number of a connection")
     return ("connection", number)
 
 
@@ -253,7 +249,7 @@ def drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     if event == "line":
         heard, names = hear(text_line(given))
         return heard, (_connection(given), *names)
-    raise _refuse(f"drive.event: {brief(event)} is not a drive of isaac.server")
+    raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.server")
 
 
 def happened(given: JSON) -> tuple[Any, tuple[Name, ...]]:

@@ -10,11 +10,6 @@ from collections.abc import Mapping
 
 from missionfsm.kernel.readings import Ambiguity
 
-
-def _flags(letters: str) -> frozenset[str]:
-    return frozenset(letters)
-
-
 AI_02 = Ambiguity(
     "AI-02",
     "How are missions called that were cancelled or aborted?",
@@ -34,7 +29,7 @@ AI_03 = Ambiguity(
         "c": "all but cancellations; after those the mission waits for ever",
     },
     default="a",
-    flagged=_flags("bc"),
+    flagged=frozenset("bc"),
     rule="a-failed-upstream-cancels",
 )
 AI_03_WHEN = Ambiguity(
@@ -47,7 +42,7 @@ AI_03_WHEN = Ambiguity(
         "h": "as soon as it heads the queue of a robot that is there and idle",
     },
     default="n",
-    flagged=_flags("ph"),
+    flagged=frozenset("ph"),
     rule="a-failed-upstream-cancels",
 )
 AI_04 = Ambiguity(
@@ -67,7 +62,7 @@ AI_04_SENT = Ambiguity(
     "What is a mission that was sent and not acknowledged?",
     {"s": "STARTED", "t": "QUEUED"},
     default="s",
-    flagged=_flags("t"),
+    flagged=frozenset("t"),
     rule="every-mission-is-shown-with-its-status",
 )
 AI_05 = Ambiguity(
@@ -80,7 +75,7 @@ AI_05 = Ambiguity(
         "d": "from when its robot is connected",
     },
     default="a",
-    flagged=_flags("bcd"),
+    flagged=frozenset("bcd"),
     rule="start-timeout-aborts",
 )
 AI_06 = Ambiguity(
@@ -93,7 +88,7 @@ AI_06 = Ambiguity(
         "d": "from when the mission is sent, though it aborts only what was acknowledged",
     },
     default="a",
-    flagged=_flags("c"),
+    flagged=frozenset("c"),
     rule="/timeout-aborts",
 )
 AI_07 = Ambiguity(
@@ -105,7 +100,7 @@ AI_07 = Ambiguity(
         "c": "that it could be sent",
     },
     default="a",
-    flagged=_flags("bc"),
+    flagged=frozenset("bc"),
     rule="a-final-status-ends-the-mission",
 )
 AI_08 = Ambiguity(
@@ -117,7 +112,7 @@ AI_08 = Ambiguity(
         "d": "nothing, and it is sent no other mission until it has said how that one ended",
     },
     default="a",
-    flagged=_flags("cd"),
+    flagged=frozenset("cd"),
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_09 = Ambiguity(
@@ -125,7 +120,7 @@ AI_09 = Ambiguity(
     "What is a final status worth that comes after the end?",
     {"a": "nothing", "b": "the last one counts", "c": "the first after an abort counts"},
     default="a",
-    flagged=_flags("bc"),
+    flagged=frozenset("bc"),
     rule="an-ended-mission-stays-ended",
 )
 AI_10 = Ambiguity(
@@ -138,7 +133,7 @@ AI_10 = Ambiguity(
         "d": "by its channel alone: it is about the robot's current one there",
     },
     default="a",
-    flagged=_flags("d"),
+    flagged=frozenset("d"),
     rule="a-final-status-ends-the-mission",
 )
 AI_11 = Ambiguity(
@@ -146,7 +141,7 @@ AI_11 = Ambiguity(
     "How many missions is a robot sent at a time?",
     {"a": "one", "b": "all that are ready", "c": "one on each channel"},
     default="a",
-    flagged=_flags("b"),
+    flagged=frozenset("b"),
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_12 = Ambiguity(
@@ -166,7 +161,7 @@ AI_14_STATUS = Ambiguity(
     "On which channel are the statuses of a mission that names only its channel?",
     {"a": '"mission_status"', "b": "its channel's name with _status appended"},
     default="a",
-    flagged=_flags("b"),
+    flagged=frozenset("b"),
     rule="running-acknowledges",
 )
 AI_15 = Ambiguity(
@@ -253,7 +248,7 @@ AI_19 = Ambiguity(
     "What becomes of a mission without a robot?",
     {"a": "it is never sent", "b": "any robot gets it", "c": "it is refused"},
     default="c",
-    flagged=_flags("b"),
+    flagged=frozenset("b"),
 )
 AI_20_KEYS = Ambiguity(
     "AI-20.keys", "Is a mission with an unknown key refused?", {"a": "yes", "c": "no, the key is ignored"}, default="c"
@@ -276,7 +271,7 @@ AI_22_STARTED = Ambiguity(
         "j": "waited for, and then as good as failed, however it ended",
     },
     default="a",
-    flagged=_flags("ij"),
+    flagged=frozenset("ij"),
     rule="a-failed-upstream-cancels",
 )
 AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a")
@@ -288,7 +283,7 @@ AI_24_WHOLE = Ambiguity(
         "w": "in the first scheduling pass in which more whole seconds of less than a day have passed",
     },
     default="x",
-    flagged=_flags("w"),
+    flagged=frozenset("w"),
     rule="timeout-aborts",
 )
 AI_25_TAKEN = Ambiguity(
@@ -302,7 +297,7 @@ AI_25_HEADER = Ambiguity(
     "How are the halves of the header's uuid sent?",
     {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
     default="s",
-    flagged=_flags("n"),
+    flagged=frozenset("n"),
     rule="64-bit-integers-are-strings",
 )
 AI_26 = Ambiguity(
@@ -316,7 +311,7 @@ AI_27_UUID = Ambiguity(
     "Whose is the uuid in a header?",
     {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
     default="a",
-    flagged=_flags("b"),
+    flagged=frozenset("b"),
     rule="a-line-is-one-message",
 )
 AI_28_CONFIG = Ambiguity(
@@ -331,7 +326,7 @@ AI_28_UUID = Ambiguity(
     "Does a MissionProto say which mission it is?",
     {"y": "yes, its payload has the mission's uuid", "n": "no"},
     default="y",
-    flagged=_flags("n"),
+    flagged=frozenset("n"),
     rule="a-line-is-one-message",
 )
 AI_31 = Ambiguity(
@@ -339,7 +334,7 @@ AI_31 = Ambiguity(
     "Is a mission lost whose robot stops reporting RUNNING?",
     {"a": "yes, after some time", "b": "no"},
     default="b",
-    flagged=_flags("a"),
+    flagged=frozenset("a"),
     rule="silence-is-no-loss",
 )
 AI_33_NULL = Ambiguity(
@@ -362,7 +357,7 @@ AI_38 = Ambiguity(
     "What does a message of a type do that does not travel as JSON?",
     {"a": "it is skipped", "d": "its connection is closed"},
     default="a",
-    flagged=_flags("d"),
+    flagged=frozenset("d"),
     rule="what-means-nothing-has-no-effect",
 )
 AI_39 = Ambiguity(

@@ -16,7 +16,7 @@ from missionfsm.kernel.terms import Request
 from missionfsm.oracle.automaton import Automaton, Tally
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
-from missionfsm.oracle.successors import BUDGET, ExhaustedError
+from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
@@ -87,7 +87,7 @@ class Judge:
             message = f"drives: {system.name} has no {unknown[0]!r}; it has {', '.join(system.spec.drives)}"
             raise UnreadableError(message)
         decided = assumed(system.spec, readings, no_flagged=no_flagged)
-        self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else BUDGET)
+        self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else EVENT_BUDGET)
         self.automaton.successors.live = not waits
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
@@ -95,7 +95,7 @@ class Judge:
         self.belief: Belief | Parted = Belief(self.automaton, world, self._tally, past)
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
-            self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, BUDGET)
+            self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, EVENT_BUDGET)
         self.rulings = Eliminations(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)

@@ -19,7 +19,7 @@ from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Incident, State, View
 
-MAX_REMEMBERED = 1_000
+MAX_STEPS = 1_000
 """How many steps a model remembers; states that list all that has ended are large."""
 _UNKNOWN = Step(None)
 """Stands for what was not asked yet; None is a step that no reading allows."""
@@ -202,7 +202,7 @@ class Reference:
         step = self._chosen.get(key, _UNKNOWN)
         if step is _UNKNOWN:
             allowed = next((step for step in steps(*arguments) if meet(self.choice, step.assumes)), None)
-            if len(self._chosen) >= MAX_REMEMBERED:
+            if len(self._chosen) >= MAX_STEPS:
                 self._chosen.clear()
             step = self._chosen[key] = self.mutate_step(key[0], allowed)
         return step

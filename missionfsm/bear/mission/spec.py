@@ -17,19 +17,16 @@ from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, ADDED, GONE, STREAM, Outcome
+from missionfsm.bear.mission.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_58_SENT, AM_61, AMBIGUITIES
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
-    ENDED,
-    GOALLESS,
     LIFECYCLE,
     MISSION,
-    NOT_CHOSEN,
     PATROLS,
     SYSTEM,
     Edit,
     Kind,
-    Mission,
     Op,
     Robot,
     apply,
@@ -53,12 +50,11 @@ from missionfsm.bear.mission.stream import (
     matches,
 )
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
-from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, Waiver, promise
-from missionfsm.kernel.spec import Delivery, Drive, Invariant, Spec
+from missionfsm.kernel.spec import Delivery, Drive, Spec
 from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 
 _MOVES = {
@@ -278,61 +274,6 @@ def _delivery(_: object) -> Delivery:
         first=first,
         malformed=(WELL_FORMED.id,),
     )
-
-
-# What holds of every robot, and what some robot can come to.
-
-
-def _has_state(mission: Mission, *states: State) -> bool:
-    return mission.state in states
-
-
-INVARIANTS = (
-    Invariant(
-        "ended-missions-come-first",
-        "Listed missions stand in the order ended, active, waiting.",
-        lambda robot: (
-            all(_has_state(one, *ENDED) for one in robot.done)
-            and (robot.active is None or _has_state(robot.active, State.STATE_RUNNING, State.STATE_PAUSED))
-            and all(_has_state(one, State.STATE_DEFAULT) for one in robot.pending)
-        ),
-    ),
-    Invariant(
-        "the-goal-index-is-a-goal",
-        "The current goal of an active mission is one of its goals, or none has been selected.",
-        lambda robot: (
-            robot.active is None
-            or robot.active.kind in GOALLESS
-            or NOT_CHOSEN <= robot.active.goal < len(robot.active.goals)
-        ),
-    ),
-    Invariant(
-        "only-waiting-missions-halt",
-        "A queue without missions is not halted.",
-        lambda robot: bool(robot.pending) or not robot.halted,
-    ),
-    Invariant(
-        "a-used-robot-is-not-fresh",
-        "A robot that lists a mission was used.",
-        lambda robot: not (robot.fresh and robot.listed),
-    ),
-)
-POSSIBILITIES = (
-    *(
-        Invariant(f"a-mission-is-{state.name.lower()}", f"Some mission is in {state.name}.", holds)
-        for state, holds in (
-            (state, lambda robot, state=state: any(one.state is state for one in robot.listed))
-            for state in LIFECYCLE.states
-        )
-    ),
-    Invariant("a-queue-forms", "Missions wait behind another.", lambda robot: bool(robot.active and robot.pending)),
-    Invariant(
-        "a-goal-is-left-behind",
-        "A mission is past its first goal.",
-        lambda robot: bool(robot.active and robot.active.goal > 0),
-    ),
-    Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.listed),
-)
 
 
 def _shape(robot: Robot) -> tuple[object, ...]:

@@ -13,17 +13,8 @@ from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.tools.check import causes
-from missionfsm.tools.check.nearest import (
-    CODE,
-    LEFT_OUT,
-    SHAPE,
-    UNOWED,
-    VALUE,
-    Candidate,
-    Circumstances,
-    Nearest,
-    Problem,
-)
+from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNOWED, VALUE, Candidate, Circumstances, Problem
+from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 from missionfsm.tools.check.wrongcode import wrong_code

@@ -18,10 +18,10 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
+from missionfsm.tools.check.candidates import Call, Circumstances
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent
-from missionfsm.tools.check.nearest import Call, Circumstances
 from missionfsm.tools.check.phrases import event_words
 from missionfsm.tools.check.quiet import Quiet
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested

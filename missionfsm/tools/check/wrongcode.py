@@ -14,7 +14,8 @@ from collections.abc import Iterable, Sequence
 from missionfsm.kernel.history import Returned
 from missionfsm.kernel.rules import OK, Rule
 from missionfsm.oracle.explanation import Explanation, Ready
-from missionfsm.tools.check.nearest import Candidate, Nearest
+from missionfsm.tools.check.candidates import Candidate
+from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import described, name_words
 
 MAX_LOOKED_AT = 20

@@ -29,7 +29,8 @@ def diagram(  # noqa: PLR0913 - options of the command
         ),
     ] = None,
     output: Annotated[
-        str | None, typer.Option("-o", "--output", metavar="DIR", help="Write files; one picture goes to stdout else.")
+        str | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Write files there; without it one picture goes to stdout."),
     ] = None,
     reading: Annotated[
         list[str] | None,
@@ -136,6 +137,7 @@ def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
     """Write one picture: the whole of it, but as an SVG, which of what is too much for one picture has the parts."""
     from missionfsm.tools.draw.gallery import SVG  # noqa: PLC0415 - commands load what they need
 
+    asked = shown
     if len(shown) > 1:
         wholes = {(one.system, one.name) for one in shown}
         drawn = (
@@ -144,6 +146,12 @@ def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
         shown = tuple(drawn)
     if len(shown) != 1 or len(forms) != 1:
         ids = ", ".join(picture.id for picture in shown)
+        whole = next((one for one in asked if one.divided), None)
+        if whole is not None and len(forms) == 1 and all(one.whole == whole.name for one in shown):
+            # Nothing else was asked for than what one picture has no room for.
+            stop(
+                f"as {forms[0]}, {whole.id} is {len(shown)} pictures: name one of {ids}, or a folder with -o", BAD_INPUT
+            )
         stop(f"only one picture in one format goes to stdout; name a folder with -o, or one of {ids}", BAD_INPUT)
     text = _text(shown[0], forms[0])
     if text is None:

@@ -97,7 +97,7 @@ class Robot:
         self._on_the_way: deque[tuple[Updates, MissionStatus]] = deque()
         self._delivering = False
         fields = {
-            "family": Family(family).value,
+            "family": family.value if isinstance(family, Family) else family,
             "destinations": _texts(destinations),
             "occupied": _texts(occupied),
             "contactDock": contact_dock,

@@ -9,6 +9,7 @@ differ in one question alone can be merged by ``|``.
 
 from __future__ import annotations
 
+import difflib
 import functools
 import itertools
 from collections.abc import Iterable, Mapping
@@ -17,6 +18,9 @@ from attrs import field, frozen
 
 _bits = itertools.count()
 """Every reading has a bit of its own; the numbers have no meaning and are never written out."""
+
+MOST_NAMED = 12
+"""How many ambiguities are named one by one to somebody who asks for one that does not exist."""
 
 
 @frozen(eq=False)
@@ -170,9 +174,7 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
         letter = choice[name]
         named = [one for one in ambiguities if one.id == name or one.id.startswith(f"{name}.")]
         if not named:
-            known = ", ".join(one.id for one in ambiguities)
-            msg = f"there is no ambiguity {name}; there are {known}"
-            raise ValueError(msg)
+            raise ValueError(_unknown(name, [one.id for one in ambiguities]))
         fitting = [one for one in named if one.readings.keys() >= set(letter)]
         if not fitting:
             letters = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
@@ -180,6 +182,19 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
             raise ValueError(msg)
         decided.update(dict.fromkeys(fitting, letter))
     return meet(UNCONSTRAINED, (one[tuple(letters)] for one, letters in decided.items()))
+
+
+def _unknown(name: str, known: list[str]) -> str:
+    """That there is no such ambiguity; of many only the one that is meant, or what they are called together."""
+    if len(known) > MOST_NAMED:
+        known = list(dict.fromkeys(one.partition(".")[0] for one in known))
+        near = difflib.get_close_matches(name, known, len(known))
+        if near:
+            # Of those that are equally near the first in order: 09 for 9, not 59.
+            likeness = {one: difflib.SequenceMatcher(None, one, name).ratio() for one in near}
+            meant = min(near, key=lambda one: (-likeness[one], one))
+            return f"there is no ambiguity {name}; is {meant} meant?"
+    return f"there is no ambiguity {name}; there are {', '.join(known)}"
 
 
 def to_the_letter(ambiguities: Iterable[Ambiguity]) -> dict[str, str]:

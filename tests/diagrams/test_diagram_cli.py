@@ -107,6 +107,11 @@ def test_mission_files_are_drawn(command_line: CommandLine, tmp_path: Path) -> N
             "isaac.robot/reports, isaac.robot/reports-AI-33.unusable-a-b",
         ),
         (
+            ("bear.mission/mission", "--format", "svg"),
+            "as svg, bear.mission/mission is 2 pictures: name one of bear.mission/mission-way, "
+            "bear.mission/mission-ends, or a folder with -o",
+        ),
+        (
             ("isaac.robot/reports", "--format", "xstate"),
             "isaac.robot/reports cannot be had as xstate: only a lifecycle is a machine, in which every event leads to "
             "one state",

@@ -422,7 +422,7 @@ def test_readings_change_what_is_seen() -> None:
 
 def test_what_does_not_exist_is_refused() -> None:
     """A family, a reading or a call that does not exist, and a text for a list, are mistakes of the test."""
-    with pytest.raises(ValueError, match="'moxi' is not a valid Family"):
+    with pytest.raises(ValueError, match=r"world\.family: 'moxi' is none of base, servi, carti"):
         Robot("moxi")
     with pytest.raises(ValueError, match="AM-09 has no reading z"):
         Robot(readings={"AM-09": "z"})

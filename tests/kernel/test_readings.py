@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import re
 from collections.abc import Callable
 
 import pytest
@@ -118,6 +119,20 @@ def test_a_wish_that_does_not_exist_is_refused(wish: dict[str, str], message: st
     """An unknown entry or letter is refused with a line that says what there is."""
     with pytest.raises(ValueError, match="^" + message.replace(".", r"\.") + "$"):
         choose(ALL, wish)
+
+
+@pytest.mark.parametrize(
+    ("wish", "message"),
+    [
+        ("AM-9", "there is no ambiguity AM-9; is AM-90 meant?"),
+        ("x", f"there is no ambiguity x; there are {', '.join(f'AM-{90 + one}' for one in range(10))}"),
+    ],
+)
+def test_of_many_the_one_that_is_meant_is_named(wish: str, message: str) -> None:
+    """Where there are too many to be read, the nearest is named, or else the entries without their questions."""
+    many = [Ambiguity(f"AM-{90 + one}.{part}", "?", {"a": "1", "b": "2"}, "a") for one in range(10) for part in "pq"]
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        choose(many, {wish: "a"})
 
 
 @pytest.mark.parametrize("extra", [{"default": "z"}, {"flagged": frozenset("z")}, {"json_only": frozenset("z")}])

@@ -167,6 +167,14 @@ class Served:
         """The next call that would succeed and whose Errors table has that status answers with it."""
         return self.drive("fault", status=status, **({"applied": applied} if applied else {}))
 
+    def renew(self, token: str) -> None:
+        """The token expires: from now on callers have to send this one, and streams that are open are ended.
+
+        Raises:
+            ValueError: it is served without a token.
+        """
+        self._server.renew(token)
+
     def history(self) -> tuple[JSON, ...]:
         """All that was seen since the last reset, as lines of the history format: ``missionfsm.check`` judges them."""
         return self._live.history()

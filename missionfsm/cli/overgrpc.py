@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import enum
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -53,12 +54,30 @@ def read_token(path: str | None) -> str:
     if path is None:
         return ""
     try:
+        return _token(path)
+    except ValueError as error:
+        stop(str(error), BAD_INPUT)
+
+
+def _token(path: str) -> str:
+    """The token in a file. Raises ValueError, which says what is wrong with the file."""
+    try:
         token = Path(path).read_text().strip()
     except (OSError, UnicodeDecodeError) as error:
-        stop(f"{path}: {getattr(error, 'strerror', None) or 'it is no text'}", BAD_INPUT)
+        raise ValueError(f"{path}: {getattr(error, 'strerror', None) or 'it is no text'}") from None
     if not token or not token.isascii() or not token.isprintable():
-        stop(f"{path}: it holds no token of printable ASCII", BAD_INPUT)
+        raise ValueError(f"{path}: it holds no token of printable ASCII")
     return token
+
+
+def _token_again(path: str) -> str:
+    """The token in a file that may have been renewed. Raises SubjectError: the implementation cannot be asked more."""
+    from missionfsm.kernel.subject import SubjectError  # noqa: PLC0415 - commands load what they need
+
+    try:
+        return _token(path)
+    except ValueError as error:
+        raise SubjectError(str(error)) from None
 
 
 @contextlib.contextmanager
@@ -190,6 +209,7 @@ class Wire:
             force=self.force,
             shared=self.others,
             anywhere=self.anywhere,
+            renewed=None if self.token is None else functools.partial(_token_again, self.token),
             tell=complain,
         )
         if self.settle is None and subject.counts:

@@ -17,9 +17,10 @@ from missionfsm.app.asked import judged_system
 from missionfsm.app.serve import Served, serve
 from missionfsm.cli.overgrpc import read_metadata, read_token
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.subject import Exchange, Subject
+from missionfsm.kernel.subject import Exchange, Subject, SubjectError
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.run import Run
 
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 SHORT: dict[str, Any] = {"examples": 1, "tours": 1, "steps": 10, "seed": 1, "advice": False}
@@ -124,6 +125,28 @@ def test_metadata_and_token_are_sent_with_every_call(tmp_path: Path) -> None:
             for method, params in (("reset", {}), ("SubscribeMissionStatus", {}), ("CreateMission", NAVIGATE)):
                 assert server.exchange(method, params).error is None
             server.close()
+
+
+def test_a_token_that_expires_is_read_again_before_the_next_conversation() -> None:
+    """What is under way when a token expires is UNAUTHENTICATED, and explained; the next conversation has a new one."""
+    tokens = ["old", "old"]
+    of = judged_system("bear.mission", strict=False)
+    with serve("bear.mission", token="old") as robot:  # noqa: S106 - it is nobody's
+        server = GrpcSubject("bear.mission", Target(robot.target, token=tokens[-1]), renewed=lambda: tokens[-1])
+        run = Run.against(of, server)
+        run.start({})
+        assert run.act("SubscribeMissionStatus", {})
+        robot.renew("new")
+        assert all((run.settle(), run.act("CreateMission", NAVIGATE), run.settle()))
+        heard = [line["error"]["status"] for line in run.conversation.heard if line.get("error")]
+        assert heard == ["UNAUTHENTICATED", "UNAUTHENTICATED"]
+        with pytest.raises(SubjectError, match="UNAUTHENTICATED"):
+            run.start({})
+        tokens.append("new")
+        run.start({})
+        assert all((run.act("CreateMission", NAVIGATE), run.settle()))
+        assert [line["result"].keys() for line in run.conversation.heard if "return" in line] == [{"missionId"}]
+        server.close()
 
 
 @pytest.mark.parametrize(

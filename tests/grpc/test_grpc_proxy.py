@@ -137,6 +137,29 @@ def test_a_token_that_expires_is_refused_by_the_robot(lines: list[JSON]) -> None
     assert verdict.violation is None, str(verdict)
 
 
+def test_a_token_that_expires_during_a_stream_ends_it_behind_the_proxy(lines: list[JSON]) -> None:
+    """The subscriber hears UNAUTHENTICATED, comes back with a new token, and the record of all that conforms."""
+    subscribe = path(METHODS["SubscribeMissionStatus"])
+    with serve("bear.mission", token="old") as robot:  # noqa: S106 - it is nobody's
+        relay = Relay(robot.target, lines.append)
+        old, new = ((("authorization", f"Bearer {token}"),) for token in ("old", "new"))
+        stream = relay.channel.unary_stream(subscribe)(b"", metadata=old, timeout=WAIT)
+        next(stream)
+        robot.renew("new")
+        with pytest.raises(grpc.RpcError) as ended:
+            next(stream)
+        assert ended.value.code() is grpc.StatusCode.UNAUTHENTICATED
+        again = relay.channel.unary_stream(subscribe)(b"", metadata=new, timeout=WAIT)
+        next(again)
+        assert relay.call("CreateMission", NAVIGATE, metadata=new)["missionId"]
+        next(again)
+        relay.close()
+    closed = [line["error"]["status"] for line in lines if line.get("closed") and line["stream"] == 1]
+    assert closed == ["UNAUTHENTICATED"]
+    verdict = check(judged_system("bear.mission", strict=False), head(HEAD), without_times(lines))
+    assert verdict.violation is None, str(verdict)
+
+
 def test_a_call_that_is_cancelled_stays_without_an_answer(lines: list[JSON]) -> None:
     """A client that gives up its call cancels it at the robot; the history has the call and no answer."""
     slow = Slow()

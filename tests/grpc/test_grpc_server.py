@@ -234,6 +234,32 @@ def test_many_streams_need_no_thread_each(robot: Served, client: Client) -> None
     assert robot.history()
 
 
+def test_a_token_that_expires_ends_streams_and_a_client_comes_back_with_a_new_one() -> None:
+    """A stream ends UNAUTHENTICATED when its token expires, calls with it are refused, and a new one opens all."""
+    old, new = ((("authorization", f"Bearer {token}"),) for token in ("old", "new"))
+    subscribe, charge = (path(methods("bear.mission")[name]) for name in ("SubscribeMissionStatus", "ChargeRobot"))
+    with serve("bear.mission", token="old") as robot, grpc.insecure_channel(robot.target) as channel:  # noqa: S106
+        stream = channel.unary_stream(subscribe)(b"", metadata=old, timeout=WAIT)
+        next(stream)
+        robot.renew("new")
+        for ask in (lambda: next(stream), lambda: channel.unary_unary(charge)(b"", metadata=old, timeout=WAIT)):
+            with pytest.raises(grpc.RpcError) as refused:
+                ask()
+            assert refused.value.code() is grpc.StatusCode.UNAUTHENTICATED
+        again = channel.unary_stream(subscribe)(b"", metadata=new, timeout=WAIT)
+        next(again)
+        channel.unary_unary(charge)(b"", metadata=new, timeout=WAIT)
+        next(again)
+        again.cancel()
+        assert missionfsm.check(robot.history()).conforms
+
+
+def test_a_token_that_nobody_has_to_send_cannot_expire(robot: Served) -> None:
+    """A robot without a token has none to renew."""
+    with pytest.raises(ValueError, match="none expires"):
+        robot.renew("new")
+
+
 def test_a_token_is_asked_for() -> None:
     """Without the token every call is UNAUTHENTICATED; with it calls are served."""
     with serve("bear.mission", token="secret") as robot:  # noqa: S106 - it is nobody's

@@ -47,6 +47,7 @@ class GrpcSubject:
         shared: whether others use the server at the same time. Then it is never begun anew by the control service: a
             reset ends what this tester began.
         anywhere: whether conversations begin with whatever there is. Then a reset does not clear the list either.
+        renewed: the token as it is now; asked at every reset, since tokens expire.
         tell: takes a line for people: the server sent a field that the table does not know; once for each.
         clock, sleep: seconds that pass, and how to wait.
 
@@ -63,6 +64,7 @@ class GrpcSubject:
         force: bool = False,
         shared: bool = False,
         anywhere: bool = False,
+        renewed: Callable[[], str] | None = None,
         tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
@@ -71,6 +73,7 @@ class GrpcSubject:
         self.target = target
         self.world = world or {}
         self._force, self._shared, self._anywhere = force, shared or anywhere, anywhere
+        self._renewed = renewed
         self._tell = tell
         self._clock, self._sleep = clock, sleep
         self._methods = methods(system)
@@ -341,6 +344,8 @@ class GrpcSubject:
 
     def _reset(self, world: JSON) -> None:
         self._cancel_all()
+        if self._renewed is not None:
+            self.target = evolve(self.target, token=self._renewed())
         if self._control and not self._shared:
             self._asked_of_control("Reset", {"world": world})
         elif self.system == "bear.mission":

@@ -52,6 +52,9 @@ SETTLE_SECONDS = 5.0
 RULE_KEY, CITE_KEY = "missionfsm-rule", "missionfsm-cite"
 """Trailing metadata of a refusal: the ids of the rules, and their places on the page."""
 
+EXPIRED = object()
+"""Stands among the messages of a stream where the token of its subscriber is good no more."""
+
 Context = Any
 """grpc.aio.ServicerContext, which has no type parameters that fit."""
 
@@ -80,10 +83,14 @@ class Security:
 
 
 class _Tokens(aio.ServerInterceptor):
-    """Refuses whoever does not send the token."""
+    """Refuses whoever does not send the token.
+
+    Attributes:
+        token: the one that is good now.
+    """
 
     def __init__(self, token: str) -> None:
-        self._wanted = f"Bearer {token}"
+        self.token = token
         self._refusal = grpc.unary_unary_rpc_method_handler(self._refuse)
 
     @staticmethod
@@ -97,7 +104,8 @@ class _Tokens(aio.ServerInterceptor):
     ) -> grpc.RpcMethodHandler:
         """Let through what has the token."""
         sent = dict(handler_call_details.invocation_metadata or ())
-        return await continuation(handler_call_details) if sent.get("authorization") == self._wanted else self._refusal
+        good = sent.get("authorization") == f"Bearer {self.token}"
+        return await continuation(handler_call_details) if good else self._refusal
 
 
 class _Handlers(grpc.GenericRpcHandler):
@@ -184,6 +192,8 @@ class _Handlers(grpc.GenericRpcHandler):
                 message = await outgoing.next(None if ends is None else ends - loop.time())
                 if message is None:
                     return
+                if message is EXPIRED:
+                    await context.abort(grpc.StatusCode.UNAUTHENTICATED, "the token has expired")
                 if outgoing.unsent > MAX_UNSENT_MESSAGES:
                     await context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, "the subscriber does not read")
                 data = await _said(context, method, functools.partial(self._encoded, method, message))
@@ -196,6 +206,11 @@ class _Handlers(grpc.GenericRpcHandler):
             self._open.discard(outgoing)
             outgoing.close()
             self._live.cancel(answered.result)
+
+    async def expire(self) -> None:
+        """End every stream, whose token is good no more."""
+        for one in self._open:
+            one.take(EXPIRED)
 
     # The control service.
 
@@ -289,6 +304,7 @@ class Server:
         self._loop = asyncio.new_event_loop()
         self._handlers = _Handlers(live, Dice(faults, seed), self._loop, with_control=with_control)
         self._with_control = with_control
+        self._tokens = _Tokens(security.token)
         self._thread = threading.Thread(target=self._loop.run_forever, name="missionfsm-grpc", daemon=True)
         self._thread.start()
         self._server: aio.Server | None = None
@@ -309,7 +325,7 @@ class Server:
     async def _start(self, port: int) -> int:
         # SO_REUSEPORT would let two servers share a port, and calls would go to either.
         options = (("grpc.so_reuseport", 0), ("grpc.max_receive_message_length", MAX_MESSAGE_BYTES))
-        interceptors = (_Tokens(self._security.token),) if self._security.token else ()
+        interceptors = (self._tokens,) if self._security.token else ()
         server = self._server = aio.server(options=options, interceptors=interceptors)
         server.add_generic_rpc_handlers((self._handlers,))
         descriptors = pool()
@@ -330,6 +346,17 @@ class Server:
             raise OSError(f"{where}: the port cannot be had")
         await server.start()
         return bound
+
+    def renew(self, token: str) -> None:
+        """From now on another token is good, and streams that were opened with the one before end UNAUTHENTICATED.
+
+        Raises:
+            ValueError: there is none to renew.
+        """
+        if not self._security.token:
+            raise ValueError("nobody has to send a token here, so that none expires")
+        self._tokens.token = token
+        self._run(self._handlers.expire())
 
     def stop(self) -> None:
         """End what is under way and let go of the port; a second time does nothing."""

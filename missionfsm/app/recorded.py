@@ -32,7 +32,7 @@ from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.line_cache import Texts
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
-from missionfsm.tools.check.judge import KEPT, PATIENCE, Judge
+from missionfsm.tools.check.judge import MAX_LINES, PATIENCE, Judge
 from missionfsm.tools.check.scope import assumed, held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.contradiction import MAX_KEPT
@@ -63,7 +63,7 @@ def check_file(
     """
     asked = Asked(readings or {}, **how)
     if not is_plain_file(path):  # it can be read only once
-        return _judged(path, asked, tell, {}, KEPT)
+        return _judged(path, asked, tell, {}, MAX_LINES)
     found = _read_twice(path, asked, tell)
     # What nothing explains may have its cause long before, in a message that was lost unnoticed: it is judged once
     # more with all that a transport does in mind at every event.
@@ -352,7 +352,7 @@ def _retold(verdict: Verdict, path: str, robot: str | None, *, by_params: bool) 
     if verdict.violation is None:
         return verdict
     addresses = Addresses(by_params=by_params)
-    kept: deque[JSON] = deque(maxlen=KEPT)
+    kept: deque[JSON] = deque(maxlen=MAX_LINES)
     with open_history(path) as source:
         for number, line in lines(source, path):
             whose, rest = addresses.whose(line)

@@ -18,7 +18,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.spec import Drive, Spec
 from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step
-from missionfsm.kernel.terms import Content, Request, State, View
+from missionfsm.kernel.terms import Content, Refs, Request, State, View
 from missionfsm.kernel.values import value
 
 LOG_01 = Ambiguity(
@@ -116,7 +116,7 @@ def _of_known(function: Callable[Concatenate[State, P], T], unknown: T) -> Calla
     return asked
 
 
-def _outcomes(spec: Spec, state: State, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _outcomes(spec: Spec, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
     if isinstance(state, Unknown):
         return _imaginable(spec, state, request, len(refs))
     return spec.outcomes(state, request, refs)

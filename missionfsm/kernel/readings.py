@@ -246,6 +246,11 @@ def by_bit(ambiguities: Iterable[Ambiguity]) -> dict[int, int]:
     return {bit: one.group for one in ambiguities for bit in one.bits}
 
 
+def covers(wide: int, narrow: int) -> bool:
+    """Whether one set of assumptions leaves open all that another does."""
+    return wide | narrow == wide
+
+
 def merge(first: int, second: int, groups: Mapping[int, int]) -> int | None:
     """One set of assumptions that stands for exactly these two, or None where there is none.
 

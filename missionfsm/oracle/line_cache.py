@@ -17,6 +17,7 @@ from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 from missionfsm.oracle.transcript import Transcript
 
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
+_AFTER_CALL, _AFTER_RETURN, _AFTER_STREAM, _MESSAGE_LENGTH = map(len, (_CALL, _RETURN, _STREAM, _MESSAGE))
 """How nearly all lines begin that call, return or show a message."""
 _MOST_DIGITS, _ZERO = 19, ord("0")
 _NOBODY: tuple[Name, ...] = ()
@@ -68,7 +69,7 @@ class Texts:
             called = self._calls.get(rest)
             if called is None:
                 called, names = self._called.find(None, rest)
-            number = _number(text[8:end])
+            number = _number(text[_AFTER_CALL:end])
             if called is None or not number:
                 return None
             method, request = called
@@ -76,7 +77,7 @@ class Texts:
             return self._sends(number, method, request, names)
         if text.startswith(_RETURN):
             end = text.find(b",")
-            number = _number(text[10:end])
+            number = _number(text[_AFTER_RETURN:end])
             waiting = self._pending.get(number) if number else None
             if waiting is None:
                 return None
@@ -89,10 +90,10 @@ class Texts:
 
     def _message(self, text: bytes) -> tuple[Event, ...] | None:
         end = text.find(b",")
-        number = _number(text[10:end])
+        number = _number(text[_AFTER_STREAM:end])
         if not number or not text.startswith(_MESSAGE, end) or not text.endswith(b"}"):
             return None
-        skimmed = self._skim(text[end + 11 : -1])
+        skimmed = self._skim(text[end + _MESSAGE_LENGTH : -1])
         if skimmed is None:
             return None
         found, marks, rest = skimmed

@@ -53,14 +53,13 @@ def plausible(
     state = explanation.state
     if glimpses is not None and not is_unknown(explanation):
         state = Unknown(glimpses.world(state))
-    found = dict.fromkeys(
+    yield from dict.fromkeys(
         tuple(one.topic for one in step.opens)
         for step in successors.outcomes(state, call.request, (None,) * len(call.args))
         if step.answer is not None
         and meet(explanation.assumed, step.assumes)
         and successors.agreements(step.answer, answer)
     )
-    yield from found
 
 
 def answered(
@@ -118,6 +117,14 @@ def _names(spec: Spec, here: Explanation, state: State, match: Match, names: Nam
     return tuple(known[ref] if ref in known else next(unseen) for ref in range(spec.names(state)))
 
 
+def _all_wild(calls: tuple[InFlight, ...]) -> tuple[InFlight, ...]:
+    """The calls, each of which may have been answered anything."""
+    return tuple(
+        one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
+        for one in calls
+    )
+
+
 def _standing(  # noqa: PLR0913 - what a message fixes
     here: Explanation,
     state: State,
@@ -133,10 +140,7 @@ def _standing(  # noqa: PLR0913 - what a message fixes
         for one in here.channels
         if one.name != name
     ]
-    calls = tuple(
-        one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
-        for one in here.calls
-    )
+    calls = _all_wild(here.calls)
     showing = Channel(name, topic, Owed(view, names, shown_as=shown_as))
     gone = tuple(one for one in here.gone if one not in names)
     return Explanation(state, names, here.assumed, calls, here.lost, (showing, *channels), gone)
@@ -202,10 +206,7 @@ def _lost_sight(successors: Successors, here: Explanation) -> Explanation:
     glimpses = _glimpses(successors)
     assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
     channels = tuple(Channel(one.name, one.topic, Owed(ANY, ()), (_FREE,)) for one in here.channels)
-    calls = tuple(
-        one if WILD in one.ready else InFlight(one.name, one.request, one.args, (*one.ready, WILD), one.done)
-        for one in here.calls
-    )
+    calls = _all_wild(here.calls)
     unknown = Unknown(glimpses.world(here.state))
     return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
 

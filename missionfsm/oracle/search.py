@@ -21,7 +21,7 @@ from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead, Message
 from missionfsm.oracle.memory import ENTRY, MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
-from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, point, weight
+from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight
 from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
@@ -297,7 +297,7 @@ class Search:
         The other one had all the lost calls, and assumed no more of what that depends on.
         """
         self.successors.spend(weight(explanation))
-        others = tried.setdefault((self._ahead.state(explanation), *point(explanation)[1:]), [])
+        others = tried.setdefault((self._ahead.state(explanation), *place(explanation)[1:]), [])
         for one in others:
             if not explanation.assumed & ~one.assumed & one.depends and within(explanation.lost, one.lost):
                 self._ahead.depends |= one.depends

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from missionfsm.kernel.readings import merge
+from missionfsm.kernel.readings import covers, merge
 from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, within
-from missionfsm.oracle.successors import FocusOf, Place, Successor, Successors, place, point
+from missionfsm.oracle.successors import FocusOf, Place, Successor, Successors, place, place_with_lost
 
 
 def prune(successors: Successors, found: Iterable[Successor], focus: FocusOf | None = None) -> tuple[Successor, ...]:
@@ -23,7 +23,7 @@ def prune(successors: Successors, found: Iterable[Successor], focus: FocusOf | N
     """
     points: dict[Place, list[Successor]] = {}
     for successor in found:
-        here = place(successor.explanation)
+        here = place_with_lost(successor.explanation)
         points[here] = _widened(successors, points.get(here, []), successor)
     kept = _without_dominated([successor for same in points.values() for successor in same])
     return tuple(kept) if len(kept) <= 1 else tuple(_without_later(successors, kept, focus))
@@ -46,16 +46,14 @@ def _without_later(successors: Successors, found: list[Successor], focus: FocusO
     """Those that no other can silently become."""
     reached: dict[Place, int] = {}
     for successor in found:
-        here = place(successor.explanation)
-        if here in reached and successor.explanation.assumed | reached[here] == reached[here]:
-            covered = True
-        else:
-            covered = False
+        here = place_with_lost(successor.explanation)
+        covered = here in reached and covers(reached[here], successor.explanation.assumed)
+        if not covered:
             yield successor
         base = reached[here] if covered else successor.explanation.assumed
         for later in successors.silent(successor.explanation.but(assumed=base), focus=focus):
-            key = place(later.explanation)
-            if key not in reached or reached[key] | later.explanation.assumed == later.explanation.assumed:
+            key = place_with_lost(later.explanation)
+            if key not in reached or covers(later.explanation.assumed, reached[key]):
                 reached[key] = later.explanation.assumed
 
 
@@ -66,9 +64,9 @@ def _without_dominated(found: list[Successor]) -> list[Successor]:
     kept: dict[Place, list[tuple[int, Lost, Successor]]] = {}
     for successor in sorted(found, key=lambda one: -sum(times for _, _, times in one.explanation.lost)):
         lost = successor.explanation.lost
-        others = kept.setdefault(point(successor.explanation), [])
+        others = kept.setdefault(place(successor.explanation), [])
         assumed = successor.explanation.assumed
-        if not any(assumed | other == other and within(lost, left) for other, left, _ in others):
+        if not any(covers(other, assumed) and within(lost, left) for other, left, _ in others):
             others.append((assumed, lost, successor))
     return [successor for others in kept.values() for _, _, successor in others]
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, covers, meet
 from missionfsm.kernel.spec import Failure, Spec
 from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
 from missionfsm.kernel.terms import Refs, Request, State
@@ -301,7 +301,7 @@ class Successors:
             return all(name in observed for name in names if name > GONE)
         return all(name == other or name < GONE for name, other in zip(names, observed, strict=True))
 
-    def late_answers(self, explanation: Explanation, call: InFlight, refs: tuple[int | None, ...]) -> Iterator[Ready]:
+    def late_answers(self, explanation: Explanation, call: InFlight, refs: Refs) -> Iterator[Ready]:
         """What a call may be answered that is given up although it takes effect, now or later."""
         for step in self.outcomes(explanation.state, call.request, refs):
             if step.answer is not None and not step.applied and self.may_answer(call, step.answer, ()):
@@ -322,7 +322,7 @@ class Successors:
         if self.spec.transport and code in MADE_BY_CLIENTS and not (failure and failure.open_ended):
             yield MADE_UP
 
-    def refs(self, explanation: Explanation, args: Names) -> tuple[int | None, ...]:
+    def refs(self, explanation: Explanation, args: Names) -> Refs:
         """The positions of a request's names, as `Spec.outcomes` takes them."""
         found = tuple(map(explanation.ref, args))
         if self.spec.recalls and None in found:
@@ -332,7 +332,7 @@ class Successors:
             )
         return found
 
-    def addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, tuple[int | None, ...]]]:
+    def addressed(self, explanation: Explanation, args: Names) -> Iterator[tuple[Explanation, Refs]]:
         """The explanation with the positions of a request's names.
 
         A name that nothing has may be that of something whose name was not seen yet.
@@ -501,12 +501,12 @@ class Successors:
     def outdone(self, seen: Seen, explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""
         self.spend(weight(explanation))
-        key = point(explanation)
+        key = place(explanation)
         if self.ahead:
             key = (self.ahead.state(explanation), *key[1:])
         others = seen.setdefault(key, [])
         for assumed, left in others:
-            if explanation.assumed | assumed == assumed and within(explanation.lost, left):
+            if covers(assumed, explanation.assumed) and within(explanation.lost, left):
                 if self.ahead and self.ahead.consulted & ~assumed:
                     self.ahead.rely()
                 return True
@@ -532,17 +532,22 @@ def _without_fussier(ready: tuple[Ready, ...], assumed: int) -> tuple[Ready, ...
     return tuple(one for _, one in sorted(kept, key=operator.itemgetter(0)))
 
 
+CALL_WEIGHT, NAMES_A_UNIT = 4, 64
+"""A call in flight weighs as much as so many names of a message that is owed; so many of those weigh as much as an
+explanation itself."""
+
+
 def weight(explanation: Explanation) -> int:
     """What an explanation costs: one, and more where it owes many messages with many names."""
     owed = sum([len(channel.owed) for channel in explanation.channels])
-    return 1 + (len(explanation.names) * owed + 4 * len(explanation.calls) >> 6)
+    return 1 + (len(explanation.names) * owed + CALL_WEIGHT * len(explanation.calls)) // NAMES_A_UNIT
+
+
+def place_with_lost(explanation: Explanation) -> Place:
+    """Where an explanation is, whatever it assumed."""
+    return (*place(explanation), explanation.lost)
 
 
 def place(explanation: Explanation) -> Place:
-    """Where an explanation is, whatever it assumed."""
-    return (*point(explanation), explanation.lost)
-
-
-def point(explanation: Explanation) -> Place:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
     return explanation.state, explanation.names, explanation.calls, explanation.channels, explanation.gone

@@ -13,7 +13,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident, Request, State
+from missionfsm.kernel.terms import Incident, Refs, Request, State
 from missionfsm.pages.naming import TEXT, Writer, dumped, put
 from missionfsm.tools.placeholders import kind_of, slots
 
@@ -41,7 +41,7 @@ class Doing:
     group: str
     words: str
     line: str = ""
-    refs: tuple[int | None, ...] = ()
+    refs: Refs = ()
     kinds: tuple[str, ...] = ()
     brings: tuple[str, ...] = ()
 
@@ -65,7 +65,7 @@ class _Filled:
     """
 
     params: JSON
-    refs: tuple[int | None, ...]
+    refs: Refs
     names: tuple[Name, ...]
     kinds: tuple[str, ...]
     fixed: tuple[bool, ...]
@@ -122,7 +122,7 @@ class Doings:
 
     def _requests(self, kinds: tuple[str, ...]) -> Iterator[_Asked]:
         codec, spec = self.system.codec, self.system.spec
-        seen: set[tuple[Request, tuple[int | None, ...]]] = set()
+        seen: set[tuple[Request, Refs]] = set()
         for prompt in self.alphabet.core_inputs:
             method = prompt.method
             for filled in self._filled(prompt.params, kinds, functools.partial(self._names_asked, method)):

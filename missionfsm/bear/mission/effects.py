@@ -69,6 +69,7 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import ONCE_HAD
+from missionfsm.kernel.terms import Refs
 
 
 @functools.lru_cache(maxsize=100_000)
@@ -334,6 +335,6 @@ def target(robot: Robot, ref: int | None) -> Target:
     return Target.ACTIVE if robot.active is not None and ref == len(robot.done) else Target.QUEUED
 
 
-def call_of(robot: Robot, request: Request, refs: tuple[int | None, ...]) -> Call:
+def call_of(robot: Robot, request: Request, refs: Refs) -> Call:
     """A request as the robot that gets it sees it."""
     return Call(request, target(robot, refs[0]) if refs else None)

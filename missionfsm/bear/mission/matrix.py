@@ -14,6 +14,7 @@ from missionfsm.bear.mission.state import AUTOMATIC, Fault, Robot, World, is_for
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.alphabet import Bounds, ScriptStep
 from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.terms import Refs
 
 MANY = 4
 """Missions that wait, goals of a mission and missions of a batch up to which a robot is tried."""
@@ -63,7 +64,7 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
 }
 
 
-def columns(robot: Robot, _: object, asked: Request | Event, refs: tuple[int | None, ...]) -> tuple[str, ...]:
+def columns(robot: Robot, _: object, asked: Request | Event, refs: Refs) -> tuple[str, ...]:
     """The kinds of actions that a request or an event is an example of, to a robot."""
     if isinstance(asked, Event):
         return _of_event(asked)

@@ -56,6 +56,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import INTERNAL, OK, Operation, Waiver, promise
 from missionfsm.kernel.spec import Delivery, Drive, Spec
 from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
+from missionfsm.kernel.terms import Refs
 
 _MOVES = {
     trigger: promise(
@@ -195,9 +196,7 @@ def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
         )
 
 
-def _outcomes(
-    operation: Operation, robot: Robot, request: Request, refs: tuple[int | None, ...], assumed: int
-) -> tuple[Step, ...]:
+def _outcomes(operation: Operation, robot: Robot, request: Request, refs: Refs, assumed: int) -> tuple[Step, ...]:
     found: list[Step] = []
     for outcome in outcomes(operation, situation(robot), call_of(robot, request, refs)):
         if not meet(assumed, outcome.assumes):
@@ -237,7 +236,7 @@ _JUSTIFIED = {
 }
 
 
-def _drive(robot: Robot, event: Event, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _drive(robot: Robot, event: Event, _: Refs) -> tuple[Step, ...]:
     rules = _JUSTIFIED.get(event.name, ())
     return tuple(_step(robot, edit, assumes, rules) for edit, assumes in apply_event(situation(robot), event))
 

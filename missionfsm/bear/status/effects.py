@@ -52,6 +52,7 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import Emission, Opening, Step
+from missionfsm.kernel.terms import Refs
 
 TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
 
@@ -62,7 +63,7 @@ TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CA
 def outcomes(
     fleet: Fleet,
     request: Request,
-    _: tuple[int | None, ...],
+    _: Refs,
     operations: Mapping[str, Operation] = OPERATIONS,
     alone: str | None = None,
 ) -> tuple[Step, ...]:

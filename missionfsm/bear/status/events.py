@@ -43,9 +43,10 @@ from missionfsm.bear.status.values import clamped
 from missionfsm.bear.status.views import About, Assumed, View, blank, each, view
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.step import Emission, Step
+from missionfsm.kernel.terms import Refs
 
 
-def reported(fleet: Fleet, event: Event, _: tuple[int | None, ...], alone: str | None = None) -> tuple[Step, ...]:
+def reported(fleet: Fleet, event: Event, _: Refs, alone: str | None = None) -> tuple[Step, ...]:
     """A robot reports the value of a part; without a robot: nobody knows what robots report, or what this one does."""
     if not event.robot:
         return () if fleet.unheard else (_forgotten(fleet, alone),)
@@ -249,7 +250,7 @@ def _reconnected(before: Robot, after: Robot) -> Iterator[list[Way]]:
                 yield [*back, ((), (question["a"],))]
 
 
-def restarted(fleet: Fleet, event: Event, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+def restarted(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     """A robot restarts: its numbers start over, and it may announce itself on every stream."""
     robot = fleet.robot(event.robot)
     if robot is None:
@@ -272,7 +273,7 @@ def restarted(fleet: Fleet, event: Event, _: tuple[int | None, ...]) -> tuple[St
     )
 
 
-def moved(fleet: Fleet, event: Event, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     """A robot is at another location from now on; it may join the streams of that one (AS-25)."""
     robot = fleet.robot(event.robot)
     if robot is None:
@@ -294,6 +295,6 @@ def _anything(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> View | None:
     return View(robot.id, endpoint, unheard=True) if fleet.unheard else view(robot, endpoint)
 
 
-def armed(fleet: Fleet, _: Event, __: tuple[int | None, ...]) -> tuple[Step, ...]:
+def armed(fleet: Fleet, _: Event, __: Refs) -> tuple[Step, ...]:
     """The next GetRobotStatus that would succeed fails."""
     return (Step(fleet if fleet.fault else evolve(fleet, fault=True), label="fault"),)

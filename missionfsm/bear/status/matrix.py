@@ -22,6 +22,7 @@ from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.alphabet import Bounds, ScriptStep
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.terms import Refs
 
 NOBODY, SEVERAL = "nobody watches", "several streams are watched"
 ONE, SOME, PLACE = "one robot", "several robots", "a location"
@@ -42,7 +43,7 @@ def situation(_: Fleet, streams: Streams) -> str:
     return f"{topics[0].endpoint.value} to {whom}"
 
 
-def columns(fleet: Fleet, streams: Streams, asked: Request | Event, _: tuple[int | None, ...] = ()) -> tuple[str, ...]:
+def columns(fleet: Fleet, streams: Streams, asked: Request | Event, _: Refs = ()) -> tuple[str, ...]:
     """The kinds of actions that a request or an event is an example of."""
     if isinstance(asked, Request):
         return tuple(_of_request(fleet, streams, asked))

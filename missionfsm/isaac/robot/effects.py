@@ -44,8 +44,8 @@ from missionfsm.isaac.robot.state import (
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.step import Emission, Opening, Step
+from missionfsm.kernel.terms import Refs
 
-Refs = tuple[int | None, ...]
 STATUSES, NAMES = "statuses", "names"
 """The two topics of the one connection: statuses and names come in any order among one another."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.shared.line import MICROSECONDS
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
 NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
@@ -52,7 +53,7 @@ class Ask:
     """A submission with the missions that its handles mean; None for a handle that is nobody's."""
 
     submission: Submission
-    upstream: tuple[int | None, ...] = ()
+    upstream: Refs = ()
 
 
 @value(cache_hash=True)

@@ -59,6 +59,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Delivery, Drive, Spec
 from missionfsm.kernel.step import Opening, Step
+from missionfsm.kernel.terms import Refs
 
 
 def _names(server: Server) -> int:
@@ -99,7 +100,7 @@ def _outcomes(
     operations: Mapping[str, Operation],
     server: Server,
     request: Submission | Statuses,
-    refs: tuple[int | None, ...],
+    refs: Refs,
 ) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
         return tuple(status_answers(server))
@@ -107,9 +108,7 @@ def _outcomes(
 
 
 @functools.lru_cache(maxsize=20_000)
-def _submitted(
-    operation: Operation, server: Server, request: Submission, upstream: tuple[int | None, ...]
-) -> tuple[Step, ...]:
+def _submitted(operation: Operation, server: Server, request: Submission, upstream: Refs) -> tuple[Step, ...]:
     ask = Ask(request, upstream)
     found: list[Step] = []
     handles = tuple(None if one is None else handle_ref(one) for one in upstream)
@@ -177,7 +176,7 @@ def _clocked(move: Move) -> Move:
 # Drives.
 
 
-def _connect(server: Server, _: Connects, __: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _connect(server: Server, _: Connects, __: Refs) -> tuple[Step, ...]:
     move = connects(Move(server))
     step = _step(server, move, new=(-1,))
     return (evolve(step, opens=(Opening(topic(move.state.links[-1].slot), -1, kind="connection"),)),)
@@ -189,7 +188,7 @@ def _link_at(server: Server, ref: int | None) -> int | None:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _line(server: Server, heard: Incoming, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _line(server: Server, heard: Incoming, refs: Refs) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
@@ -200,7 +199,7 @@ def _line(server: Server, heard: Incoming, refs: tuple[int | None, ...]) -> tupl
     return tuple(_step(server, move) for move in moves)
 
 
-def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
@@ -209,7 +208,7 @@ def _disconnect(server: Server, _: Drops, refs: tuple[int | None, ...]) -> tuple
 
 
 @functools.lru_cache(maxsize=20_000)
-def _advance(server: Server, event: Passes, _: tuple[int | None, ...]) -> tuple[Step, ...]:
+def _advance(server: Server, event: Passes, _: Refs) -> tuple[Step, ...]:
     return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
 
 
@@ -288,7 +287,7 @@ def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
     return ()
 
 
-def _unowed(server: Server, at: Hashable, content: object, refs: tuple[int | None, ...]) -> tuple[str, ...]:
+def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[str, ...]:
     """The rules that a server breaks that sends a mission now: before its upstreams, to another robot, or twice."""
     link = server.link_of_topic(at)
     if link is None or not isinstance(content, LineContent) or any(ref is not None for ref in refs):

@@ -8,7 +8,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
 
-NAMED = 4
+MAX_NAMED = 4
 """How many calls, drives or readings a line has room for."""
 _DEPARTS = " departs "
 
@@ -150,9 +150,9 @@ def readings_line(readings: Mapping[str, tuple[str, ...]], flagged: tuple[str, .
 
 def _few(names: Iterable[str], *, all_names: bool) -> str:
     listed = list(names)
-    if all_names or len(listed) <= NAMED + 1:
+    if all_names or len(listed) <= MAX_NAMED + 1:
         return ", ".join(listed)
-    return f"{', '.join(listed[:NAMED])} and {len(listed) - NAMED} more"
+    return f"{', '.join(listed[:MAX_NAMED])} and {len(listed) - MAX_NAMED} more"
 
 
 __all__ = ["NEVER_SUCCEEDED", "NOT_THERE", "NOT_TRIED", "OFTEN", "Reached", "Untested", "departing", "readings_line"]

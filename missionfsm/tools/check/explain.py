@@ -22,14 +22,17 @@ from missionfsm.tools.check.wrongcode import wrong_code
 MAX_ALTERNATIVES = 8
 """How many alternatives a person is shown."""
 
-ACCUSED = 3
+MAX_RULES = 3
 """How many rules a violation names at most, the nearest first."""
 
 NOT_HAPPENED = 'that it does not happen: an adapter answers {"happened": false}'
 """What is right in the place of a drive that cannot happen."""
 
-NOTES = 4
+MAX_NOTES = 4
 """How many reasons a person is told."""
+
+MAX_CALLS, MAX_STATES = 3, 2
+"""How many calls, and how many states, stand in one reason."""
 
 
 def violation(belief: Belief, event: Event, about: Circumstances = Circumstances()) -> Violation:  # noqa: B008 - a value
@@ -52,10 +55,10 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         found = _against_drive(nearest, event)
     expected, rules, notes = found
     return Violation(
-        rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
+        rules_in_words(spec, list(dict.fromkeys(rules))[:MAX_RULES]),
         observed,
         _allowed(spec, expected),
-        tuple(dict.fromkeys(printable(note) for note in notes if note))[:NOTES],
+        tuple(dict.fromkeys(printable(note) for note in notes if note))[:MAX_NOTES],
     )
 
 
@@ -184,7 +187,7 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
     unknown = [name for name in event.names if belief.number(name) < 0 and name not in answered]
     if not unknown or not nearest.about.recent:
         return []
-    calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-ACCUSED:])
+    calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-MAX_CALLS:])
     return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
 
 
@@ -262,5 +265,5 @@ def _against_drive(nearest: Nearest, event: Event) -> Accusation:
     reachable = list(nearest.reachable())
     rest = [one for one in reachable if nearest.at_rest(one)] or reachable
     states = dict.fromkeys(described(nearest.spec, one.state) for one in rest)
-    note = f"it cannot happen in {' or '.join(list(states)[:2])}"
+    note = f"it cannot happen in {' or '.join(list(states)[:MAX_STATES])}"
     return [Candidate(NOT_HAPPENED, (), (), ())], drive.impossible if drive else (), [note]

@@ -27,7 +27,7 @@ from missionfsm.tools.check.quiet import Quiet
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
-KEPT = 200
+MAX_LINES = 200
 """How many lines before a violation a verdict shows of a long history."""
 
 PATIENCE = 300
@@ -74,7 +74,7 @@ class Judge:
         no_flagged: bool = False,
         fingerprint: Callable[[JSON], Hashable] = repr,
         lost: frozenset[int] = frozenset(),
-        keep: int = KEPT,
+        keep: int = MAX_LINES,
         apart: bool = False,
         waits: bool = True,
         settled_after: float | None = None,

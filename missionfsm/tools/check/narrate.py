@@ -15,7 +15,7 @@ from missionfsm.oracle.transcript import Transcript
 from missionfsm.tools.check.phrases import answer_words, event_words, name_words
 from missionfsm.tools.check.verdict import Violation
 
-WORLD = 240
+MAX_CHARACTERS = 240
 """How many characters of a world a story has room for."""
 
 
@@ -51,7 +51,7 @@ def _unusual(system: System, world: JSON) -> str:
             rest = {other: value for other, value in differs.items() if other != name}
             differs = rest if read(rest) == read(world) else differs
     text = printable(json.dumps(differs, ensure_ascii=False))
-    return text if len(text) <= WORLD else f"{text[: WORLD - 1]}…"
+    return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 1]}…"
 
 
 def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:

@@ -20,6 +20,9 @@ Rulings = Mapping[tuple[str, str], Elimination]
 Answers = Mapping[str, Mapping[str, int]]
 """Operation to status name to how often it was answered so."""
 
+MAX_CODES = 3
+"""How many codes are named of a call that never succeeded, the commonest first."""
+
 
 def assumed(spec: Spec, readings: Mapping[str, str] | None, *, no_flagged: bool) -> int:
     """What is assumed from the start.
@@ -182,7 +185,9 @@ def _why_not(codes: Mapping[str, int]) -> str:
         return f"{NOT_THERE}: UNIMPLEMENTED"
     if OK in codes:
         return ""
-    most = ", ".join(f"{code} {times} times" if times > 1 else code for code, times in Counter(codes).most_common(3))
+    most = ", ".join(
+        f"{code} {times} times" if times > 1 else code for code, times in Counter(codes).most_common(MAX_CODES)
+    )
     return f"{NEVER_SUCCEEDED}: {most}"
 
 

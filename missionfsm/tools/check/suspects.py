@@ -10,7 +10,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import head
-from missionfsm.tools.check.explain import ACCUSED
+from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import described, rules_in_words
 from missionfsm.tools.check.verdict import Violation
@@ -88,5 +88,5 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
     rules = violation.rules
     if len(found) == 1 and not answered:
         own = rules_in_words(system.spec, found[0].rules)
-        rules = tuple(dict.fromkeys((*own, *rules)))[:ACCUSED]
+        rules = tuple(dict.fromkeys((*own, *rules)))[:MAX_RULES]
     return evolve(violation, rules=rules, notes=(*violation.notes, *notes))

@@ -19,7 +19,7 @@ RATE, PER = 100, 10_000
 MOST_RARE = 10
 """How many of the rules that came up seldom a person is told."""
 
-SHORT = 72
+MAX_CHARACTERS = 72
 """How much of an event a line of the verdict has room for."""
 
 
@@ -387,4 +387,4 @@ class Verdict:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= SHORT else text[: SHORT - 1] + "…"
+    return text if len(text) <= MAX_CHARACTERS else text[: MAX_CHARACTERS - 1] + "…"

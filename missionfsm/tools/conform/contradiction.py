@@ -13,7 +13,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.eliminations import Elimination
-from missionfsm.tools.check.explain import ACCUSED
+from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Side, Violation
@@ -48,7 +48,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
             ruled_out.append((judge, letter, str(ruling or "")))
     sides = _sides(ruled_out)
     return Violation(
-        rules_in_words(spec, list(dict.fromkeys(rules))[:ACCUSED]),
+        rules_in_words(spec, list(dict.fromkeys(rules))[:MAX_RULES]),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
         # Each of several conversations says by itself what it rules out.

@@ -19,7 +19,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident, Request
+from missionfsm.kernel.terms import Incident, Refs, Request
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.successors import Successors
 from missionfsm.tools.conform.actions import CANCEL, Bindings, NameRef
@@ -65,7 +65,7 @@ class Template:
     params: JSON
     what: Any
     wants: dict[int, str]
-    slots: tuple[int | None, ...]
+    slots: Refs
 
 
 @frozen(eq=False)
@@ -237,7 +237,7 @@ class Guide:
         here: Explanation,
         shape: Hashable,
         request: Request,
-        refs: tuple[int | None, ...],
+        refs: Refs,
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
@@ -265,7 +265,7 @@ class Guide:
         grows = self._growth[key]
         return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.size else None
 
-    def _places(self, here: Explanation, refs: tuple[int | None, ...]) -> tuple[Hashable, ...]:
+    def _places(self, here: Explanation, refs: Refs) -> tuple[Hashable, ...]:
         """Where the named things stand: a shape does not tell their positions apart."""
         return tuple(self.abstraction.place(here.state, ref) for ref in refs)
 
@@ -274,7 +274,7 @@ class Guide:
         here: Explanation,
         shape: Hashable,
         event: Incident,
-        refs: tuple[int | None, ...] = (),
+        refs: Refs = (),
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable]:

@@ -101,7 +101,7 @@ class Reach:
         if action.method == CANCEL.method:
             columns: tuple[str, ...] = (CANCEL.method,)
         else:
-            refs: tuple[int | None, ...] = ()
+            refs: Refs = ()
             if action.name is not None and ANY_NAME in repr(action.params):
                 refs = (_position(conversation, here, action.name),)
             what = self._what(action)
@@ -188,9 +188,7 @@ class Reach:
             if self._lack(cells) and not any(waits(one.state) for one in explanations):
                 yield Candidate("drive", drive, None, (), cells, event)
 
-    def _cells(
-        self, here: Explanation, situation: str, asked: Request | Incident, refs: tuple[int | None, ...]
-    ) -> tuple[Cell, ...]:
+    def _cells(self, here: Explanation, situation: str, asked: Request | Incident, refs: Refs) -> tuple[Cell, ...]:
         """The cells of the matrix that asking for something meets."""
         if self._at is None or self._at[0] is not here:
             there = here.state, opened(here)

@@ -16,7 +16,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Invariant, Spec
 from missionfsm.kernel.step import ONCE_HAD, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Code, State
+from missionfsm.kernel.terms import Code, Refs, State
 from missionfsm.tools.placeholders import fill, slots
 
 Free = tuple[bool, ...]
@@ -363,7 +363,7 @@ def firings(
     return {rule: (fires, rests) for rule, (fires, rests) in found.items()}
 
 
-def bindings(spec: Spec, here: State, free: Free) -> Iterable[tuple[int | None, ...]]:
+def bindings(spec: Spec, here: State, free: Free) -> Iterable[Refs]:
     """Every way in which names can be those of a state, or not any more."""
     positions = (None, *((ONCE_HAD,) if spec.recalls else ()), *range(spec.names(here)))
     return itertools.product(*(positions if one else (None,) for one in free))

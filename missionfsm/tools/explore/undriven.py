@@ -17,7 +17,7 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Request, State
+from missionfsm.kernel.terms import Refs, Request, State
 from missionfsm.tools.explore.explore import Labels, bindings
 
 BOUNDS, NEAR = Bounds(2, goals=2, batch=2), Bounds(1, goals=2, batch=1)
@@ -157,7 +157,7 @@ class _Look:
                 break
         return found
 
-    def _can_succeed(self, state: State, request: Request, refs: tuple[int | None, ...]) -> bool:
+    def _can_succeed(self, state: State, request: Request, refs: Refs) -> bool:
         key = (state, request, refs)
         if key not in self._succeeds:
             steps = self._possible(self.spec.outcomes(*key))

@@ -18,7 +18,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.step import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Request, State
+from missionfsm.kernel.terms import Refs, Request, State
 from missionfsm.tools.explore.explore import Labels, bindings
 from missionfsm.tools.reference.model import Reference, recognised
 
@@ -77,7 +77,7 @@ class ReferenceSteps:
         self,
         here: State,
         request: Request,
-        refs: tuple[int | None, ...],
+        refs: Refs,
     ) -> tuple[Step, Options, frozenset[str]]:
         """The reference's own answer in a state, ways to explain it, and the rules of all allowed answers."""
         key = (here, request, refs)
@@ -260,7 +260,7 @@ class _Explorer:
         """Whether a state of the model does not last."""
         return self.model.mutate_step(here, self.reference.urgent(here)[1]) is not None
 
-    def _asked(self, here: State, request: Request, refs: tuple[int | None, ...]) -> tuple[Step, Options]:
+    def _asked(self, here: State, request: Request, refs: Refs) -> tuple[Step, Options]:
         own, options, rules = self.reference.answers(here, request, refs)
         self.came_up = self.came_up or self.rule in rules
         try:

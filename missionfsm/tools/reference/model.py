@@ -17,7 +17,7 @@ from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident, State, View
+from missionfsm.kernel.terms import Incident, Refs, State, View
 
 MAX_STEPS = 1_000
 """How many steps a model remembers; states that list all that has ended are large."""
@@ -153,7 +153,7 @@ class Reference:
         after, sent = self._settle(after, sent)
         return after, Reply(step.answer, mentioned, tuple(sent), step.rules)
 
-    def outcome(self, state: State, request: object, refs: tuple[int | None, ...] = ()) -> Step:
+    def outcome(self, state: State, request: object, refs: Refs = ()) -> Step:
         """What the reference answers in a state: the first outcome that its readings allow."""
         key = (state, request, refs)
         step = self._chosen.get(key)  # what is known is found without a detour: every call comes by here
@@ -186,7 +186,7 @@ class Reference:
         """What the reference does by itself at once, if anything."""
         return self._remembered((state,), self.system.spec.urgent, state)
 
-    def driven(self, state: State, event: Incident, refs: tuple[int | None, ...]) -> Step | None:
+    def driven(self, state: State, event: Incident, refs: Refs) -> Step | None:
         """How something that the environment does comes about; None where it does not apply."""
         steps = self.system.spec.drives[event.name].steps
         return self._remembered((state, "drive", event, refs), steps, state, event, refs)

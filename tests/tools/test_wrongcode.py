@@ -77,3 +77,16 @@ def test_a_refusal_of_what_should_be_done_breaks_a_row_with_its_code() -> None:
     """An idle robot that refuses: a row with that code, and what should have been done."""
     rules = accused(call(1, "CreateMission", navigate(), error=refused("INVALID_ARGUMENT")))
     assert ([rule.split("/")[1] for rule in rules[:1]], rules[1:]) == (["INVALID_ARGUMENT"], [CREATED])
+
+
+def test_the_row_that_would_hold_of_another_mission_is_the_nearest() -> None:
+    """A command to the running mission that is refused as if it were queued: that row, and of whom it would hold."""
+    queued = call(2, "AppendMission", navigate("table-2"), result={"missionId": "m2"})
+    pause = {"missionCommand": {"missionId": "m1", "command": "COMMAND_PAUSE"}}
+    lines = [*BUSY, *queued, SETTLED, *call(3, "UpdateMission", pause, error=refused("NOT_FOUND"))]
+    violation = check(system("bear.mission"), head(DRIVEN), lines).violation
+    assert violation is not None
+    assert violation.rules[0].id.endswith("NOT_FOUND/the-mission-is-still-queued")
+    says, _, why = violation.notes[0].partition(" (The mission still waits behind the active one,")
+    assert says == "no refusal with NOT_FOUND is due: of the rows with that code none applies"
+    assert why.endswith("; the first would if it were about m2")

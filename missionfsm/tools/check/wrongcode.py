@@ -4,7 +4,8 @@ Two things can be wrong: what should have been answered is not, and what was ans
 been answered is what needs least to have happened unseen and the fewest readings that are not usual. Of the rows of the
 Errors table with the code that came none holds, so that one is named only where it held for this request a while ago,
 as for whoever looks at a state that is no more, or where nothing but a row of that code can be what is wrong: the call
-should have taken effect.
+should have taken effect. Then it is the row that is nearest to hold: one that held a while ago, or would if the call
+were about another thing.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from missionfsm.kernel.history import Returned
+from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK, Rule
-from missionfsm.oracle.explanation import Explanation, Ready
+from missionfsm.oracle.explanation import Explanation, InFlight, Ready
 from missionfsm.tools.check.candidates import Candidate
 from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import described, name_words
@@ -40,8 +42,10 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
         # It refuses: what may be refused comes first, also where some reading would have it done.
         return [*refused, *(done if is_done else ())], [f"{code} is not documented for {operation.name}"]
     held = _held_last(nearest, event, reasons)
-    reasons = [*held, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
-    note = f"{code} needs a reason, and none holds: {_conditions(reasons)}"
+    others, about = ([], "") if held else _held_of_another(nearest, event, reasons)
+    reasons = [*held, *others, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
+    note = f"no refusal with {code} is due: of the rows with that code none applies ({_conditions(reasons)})"
+    note += "; the first did before" if held else f"; the first would if it were about {about}" if others else ""
     if is_done:  # what may be done is refused without a reason
         return [reasons[0].id, *done], [note]
     return [*refused, *(rule.id for rule in held[:1])], [note]  # what has to be refused is refused wrongly
@@ -82,8 +86,7 @@ def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> li
     A request with names is not looked at: what they stood for then is not known any more.
     """
     belief, successors, request = nearest.belief, nearest.successors, nearest.about.request
-    number = belief.symbol(event)[0][3]
-    if any(call.args for here in belief.node.explanations for call in here.calls if call.name == number):
+    if any(call.args for _, call in _asking(nearest, event)):
         return []
     ids = {rule.id for rule in reasons}
     for _, node in belief.walked:
@@ -97,6 +100,32 @@ def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> li
         if held & ids:
             return [rule for rule in reasons if rule.id in held]
     return []
+
+
+def _held_of_another(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> tuple[list[Rule], str]:
+    """Those rows that would hold if a call about one thing were about another, and which one, in words."""
+    successors = nearest.successors
+    for here, call in _asking(nearest, event):
+        if len(call.args) != 1:
+            continue
+        own = successors.refs(here, call.args)
+        for ref in (*range(len(here.names)), None):
+            steps = successors.outcomes(here.state, call.request, (ref,)) if (ref,) != own else ()
+            possible = (step for step in steps if meet(here.assumed, step.assumes))
+            given = (step for step in possible if step.answer is not None and step.answer.code == event.answer.code)
+            would = {rule for step in given for rule in step.rules}
+            found = [rule for rule in reasons if rule.id in would]
+            if found:
+                name = None if ref is None else nearest.belief.name(here.names[ref])
+                return found, "an unknown name" if name is None else name_words(name)
+    return [], ""
+
+
+def _asking(nearest: Nearest, event: Returned) -> list[tuple[Explanation, InFlight]]:
+    """The explanations in which the call that was answered is still in flight, each with it."""
+    number = nearest.belief.symbol(event)[0][3]
+    explanations = nearest.belief.node.explanations
+    return [(here, call) for here in explanations for call in here.calls if call.name == number]
 
 
 def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:

@@ -33,6 +33,7 @@ _TELLING = tuple(
         r"^PHP Fatal error: ",
         r"^\S+:\d+:in .*: ",  # Ruby
         r"^(Uncaught )?[A-Za-z_][\w.]*(Error|Exception|Interrupt|Exit)\b",  # Python, Node.js, Deno
+        r"^(Uncaught )?Error( \[\w+\])?: ",  # Node.js, Deno: one of no other kind
         r"^\S+: \d+: .*",  # sh
     )
 )

@@ -62,7 +62,8 @@ class Smoke:
 
     def __str__(self) -> str:
         says = f"is an adapter of {self.system}" if self.is_adapter else f"is no adapter of {self.system} yet"
-        lines = [f"{self.name or 'the program'} {says}: {len(self.tried)} methods and drives tried"]
+        tried = self.tried[0] if len(self.tried) == 1 else f"{len(self.tried)} methods and drives"
+        lines = [f"{self.name or 'the program'} {says}: {tried} tried"]
         lines += (f"  fault: {one}" for one in self.faults)
         lines += (f"  to do: {one}" for one in self.left)
         return "\n".join(lines)

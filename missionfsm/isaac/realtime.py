@@ -42,7 +42,7 @@ def in_real_time(system: System, tolerance: float = 0.0, scripts: int = 0) -> Sy
             scripts=whole.scripts[:scripts],
         )
 
-    return evolve(system, alphabet=alphabet)
+    return evolve(system, alphabet=alphabet, matrix=None)  # in which situation it is, is not sure for long
 
 
 def with_file(system: System, file: MissionFile, name_channel: str, tolerance: float) -> System:
@@ -61,7 +61,7 @@ def with_file(system: System, file: MissionFile, name_channel: str, tolerance: f
             worlds=({"nameChannel": name_channel, "tolerance": tolerance},),
         )
 
-    return evolve(system, alphabet=alphabet)
+    return evolve(system, alphabet=alphabet, matrix=None)  # in which situation it is, is not sure for long
 
 
 def _waits(file: MissionFile) -> list[JSON]:

@@ -26,9 +26,11 @@ class Matrix:
             of the kinds of actions that it is an example of; none for what does not matter.
         ways: name of a situation to scripts that lead there from the start, in any world.
         bounds: how large what is asked may be.
+        pause: a step after which a situation that was not sure may be: what a system has yet to do has happened then.
     """
 
     situation: Callable[[State, Open], str | None]
     columns: Callable[[State, Open, Request | Incident, Refs], tuple[str, ...]]
     ways: Mapping[str, tuple[tuple[ScriptStep, ...], ...]]
     bounds: Bounds
+    pause: ScriptStep | None = None

@@ -82,7 +82,7 @@ def test_time_bounds_what_is_broken(name: str, which: int) -> None:
 
 def test_time_bounds_advice() -> None:
     """What is thought about at the end ends with the time as well, and is then said not to have been come to."""
-    robot, plan = system("isaac.robot"), Plan(examples=1, tours=1, scripts=1, steps=5)
+    robot, plan = system("isaac.robot"), Plan(examples=1, tours=2, scripts=1, steps=5, fills=0)
     asked = itertools.count()
 
     def run(limit: int) -> Verdict:

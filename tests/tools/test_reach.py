@@ -11,14 +11,18 @@ from attrs import evolve
 from missionfsm.bear.mission.matrix import MATRIX
 from missionfsm.bear.status.matrix import OFFLINE, ONE, PLACE, SOME
 from missionfsm.bear.status.state import STATE_PARTS, TOPICAL, Endpoint
+from missionfsm.isaac.robot.scripts import script
+from missionfsm.isaac.server.scripts import A, B, Script
 from missionfsm.systems import system
 from missionfsm.tools.check.basis import OFTEN, Reached
 from missionfsm.tools.conform.conform import FILLS, Plan, conform
+from missionfsm.tools.conform.reach import Candidate
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.tour import fill
+from missionfsm.tools.conform.tour import fill, follow, play
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION, STATUS = system("bear.mission"), system("bear.status")
+SERVER, CODELET = system("isaac.server"), system("isaac.robot")
 ONLY_SO = {("carti state", "changes")}
 """What a robot that carries trays does not do: there is one conveyor state to report."""
 KINDS = {
@@ -115,6 +119,115 @@ def test_every_subscription_is_watched_while_everything_changes() -> None:
         if endpoint is not Endpoint.ONLINE
     }
     assert expected - set(run.reach.times) == set()
+
+
+ANYWHERE = {
+    *("statuses", "connect", "a second passes", "submit to no robot in particular", "submit to a robot that is away"),
+    *(f"submit with {what}" for what in ("a start_timeout", "a start_timeout of 0", "a timeout", "a timeout of 0")),
+    *("submit with channels of its own", "submit after a mission that does not exist"),
+    *("disconnect of a connection without a name", "a line that is no message", "a message of another type"),
+    *("a message to nobody", "a name", "a name that is empty", "a name on another channel"),
+    *("a name with space around it", "a status of a mission that does not exist", "a status of no mission"),
+}
+"""What one may ask of a mission server in any situation, some robot or other being connected, written out."""
+CONFIGURATIONS = ("usable", "null", "shallow", "odd", "unusable")
+WHERE_LINES_COME = {
+    *(f"a mission whose configuration is {kind} arrives" for kind in CONFIGURATIONS),
+    "a mission whose configuration is usable arrives in numbers",
+    "a mission whose configuration is usable arrives on another channel",
+    *("a line that is no message", "a message of another type", "disconnect"),
+}
+"""What may come to a robot that is connected."""
+TIMES = {"less than a tick passes", "a tick passes", "RUNNING is due", "a name is due"}
+ENDS = {"behaviorSucceeded", "behaviorFailed"}
+
+
+@pytest.mark.long
+def test_a_mission_server_is_asked_everything_in_every_situation() -> None:
+    """Missions of every kind, upstreams that stand in every way, statuses and names of all, wherever they can come."""
+    run = Run.against(SERVER, ReferenceSubject(SERVER))
+    assert run.reach is not None
+    assert play(run)
+    assert fill(run, random.Random(1), FILLS, 40)
+    assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
+    assert SERVER.matrix is not None
+    nameless = {"a name that two connections said"}  # three connections there are, and those have names
+    lacking = set(itertools.product(set(SERVER.matrix.ways) - nameless, ANYWHERE)) - set(run.reach.times)
+    assert lacking == set()
+    upstreams = {"QUEUED", "STARTED", "RUNNING", "SUCCESS", "FAILED", "FAILED_TIMEDOUT", "FAILED_UPSTREAM"}
+    asked = {
+        (f"running{queue}", f"submit after a mission that is {one}")
+        for one in upstreams
+        for queue in ("", " with a queue")
+    }
+    assert asked - set(run.reach.times) == {("running", "submit after a mission that is QUEUED")}
+    assert run.reach.reached() == Reached(len(run.reach.times))
+
+
+def test_a_robot_is_told_everything_in_every_situation() -> None:
+    """Lines of every kind, ends of the tree, times and drops come to a robot that is idle, running and away."""
+    run = Run.against(CODELET, ReferenceSubject(CODELET))
+    assert run.reach is not None
+    assert play(run)  # whether a mission outlives its connection has shown then
+    assert fill(run, random.Random(1), FILLS, 40)
+    again = "the mission that runs arrives again"
+    assert set(run.reach.times) == {
+        *itertools.product(("idle", "idle again", "running"), {*WHERE_LINES_COME, *TIMES}),
+        *itertools.product(("running",), {*ENDS, again}),
+        *itertools.product(("away", "away on a mission"), {*TIMES, "connect"}),
+        *itertools.product(("away on a mission",), ENDS),
+    }
+    assert run.reach.reached() == Reached(len(run.reach.times))
+
+
+def test_what_is_asked_about_a_name_counts_for_what_bears_it() -> None:
+    """What is submitted, said and dropped counts as what it is about: the upstream, the mission, the connection."""
+    run = Run.against(SERVER, ReferenceSubject(SERVER))
+    assert run.reach is not None
+    run.start({})
+    assert all(follow(run, step) for step in Script().submit(A).robot(0, A).report(0, 0, "running").lines)
+    assert all(follow(run, step) for step in Script().submit(B, 0).drop(0).lines)
+    assert run.reach.times == {
+        ("nothing submitted", "submit to a robot that is away"): 1,
+        ("waiting for the robot", "connect"): 1,
+        ("waiting for the robot", "a name"): 1,
+        ("sent", "statuses"): 2,
+        ("sent", "a second passes"): 1,
+        ("sent", "RUNNING of a mission that is STARTED"): 1,
+        ("running", "a second passes"): 1,
+        ("running", "statuses"): 1,
+        ("running", "submit after a mission that is RUNNING"): 1,
+        ("running with a queue", "disconnect of a robot that is busy"): 1,
+        ("all has ended, no robot", "a second passes"): 1,
+        ("all has ended, no robot", "statuses"): 1,
+    }
+
+
+def test_a_mission_that_arrives_again_counts_as_such() -> None:
+    """A line with the identifier of the mission that runs is another kind of line than one with a new identifier."""
+    run = Run.against(CODELET, ReferenceSubject(CODELET))
+    assert run.reach is not None
+    run.start({})
+    assert all(follow(run, step) for step in script("mission 1s again mission"))
+    assert run.reach.times == {
+        ("idle", "a mission whose configuration is usable arrives"): 1,
+        ("running", "a tick passes"): 1,
+        ("running", "the mission that runs arrives again"): 1,
+        ("running", "a mission whose configuration is usable arrives"): 1,
+    }
+
+
+def test_where_a_situation_is_not_sure_time_passes_once() -> None:
+    """Of a robot that dropped during a mission nobody knows at first whether it goes on: a run waits, once."""
+    run = Run.against(CODELET, ReferenceSubject(CODELET))
+    assert run.reach is not None
+    run.start({})
+    assert all(follow(run, step) for step in script("mission 1s drops"))
+    (pause,) = script("1s")
+    chosen = run.reach.choose(run.conversation, 0, random.Random(1))
+    assert chosen == Candidate(pause.method, pause.params, None, (), ())
+    assert follow(run, pause)
+    assert run.reach.choose(run.conversation, 0, random.Random(1)) is None
 
 
 def test_a_system_that_names_no_situation_has_no_matrix() -> None:

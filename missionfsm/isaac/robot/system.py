@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.robot.alphabet import alphabet
 from missionfsm.isaac.robot.codec import CODEC
+from missionfsm.isaac.robot.matrix import MATRIX
 from missionfsm.isaac.robot.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.isaac.robot.pictures import SKETCHES
 from missionfsm.isaac.robot.shapes import shapes
@@ -26,4 +27,5 @@ SYSTEM = System(
     sketches=SKETCHES,
     shapes=shapes,
     profiles=PROFILES,
+    matrix=MATRIX,
 )

@@ -29,64 +29,78 @@ def _line(head: JSON, payload: JSON) -> JSON:
     return {"event": "line", "connection": pick("connection", LINK), "line": text}
 
 
-class _Script:
-    """Writes a script down. Missions, connections and identifiers are numbered from 0 in the order of coming."""
+class Script:
+    """Writes a script down, step after step.
+
+    Missions, connections and identifiers are numbered from 0 in the order of coming.
+    """
 
     def __init__(self) -> None:
         self.lines: list[ScriptStep] = []
 
-    def submit(self, robot: str, *upstream: int, **fields: JSON) -> _Script:
+    def submit(self, robot: str, *upstream: int, **fields: JSON) -> Script:
+        """A mission for a robot, after others."""
         if upstream:
             fields["upstream"] = [pick("mission", slot) for slot in range(len(upstream))]
         picks = tuple(enumerate(upstream))
         self.lines.append(ScriptStep("submit", {"mission": {"robot": robot, **fields}}, picks))
         return self
 
-    def refused(self, *upstream: JSON) -> _Script:
+    def refused(self, *upstream: JSON) -> Script:
+        """A submission that names missions which do not exist."""
         self.lines.append(ScriptStep("submit", {"mission": {"robot": A, "upstream": list(upstream)}}, ((MISSION, 0),)))
         return self
 
-    def look(self) -> _Script:
+    def look(self) -> Script:
+        """Everything settles, and the statuses are asked for."""
         self.lines += [ScriptStep("settle"), ScriptStep("statuses", {})]
         return self
 
-    def wait(self, seconds: float = PAUSE) -> _Script:
+    def wait(self, seconds: float = PAUSE) -> Script:
+        """Time passes; then a look."""
         self.lines.append(ScriptStep("drive", {"event": "advance", "seconds": seconds}))
         return self.look()
 
-    def connect(self) -> _Script:
+    def connect(self) -> Script:
+        """A connection is opened."""
         self.lines.append(ScriptStep("drive", {"event": "connect"}))
         return self
 
-    def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> _Script:
+    def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> Script:
+        """A name is said on a connection; then a look."""
         self.lines.append(
             ScriptStep("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),))
         )
         return self.look()
 
-    def robot(self, link: int, robot: str) -> _Script:
+    def robot(self, link: int, robot: str) -> Script:
+        """A robot connects, says its name, and is noticed."""
         return self.connect().name(link, robot).wait()
 
     def report(
         self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
-    ) -> _Script:
+    ) -> Script:
+        """A status is said, and has been noticed."""
         return self.say(link, mission, status, channel, by=by).wait()
 
     def say(
         self, link: int, mission: int, status: str, channel: str = "mission_status", *, by: str = "header payload"
-    ) -> _Script:
+    ) -> Script:
+        """A status is said."""
         uuid = {"uuid": pick("uuid", UUID)}
         head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
         payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
         self.lines.append(ScriptStep("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
         return self
 
-    def raw(self, link: int, text: str) -> _Script:
+    def raw(self, link: int, text: str) -> Script:
+        """Any text is sent as a line; then a look."""
         params = {"event": "line", "connection": pick("connection", LINK), "line": text}
         self.lines.append(ScriptStep("drive", params, ((LINK, link),)))
         return self.look()
 
-    def drop(self, link: int) -> _Script:
+    def drop(self, link: int) -> Script:
+        """A connection drops, and that has been noticed."""
         params = {"event": "disconnect", "connection": pick("connection", LINK)}
         self.lines.append(ScriptStep("drive", params, ((LINK, link),)))
         return self.look().wait()
@@ -97,7 +111,7 @@ _GRIP = {"arm": {"Grip": {"force": 17, "on": True}}}
 
 _SCRIPTS = (
     # A diamond over two robots: nothing starts before its upstreams have succeeded, and then everything does.
-    _Script()
+    Script()
     .submit(A, timeout=60)
     .submit(B, 0, timeout=60)
     .submit(B, 0, 1, timeout=60)
@@ -110,7 +124,7 @@ _SCRIPTS = (
     .report(1, 2, "running")
     .report(1, 2, "success"),
     # One of two upstreams is not enough; then the other fails.
-    _Script()
+    Script()
     .submit(A)
     .submit(A)
     .submit(B, 0, 1)
@@ -120,7 +134,7 @@ _SCRIPTS = (
     .report(0, 1, "running")
     .report(0, 1, "failure"),
     # The last of two upstreams succeeds first, and the first of two.
-    _Script()
+    Script()
     .submit(A)
     .submit(B)
     .submit("carter-03", 0, 1)
@@ -132,7 +146,7 @@ _SCRIPTS = (
     .report(1, 1, "success")
     .report(0, 0, "running"),
     # A failure cancels all that depends on it, and nothing else.
-    _Script()
+    Script()
     .submit(A)
     .submit(A, 0)
     .submit(A, 1)
@@ -150,7 +164,7 @@ _SCRIPTS = (
     .report(0, 1, "success")
     .report(1, 2, "success"),
     # An upstream that is never acknowledged is aborted, which is a failure; what comes too late means nothing.
-    _Script()
+    Script()
     .submit(A, start_timeout=3)
     .submit(B, 0)
     .submit(B, 1)
@@ -161,7 +175,7 @@ _SCRIPTS = (
     .submit(B, 0)
     .wait(),
     # A mission runs out of time; the robot's last word on it is not about the next one.
-    _Script()
+    Script()
     .submit(A, timeout=4)
     .submit(A)
     .submit(B, 0)
@@ -175,7 +189,7 @@ _SCRIPTS = (
     .report(0, 0, "failure")
     .report(0, 1, "success"),
     # RUNNING that is said again and again gives no more time.
-    _Script()
+    Script()
     .submit(A, timeout=4)
     .robot(0, A)
     .report(0, 0, "running")
@@ -183,9 +197,9 @@ _SCRIPTS = (
     .report(0, 0, "running")
     .wait(3),
     # Half of a timeout is not enough.
-    _Script().submit(A, timeout=8).robot(0, A).report(0, 0, "running").wait(5).report(0, 0, "running").wait(5),
+    Script().submit(A, timeout=8).robot(0, A).report(0, 0, "running").wait(5).report(0, 0, "running").wait(5),
     # How long an acknowledgement takes shows from when timeout counts.
-    _Script()
+    Script()
     .submit(A, start_timeout=8, timeout=8)
     .robot(0, A)
     .wait(5)
@@ -194,7 +208,7 @@ _SCRIPTS = (
     .report(0, 0, "running")
     .wait(5),
     # Once acknowledged, a mission may take its time; once ended, it stays so.
-    _Script()
+    Script()
     .submit(A, start_timeout=2)
     .robot(0, A)
     .report(0, 0, "running")
@@ -204,7 +218,7 @@ _SCRIPTS = (
     .report(0, 0, "failure")
     .report(0, 0, "running"),
     # No later word undoes an end, whichever it was.
-    _Script()
+    Script()
     .submit(A)
     .submit(A)
     .submit(B, 0)
@@ -214,9 +228,9 @@ _SCRIPTS = (
     .report(0, 1, "success")
     .report(0, 1, "failure"),
     # A robot that reports nothing for long, though it was acknowledged, is still at it.
-    _Script().submit(A).robot(0, A).report(0, 0, "running").wait(60).report(0, 0, "success"),
+    Script().submit(A).robot(0, A).report(0, 0, "running").wait(60).report(0, 0, "success"),
     # What was queued waits for its robot; what is done is not sent again.
-    _Script()
+    Script()
     .submit(A)
     .submit(A)
     .submit(A)
@@ -232,7 +246,7 @@ _SCRIPTS = (
     .drop(1)
     .robot(2, A),
     # A robot drops in the middle of its mission.
-    _Script()
+    Script()
     .submit(A, timeout=20)
     .submit(A, timeout=20)
     .submit(B, 0)
@@ -244,9 +258,9 @@ _SCRIPTS = (
     .report(1, 1, "success")
     .wait(30),
     # Of two connections with one name one is the robot.
-    _Script().robot(0, A).robot(1, A).submit(A).wait().drop(1).submit(A).wait().name(0, A).wait(),
+    Script().robot(0, A).robot(1, A).submit(A).wait().drop(1).submit(A).wait().name(0, A).wait(),
     # A mission that comes while its robot is there and free; another waits for its turn.
-    _Script()
+    Script()
     .robot(0, A)
     .submit(A, config=_LAPS, channel="arm", status_channel="arm_news")
     .wait()
@@ -257,7 +271,7 @@ _SCRIPTS = (
     .report(0, 0, "success", "arm_news")
     .report(0, 1, "failure"),
     # Names: said again, in other letters, on another channel, by nobody; and the statuses of others.
-    _Script()
+    Script()
     .submit(A)
     .connect()
     .wait()
@@ -275,9 +289,9 @@ _SCRIPTS = (
     .name(2, A)
     .report(2, 0, "success"),
     # Names that begin alike are two.
-    _Script().submit(A).submit(A[:-1]).robot(0, A[:-1]).wait().robot(1, f"{A}0").wait(),
+    Script().submit(A).submit(A[:-1]).robot(0, A[:-1]).wait().robot(1, f"{A}0").wait(),
     # Lines that are no messages are nobody's loss.
-    _Script()
+    Script()
     .submit(A)
     .submit(B)
     .robot(0, A)
@@ -288,7 +302,7 @@ _SCRIPTS = (
     .report(0, 0, "success")
     .report(1, 1, "success"),
     # Who goes first: one that waits is in front, and of the others there are several.
-    _Script()
+    Script()
     .submit(B)
     .submit(A, 0)
     .submit(A)
@@ -298,7 +312,7 @@ _SCRIPTS = (
     .robot(1, B)
     .report(1, 1, "success"),
     # Statuses that name their mission in the payload, in the header, nowhere.
-    _Script()
+    Script()
     .submit(A)
     .submit(A)
     .submit(A)
@@ -309,13 +323,13 @@ _SCRIPTS = (
     .report(0, 1, "success", by="header")
     .report(0, 1, "success", by=""),
     # The status channel of a mission that names another channel only.
-    _Script()
+    Script()
     .submit(A, channel="arm")
     .robot(0, A)
     .report(0, 0, "running", "arm_status")
     .report(0, 0, "success", "mission_status"),
     # A newer connection takes over in the middle of a mission.
-    _Script()
+    Script()
     .submit(A, timeout=30)
     .submit(A)
     .robot(0, A)
@@ -325,21 +339,21 @@ _SCRIPTS = (
     .report(1, 0, "success")
     .drop(1),
     # An upstream that was sent and not acknowledged when its downstream came.
-    _Script().submit(A).robot(0, A).submit(A, 0).wait().report(0, 0, "success").report(0, 1, "running"),
-    _Script().submit(A).robot(0, A).robot(1, B).submit(B, 0).wait().report(0, 0, "success"),
+    Script().submit(A).robot(0, A).submit(A, 0).wait().report(0, 0, "success").report(0, 1, "running"),
+    Script().submit(A).robot(0, A).robot(1, B).submit(B, 0).wait().report(0, 0, "success"),
     # Timeouts of 0.
-    _Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
-    _Script().submit(A, start_timeout=0).robot(0, A).wait(3),
+    Script().submit(A, timeout=0).submit(A, start_timeout=0).robot(0, A).report(0, 0, "running").wait().wait(),
+    Script().submit(A, start_timeout=0).robot(0, A).wait(3),
     # A timeout of more than a day.
-    _Script().submit(A, timeout=90_000).robot(0, A).report(0, 0, "running").wait(90_100),
+    Script().submit(A, timeout=90_000).robot(0, A).report(0, 0, "running").wait(90_100),
     # Of two connections the one that connected first says the name last.
-    _Script().connect().connect().name(1, A).wait().name(0, A).wait().submit(A).wait(),
+    Script().connect().connect().name(1, A).wait().name(0, A).wait().submit(A).wait(),
     # A connection that was taken over drops, and the robot may be free with that.
-    _Script().submit(A).submit(A).robot(0, A).connect().name(1, A).drop(0),
+    Script().submit(A).submit(A).robot(0, A).connect().name(1, A).drop(0),
     # What goes on on a connection that was taken over runs out of time, or not.
-    _Script().submit(A, timeout=4).robot(0, A).report(0, 0, "running").robot(1, A).wait(8),
+    Script().submit(A, timeout=4).robot(0, A).report(0, 0, "running").robot(1, A).wait(8),
     # One upstream fails while the other runs.
-    _Script()
+    Script()
     .submit(A)
     .submit(B)
     .submit(A, 0, 1)
@@ -349,7 +363,7 @@ _SCRIPTS = (
     .report(0, 0, "failure")
     .report(1, 1, "success"),
     # Names with space around them, a second name, a name whose message has numbers for its times, and odd messages.
-    _Script()
+    Script()
     .submit(A)
     .submit(B)
     .connect()
@@ -367,7 +381,7 @@ _SCRIPTS = (
     .wait()
     .report(2, 1, "success"),
     # Upstreams that do not exist.
-    _Script()
+    Script()
     .refused(upcoming("mission"))
     .submit(B)
     .refused(-1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from missionfsm.isaac.server.codec import CODEC
+from missionfsm.isaac.server.matrix import MATRIX
 from missionfsm.isaac.server.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.isaac.server.pictures import SKETCHES
 from missionfsm.isaac.server.plans import PLANS
@@ -179,5 +180,6 @@ SYSTEM = System(
     plans=PLANS,
     shapes=shapes,
     profiles=PROFILES,
+    matrix=MATRIX,
     minutes_at=2,
 )

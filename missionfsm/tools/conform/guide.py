@@ -327,16 +327,20 @@ def _prepared_templates(system: System, alphabet: Alphabet) -> dict[str, list[Te
     driven = {repr(one): ("drive", one) for one in alphabet.drives if is_template(one)}
     found: dict[str, list[Template]] = {}
     for method, params in (*asked.values(), *driven.values()):
-        wants = slots(params)
-        # What is said does not depend on which names are picked, so it is read once, with made up ones.
-        made = {slot: system.naming.make(kind, _MADE_UP + slot) for slot, kind in wants.items()}
-        filled = fill(params, made, system.naming, _MADE_UP - 1)
-        if method == "drive":
-            what, names = system.codec.drive(filled)
-        else:
-            names, rest = system.codec.split(method, filled)
-            what = system.codec.request(method, rest)
-        of = {name: slot for slot, name in made.items()}
         label = params["event"] if method == "drive" else method
-        found.setdefault(label, []).append(Template(method, params, what, wants, tuple(of.get(one) for one in names)))
+        found.setdefault(label, []).append(template_of(system, method, params))
     return found
+
+
+def template_of(system: System, method: str, params: JSON) -> Template:
+    """Params with stand-ins, and what they say whichever names are picked: it is read once, with made up ones."""
+    wants = slots(params)
+    made = {slot: system.naming.make(kind, _MADE_UP + slot) for slot, kind in wants.items()}
+    filled = fill(params, made, system.naming, _MADE_UP - 1)
+    if method == "drive":
+        what, names = system.codec.drive(filled)
+    else:
+        names, rest = system.codec.split(method, filled)
+        what = system.codec.request(method, rest)
+    of = {name: slot for slot, name in made.items()}
+    return Template(method, params, what, wants, tuple(of.get(one) for one in names))

@@ -161,7 +161,8 @@ def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Has) 
         situation: tuple(way for way in ways if _possible(way, drives, has) == way)
         for situation, ways in matrix.ways.items()
     }
-    return evolve(matrix, ways=ways)
+    pause = matrix.pause and (matrix.pause if _possible((matrix.pause,), drives, has) else None)
+    return evolve(matrix, ways=ways, pause=pause)
 
 
 def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Has) -> tuple[ScriptStep, ...]:

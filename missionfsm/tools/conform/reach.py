@@ -20,10 +20,10 @@ from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Incident, Refs, Request, State
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.tools.check.basis import OFTEN, Reached
-from missionfsm.tools.conform.actions import CANCEL, Action, Bindings, NameRef, filled
+from missionfsm.tools.conform.actions import CANCEL, SETTLE, Action, Bindings, NameRef, filled
 from missionfsm.tools.conform.conversation import Conversation
-from missionfsm.tools.conform.guide import Guide, rested
-from missionfsm.tools.placeholders import is_template, kind_of
+from missionfsm.tools.conform.guide import Guide, Template, rested, template_of
+from missionfsm.tools.placeholders import is_template, kind_of, ways
 
 ALIKE = 8
 """In how many explanations the situation has to be the same to be sure of it; nobody looks at more."""
@@ -37,7 +37,7 @@ Columns = dict[tuple[Request | Incident, Refs], tuple[Cell, ...]]
 
 @frozen
 class Candidate:
-    """Something that could be done now, the cells that it would meet, and of a drive what happens."""
+    """Something that could be done now, the cells that it would meet, and of a drive what happens to what."""
 
     method: str
     params: JSON
@@ -45,6 +45,7 @@ class Candidate:
     picks: Bindings
     cells: tuple[Cell, ...]
     event: Incident | None = None
+    refs: Refs = ()
 
 
 @define(eq=False)
@@ -62,6 +63,7 @@ class Reach:
     worlds: tuple[JSON, ...]
     times: dict[Cell, int] = field(factory=dict)
     _read: dict[tuple[str, str], Any] = field(factory=dict)
+    _templates: dict[tuple[str, str], Template] = field(factory=dict)
     _guide: Guide | None = None
     _columns: dict[tuple[State, Open], tuple[State, Open, Columns]] = field(factory=dict)
     _at: tuple[Explanation, State, Open, Columns] | None = None
@@ -91,25 +93,33 @@ class Reach:
 
     def note(self, conversation: Conversation, action: Action) -> None:
         """An action is about to be done."""
-        if action.method != CANCEL.method and (
-            action.method not in (*self.system.codec.methods, "drive") or is_template(action.params)
-        ):
-            return  # what templates say depends on the names in them
+        if action.method not in (*self.system.codec.methods, "drive", CANCEL.method):
+            return
         situation, here = self.situation(conversation)
         if situation is None:
             return
         if action.method == CANCEL.method:
             columns: tuple[str, ...] = (CANCEL.method,)
         else:
-            refs: Refs = ()
-            if action.name is not None and ANY_NAME in repr(action.params):
-                refs = (_position(conversation, here, action.name),)
-            what = self._what(action)
-            if action.method == "drive" and not self.system.spec.drives[what.name].steps(here.state, what, ()):
+            what, refs = self._said(conversation, here, action)
+            if action.method == "drive" and not self.system.spec.drives[what.name].steps(here.state, what, refs):
                 return  # it cannot happen there
             columns = self.matrix.columns(here.state, opened(here), what, refs)
         for column in columns:
             self.times[situation, column] = self.times.get((situation, column), 0) + 1
+
+    def _said(self, conversation: Conversation, here: Explanation, action: Action) -> tuple[Request | Incident, Refs]:
+        """The request or event that an action says, and where the things that it names stand."""
+        if is_template(action.params):
+            key = (action.method, repr(action.params))
+            if key not in self._templates:
+                self._templates[key] = template_of(self.system, action.method, action.params)
+            template, picked = self._templates[key], dict(action.picks)
+            names = (None if slot is None else picked.get(slot) for slot in template.slots)
+            return template.what, tuple(None if one is None else _position(conversation, here, one) for one in names)
+        if action.name is not None and ANY_NAME in repr(action.params):
+            return self._what(action), (_position(conversation, here, action.name),)
+        return self._what(action), ()
 
     def _what(self, action: Action) -> Request | Incident:
         """The request or event that an action says, but for the names in it."""
@@ -127,7 +137,7 @@ class Reach:
         """Something to do now in a cell that was met too seldom, one of those that were met least often."""
         situation, here = self.situation(conversation)
         if situation is None:
-            return None
+            return self._pause(conversation)
         left: list[Candidate] = []
         for one in self._possible(conversation, here, world, situation):
             # Whether something happens is dear to tell: it is asked of cells that are new, and of what is chosen.
@@ -146,9 +156,17 @@ class Reach:
             left = [one for one in left if one is not chosen]
         return None
 
+    def _pause(self, conversation: Conversation) -> Candidate | None:
+        """What makes sure in which situation everything is, unless that was done just now."""
+        pause = self.matrix.pause
+        last = next((one for one in reversed(conversation.actions) if one.method != SETTLE), None)
+        if pause is None or (last is not None and last.params == pause.params):
+            return None
+        return Candidate(pause.method, pause.params, None, (), ())
+
     def _happens(self, here: Explanation, one: Candidate) -> bool:
         event = one.event
-        return event is None or bool(tuple(self.system.spec.drives[event.name].steps(here.state, event, ())))
+        return event is None or bool(tuple(self.system.spec.drives[event.name].steps(here.state, event, one.refs)))
 
     def _least(self, one: Candidate) -> int:
         return min(self.times[cell] for cell in one.cells)
@@ -165,6 +183,7 @@ class Reach:
         cancels = ((situation, CANCEL.method),)
         yield from self._calls(conversation, here, world, situation)
         yield from self._events(conversation, here, world, situation)
+        yield from self._filled(conversation, here, world, situation)
         if streams and self._lack(cancels):
             yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cancels)
 
@@ -187,6 +206,26 @@ class Reach:
             waits = self.system.spec.drives[event.name].waits
             if self._lack(cells) and not any(waits(one.state) for one in explanations):
                 yield Candidate("drive", drive, None, (), cells, event)
+
+    def _filled(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
+        """What has names in it, with those that were given, each in each place that it may have."""
+        absent, naming = conversation.partner.absent, self.system.naming
+        belief = conversation.judge.belief
+        positions = {belief.name(number): position for position, number in enumerate(here.names)}
+        given = {name: one for one, name in conversation.given.items()}
+        streams = opened(here)
+        for template in itertools.chain.from_iterable(self.guide.templates[world].values()):
+            if template.method in absent:
+                continue
+            event = template.what if template.method == "drive" else None
+            for picked in ways(template.wants, given, naming):
+                refs = tuple(None if slot is None else positions.get(picked[slot]) for slot in template.slots)
+                # A state with names in it seldom comes again: nothing is kept of it.
+                kinds = self.matrix.columns(here.state, streams, template.what, refs)
+                cells = tuple((situation, kind) for kind in kinds)
+                if self._lack(cells):
+                    picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
+                    yield Candidate(template.method, template.params, None, picks, cells, event, refs)
 
     def _cells(self, here: Explanation, situation: str, asked: Request | Incident, refs: Refs) -> tuple[Cell, ...]:
         """The cells of the matrix that asking for something meets."""

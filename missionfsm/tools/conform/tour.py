@@ -46,14 +46,15 @@ def play(run: Run, most: int | None = None) -> bool:
         for line in script:
             if run.enough():
                 break
-            if not _follow(run, line):
+            if not follow(run, line):
                 return False
         if not run.settle() or not run.gather():
             return False
     return True
 
 
-def _follow(run: Run, line: ScriptStep) -> bool:
+def follow(run: Run, line: ScriptStep) -> bool:
+    """Take one step of a script; whether all could be explained."""
     wanted = slots(line.params)
     picks = tuple(_named(run, wanted, line.picks))
     # A name without a kind goes where `ANY_NAME` stands, not into a slot.
@@ -88,6 +89,8 @@ def fill(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
             while in_vain < len(ways) and (not turn or reach.lacks(situation)):
                 if run.enough() or next(left, None) is None:
                     return True
+                # Where nothing could be done, it may not have been sure where that was: what is known makes it surer.
+                run.start(run.guide.worlds[world], narrowly=in_vain > 0)
                 done = _filled(run, reach, draw, world, ways[turn % len(ways)], steps)
                 if done is None:
                     return False
@@ -99,11 +102,10 @@ def _filled(  # noqa: PLR0913 - what one conversation needs
     run: Run, reach: Reach, draw: random.Random, world: int, way: tuple[ScriptStep, ...], steps: int
 ) -> int | None:
     """How much was done where it was done too seldom; None where something cannot be explained."""
-    run.start(run.guide.worlds[world])
     streams = run.system.codec.streams
     if len(streams) == 1 and not run.act(streams[0], {}):
         return None
-    if not all(_follow(run, line) for line in way):
+    if not all(follow(run, line) for line in way):
         return None
     before = reach.met
     for _ in range(steps):

@@ -1,0 +1,71 @@
+"""Conversations worth having with a robot, and what they are made of: each goes where chance seldom does."""
+
+from __future__ import annotations
+
+from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed
+from missionfsm.kernel.alphabet import ScriptStep, as_text, new, pick
+from missionfsm.kernel.codec import JSON
+
+_HEADER_UUID = {"lower": "12297829382473034411", "upper": "6148914691236517206"}
+
+
+def mission(config: JSON, uuid: JSON, channel: str, **payload: JSON) -> JSON:
+    """The drive by which a mission arrives."""
+    header = {
+        "channel": channel,
+        "pubtime": "1700000000000000000",
+        "acqtime": "1700000000000000000",
+        "proto": str(signed(TYPE_IDS[MissionProto])),
+        "uuid": _HEADER_UUID,
+    }
+    line = {"header": header, "payload": {"uuid": uuid, "config": config, **payload}}
+    return {"event": "line", "line": as_text(line)}
+
+
+EVENTS: tuple[JSON, ...] = (
+    {"event": "behaviorSucceeded"},
+    {"event": "behaviorFailed"},
+    {"event": "advance", "seconds": 0.05},
+    {"event": "advance", "seconds": 1},
+    {"event": "advance", "seconds": 5},
+    {"event": "advance", "seconds": 20},
+    {"event": "disconnect"},
+    {"event": "connect"},
+)
+
+
+def _words() -> dict[str, ScriptStep]:
+    words = ("succeeds", "fails", "tick", "1s", "5s", "20s", "drops", "connects")
+    known = {word: ScriptStep("drive", event) for word, event in zip(words, EVENTS, strict=True)}
+    known["settle"] = ScriptStep("settle")
+    known["mission"] = ScriptStep("drive", mission({"serialized": "{}"}, new("uuid"), "mission"))
+    known["again"] = ScriptStep("drive", mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
+    known["unusable"] = ScriptStep("drive", mission({"serialized": "no json"}, new("uuid"), "mission"))
+    return known
+
+
+_WORDS = _words()
+
+
+def script(text: str) -> tuple[ScriptStep, ...]:
+    """A script from its words, for the usual world."""
+    return tuple(_WORDS[word] for word in text.split())
+
+
+SCRIPTS = tuple(
+    map(
+        script,
+        (
+            # The mission that runs arrives again; it ends, and arrives once more.
+            "mission 1s settle again settle 1s settle succeeds 1s settle again 1s settle fails 1s settle",
+            # Missions that cannot be used, with and without one that runs, and what runs then ends.
+            "unusable settle 1s settle mission 1s settle unusable settle 1s settle succeeds settle 1s settle",
+            # Missions preempt one another faster than a tick.
+            "mission tick mission mission settle 1s settle fails mission settle 1s settle",
+            # A connection drops while nothing runs, while a mission runs, and while it ends.
+            "20s settle drops settle connects settle 20s settle mission 1s settle drops settle 1s settle connects "
+            "settle 20s settle drops succeeds settle connects settle 20s settle mission settle 20s settle fails "
+            "settle 20s settle",
+        ),
+    )
+)

@@ -108,7 +108,11 @@ WorldFile = Annotated[
 SettleSeconds = Annotated[
     float | None,
     typer.Option(
-        "--settle", metavar="SECONDS", min=0.001, max=3600, help="With --grpc: silence after which all has been seen."
+        "--settle",
+        metavar="SECONDS",
+        min=0.001,
+        max=3600,
+        help="With --grpc: silence after which all has been seen (0.2).",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="With --grpc: a reset may end and clear missions of others.")]

@@ -55,7 +55,7 @@ def serve(  # noqa: PLR0913 - options of the command
     fault: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME:NUMBER", help="deadline, unavailable, internal, lost, doubled (0 to 1), late, ends (s)."
+            metavar="NAME:NUMBER", help="deadline, unavailable, internal, lost, doubled (0 to 1); late, ends (s)."
         ),
     ] = None,
     broken: Annotated[

@@ -254,6 +254,17 @@ def test_a_token_that_expires_ends_streams_and_a_client_comes_back_with_a_new_on
         assert missionfsm.check(robot.history()).conforms
 
 
+@pytest.mark.parametrize("command", [("serve", "--grpc"), ("proxy", "--grpc", "localhost:1", "--listen")])
+def test_a_port_that_is_taken_is_told_in_one_line(
+    command: tuple[str, ...], robot: Served, command_line: CommandLine
+) -> None:
+    """Nobody listens where somebody else does; the line says where, and why."""
+    verb, *options = command
+    ended = command_line(verb, "bear.mission", *options, str(robot.port))
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err == f"missionfsm: 127.0.0.1:{robot.port}: Address already in use\n"
+
+
 def test_a_token_that_nobody_has_to_send_cannot_expire(robot: Served) -> None:
     """A robot without a token has none to renew."""
     with pytest.raises(ValueError, match="none expires"):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import os
 import socket
 import ssl
 import time
@@ -67,7 +68,12 @@ class Proxy:
         self._tls = _to_robot(self._upstream)
         own = _for_clients(self._security)
         loop = asyncio.get_running_loop()
-        self._server = await loop.create_server(self._accept, host, port, ssl=own)
+        try:
+            self._server = await loop.create_server(self._accept, host, port, ssl=own)
+        except OSError as error:
+            is_plain = error.errno is not None and not isinstance(error, socket.gaierror)
+            said = os.strerror(error.errno or 0) if is_plain else error.strerror  # asyncio adds many words of its own
+            raise OSError(f"{host}:{port}: {said}") from None
         self.port = self._server.sockets[0].getsockname()[1]
 
     async def stop(self, seconds: float = 1.0) -> None:

@@ -10,6 +10,7 @@ import asyncio
 import concurrent.futures
 import contextlib
 import functools
+import socket
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from pathlib import Path
@@ -336,6 +337,8 @@ class Server:
         reflection.enable_server_reflection(names, server, pool=descriptors)
         credentials = self._security.credentials()
         where = f"{self._host}:{port}"
+        if port:
+            self._must_be_free(port)
         try:
             bound = (
                 server.add_insecure_port(where) if credentials is None else server.add_secure_port(where, credentials)
@@ -346,6 +349,18 @@ class Server:
             raise OSError(f"{where}: the port cannot be had")
         await server.start()
         return bound
+
+    def _must_be_free(self, port: int) -> None:
+        """Raise OSError, which says why, for a port that cannot be had: gRPC writes to the terminal and says less."""
+        try:
+            family, kind, protocol, _, where = socket.getaddrinfo(
+                self._host.strip("[]"), port, type=socket.SOCK_STREAM
+            )[0]
+            with socket.socket(family, kind, protocol) as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                probe.bind(where)
+        except OSError as error:
+            raise OSError(f"{self._host}:{port}: {error.strerror}") from None
 
     def renew(self, token: str) -> None:
         """From now on another token is good, and streams that were opened with the one before end UNAUTHENTICATED.

@@ -36,8 +36,8 @@ LOGS = {
     ),
     "undecided.jsonl": (
         HEAD,
-        {"call": 1, "method": "CreateMission", "params": {}},
-        {"return": 1, "error": {"status": "INVALID_ARGUMENT", "message": "there is no mission in it"}},
+        {"call": 1, "method": "ClearMissionStatus", "params": {}},
+        {"return": 1, "error": {"status": "INTERNAL", "message": "try again"}},
     ),
     "bare.jsonl": (
         {"metadata": {"sequenceNumber": 1}, "missionStates": {"missions": [], "currentMissionIndex": -1}},

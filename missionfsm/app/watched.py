@@ -21,7 +21,7 @@ from missionfsm.bear.wire.problem import Problem
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.text import brief
+from missionfsm.kernel.text import brief, counted
 from missionfsm.kernel.transport import TR_02
 from missionfsm.tools.check.basis import Untested
 from missionfsm.tools.check.phrases import rules_in_words
@@ -107,7 +107,7 @@ class _Subscription:
 
     def _robots(self) -> str:
         robots = self.status.robots if self.status else len(self.missions)
-        return f"{robots} {'robot' if robots == 1 else 'robots'}"
+        return counted(robots, "robot")
 
     def verdict(self) -> Verdict:
         """The judgement of what came."""
@@ -117,10 +117,11 @@ class _Subscription:
         redelivered = sum(one.redelivered for one in monitors)
         concerned = _concerned(spec, self.topic)
         unchecked = [rule for rule in concerned if rule not in checked]
+        repeats = sum(one.repeats for one in monitors)
         notes = [
-            f"{self._robots()}, {sum(one.repeats for one in monitors)} messages that say nothing new, "
-            f"{self.flagged} tolerated oddities",
-            f"not checked, since no bare message can break them: {len(unchecked)} rules",
+            f"{self._robots()}, {counted(repeats, 'message')} that {'says' if repeats == 1 else 'say'} nothing new, "
+            f"{counted(self.flagged, 'tolerated oddity', 'tolerated oddities')}",
+            f"not checked, since no bare message can break them: {counted(len(unchecked), 'rule')}",
         ]
         if self.problems > 1:
             notes.append(f"{self.problems - 1} more problems in this stream")

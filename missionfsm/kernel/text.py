@@ -30,3 +30,8 @@ def clipped(text: str) -> str:
 def printable_lines(text: str) -> str:
     """A text without what a terminal would obey; its lines stay apart."""
     return "\n".join(map(printable, text.split("\n")))
+
+
+def counted(number: int, thing: str, things: str = "") -> str:
+    """A number of things in words: 1 rule, 2 rules; `things` where the plural is another word."""
+    return f"{number} {thing if number == 1 else things or f'{thing}s'}"

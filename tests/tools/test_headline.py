@@ -125,6 +125,14 @@ def test_a_robot_without_four_of_ten_calls_conforms_in_part() -> None:
     assert verdict.rests_on()[2] == "drives: all 5 commanded"
 
 
+def test_a_drive_that_is_left_out_was_not_commanded() -> None:
+    """The headline counts what this run left out as missing; the robot does none of it by itself."""
+    robot = system("isaac.robot")
+    subject = ReferenceSubject(robot)
+    verdict = conform(robot, subject, examples=2, tours=3, steps=10, seed=1, advice=False, without=["connect"])
+    assert verdict.rests_on()[-1] == "drives: 1 of 6 missing (connect)"
+
+
 def test_what_has_no_gap_conforms() -> None:
     """A robot whose every drive was commanded, and which departs from nothing, simply conforms."""
     robot = system("isaac.robot")

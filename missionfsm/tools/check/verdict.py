@@ -10,7 +10,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
-from missionfsm.kernel.text import printable
+from missionfsm.kernel.text import counted, printable
 from missionfsm.tools.check.basis import Reached, Untested, readings_line
 
 RATE, PER = 100, 10_000
@@ -21,10 +21,6 @@ MOST_RARE = 10
 
 MAX_CHARACTERS = 72
 """How much of an event a line of the verdict has room for."""
-
-
-def _counted(number: int, thing: str) -> str:
-    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 class Outcome(enum.Enum):
@@ -354,9 +350,9 @@ class Verdict:
         """What is told only where it is wanted."""
         decided = sum(len(letters) == 1 for letters in self.readings.values())
         parts = (
-            f"what decided {_counted(decided, 'reading')}" if decided else "",
+            f"what decided {counted(decided, 'reading')}" if decided else "",
             "what would decide the others" if self.experiments or self._unadvised else "",
-            f"{_counted(len(self.rare), 'rule')} that came up seldom" if self.rare else "",
+            f"{counted(len(self.rare), 'rule')} that came up seldom" if self.rare else "",
         )
         return ", ".join(filter(None, parts))
 

@@ -299,7 +299,10 @@ def _untested(run: Run, left_out: Iterable[str]) -> Untested:
     # Where a robot is in use, nothing is known of the state from which that would be explored.
     known = not run.system.spec.anywhere
     missed = missed_without(run.system, frozenset(found.drives)) if known else Missed()
-    return evolve(found, calls=calls, refusals=missed.refusals, promises=missed.promises)
+    # What is left out for this run was not commanded either, and the robot does not do it by itself.
+    commanded = set(drives) - run.without
+    missing = tuple(name for name in run.system.spec.drives if name not in commanded)
+    return evolve(found, calls=calls, drives=missing, refusals=missed.refusals, promises=missed.promises)
 
 
 def _idle(run: Run, exercised: Mapping[str, int]) -> str:

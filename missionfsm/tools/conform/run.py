@@ -34,6 +34,7 @@ class Run:
         progress: told of the run after every conversation.
         expects: whether a violation is known; the search goes on after such a one, in another conversation.
         enough: whether no more should be done.
+        without: calls and drives that are left out, though the adapter may have them.
         last: the conversation that was begun last; `found` the one that could not be explained.
         reach: in which situations what was asked; None where the system does not say which there are.
         over: whether the last conversation ended in a violation that is known; what is done in it then is nothing.
@@ -46,6 +47,7 @@ class Run:
     progress: Callable[[Run], None] = lambda _: None
     expects: Callable[[Violation], bool] | None = None
     enough: Callable[[], bool] = lambda: False
+    without: frozenset[str] = frozenset()
     ledger: Ledger = field(init=False)
     reach: Reach | None = field(init=False)
     last: Conversation | None = None
@@ -89,7 +91,7 @@ class Run:
         given = offered(system, info, only, without)
         guide = Guide(given, given.alphabet({}, bounds).worlds, bounds)
         walked = automaton or Automaton(system.spec, info.drives, decided)
-        run = cls.with_guide(given, subject, info, walked, guide, **options)
+        run = cls.with_guide(given, subject, info, walked, guide, without=frozenset(without), **options)
         run.ledger.notes += (f"{one} is not known: it is not used" for one in info.unknown)
         return run
 

@@ -146,10 +146,21 @@ class Explanation:
 
 def fresh(explanation: Explanation) -> Iterator[int]:
     """Numbers for names that nobody has seen yet."""
-    taken = min((GONE, *mentioned(explanation)))
+    taken = _lowest(explanation)
     while True:
         taken -= 1
         yield taken
+
+
+def _lowest(explanation: Explanation) -> int:
+    """The lowest of all names that an explanation mentions, `GONE` at most."""
+    found = min((GONE, *explanation.names, *[channel.lowest for channel in explanation.channels]))
+    for _, args, _ in explanation.lost:
+        found = min((found, *args))
+    for call in explanation.calls:
+        done = call.done.names if call.done else ()
+        found = min((found, call.name, *call.args, *done, *[name for ready in call.ready for name in ready.names]))
+    return found
 
 
 def mentioned(explanation: Explanation) -> Iterator[int]:

@@ -42,8 +42,9 @@ Narrowed = tuple[Channel, Assumption | None, bool]
 the state now, the channel does not show it."""
 
 
-_Led = tuple[Narrowed | None, Message | None]
-"""A channel that was narrowed, and the message that the state has to come to show, if there is one."""
+_Led = tuple[Narrowed | None, tuple[Message, int] | None]
+"""A channel that was narrowed, and the message that the state has to come to show, if there is one, with the position
+of the event before which it has."""
 
 
 @define(eq=False, slots=True)
@@ -52,15 +53,19 @@ class _Stretch:
 
     Attributes:
         due: the messages that it shows next, `NEXT` at most.
+        positions: where these stand.
         before: what it has shown last, if that is known.
         nothing: whether nothing of it is known.
         rests: whether everything settles after the messages.
+        rest: the position of what settles next.
         over: whether nothing else is shown after the messages.
         led: what was found of channels with that name.
     """
 
     due: list[Message]
+    positions: list[int]
     before: Message | None
+    rest: int
     nothing: bool = field(kw_only=True)
     rests: bool = field(kw_only=True)
     over: bool = field(kw_only=True)
@@ -74,13 +79,14 @@ class Lookahead:
         spec: the system.
         symbols: the events.
         horizon: how many of them may be known beforehand.
-        calls: the operations of all calls that may take effect.
         beyond: the positions of those that the system does not explain; what follows says nothing of what is before.
         latest: what each channel showed last before the window.
         last: whether nothing comes after the horizon.
+        required: the bits of readings that have to stay possible; what contradicts one of them is withheld.
 
     Attributes:
         at: how many of them have been observed.
+        withheld: whether anything was withheld since this was last set.
         consulted: the bits of the ambiguities of which something was assumed since the last event.
         depends: the bits of those on which it has depended since then what becomes of an explanation: it would have
             come to the same under other readings of all others.
@@ -93,28 +99,30 @@ class Lookahead:
         horizon: int,
         latest: Mapping[int, Message],
         *,
-        calls: frozenset[str] = frozenset(),
         beyond: Collection[int] = (),
         last: bool = False,
+        required: int = 0,
     ) -> None:
         self.spec = spec
+        self.required, self.withheld = required, False
         self._last = last
-        self._calls = calls
         self._horizon = horizon
         self._beyond = sorted(beyond)
         self.at = 0
         self.consulted = self.depends = 0
         self.answers: dict[int, tuple[Answer, Names]] = {}
         self._messages: dict[int, tuple[list[int], list[Message]]] = {}
+        self._same: dict[Message, Message] = {}
         self._settled: list[int] = []
         self._latest = latest
         self._room = Room(MEMORY // STEPS)
         self._led: dict[Hashable, bool] = {}
         self._known: dict[tuple[int, int, int, int], _Stretch] = {}
-        self._stretches: dict[tuple[int, int], _Stretch] = {}
+        self._stretches: dict[int, tuple[int, int, _Stretch]] = {}
+        self._gone: tuple[Names, frozenset[int]] = ((), frozenset())
         self._at_cut, self._found_cut = -1, horizon
         self._foreseen: dict[Hashable, bool] = {}
-        self._showable: dict[Hashable, bool] = {}
+        self._showable: dict[Owed, dict[int, bool]] = {}
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
         called = self._read(symbols[:horizon], beyond)
@@ -129,6 +137,11 @@ class Lookahead:
             if call in self.answers and self.answers[call][0].code == OK
         ]
         self._sent = [at for at, *_ in self._successes]
+        # What calls ask for, as they are sent.
+        asked = [(at, what[0]) for at, (kind, *what) in enumerate(symbols[:horizon]) if kind is Called]
+        self._call_positions = [at for at, _ in asked]
+        self._call_operations = [spec.request_operation(request) for _, request in asked]
+        self._sent_between: dict[tuple[int, int], frozenset[str]] = {}
 
     def _read(self, symbols: Sequence[Symbol], beyond: Collection[int]) -> dict[int, tuple[int, Hashable, Names]]:
         """Note what comes; the calls that are sent: each with its position, what it asks for and its names."""
@@ -146,7 +159,7 @@ class Lookahead:
                 if channel > GONE and channel not in self._ended and REDELIVERED not in relations:
                     positions, messages = self._messages.setdefault(channel, ([], []))
                     positions.append(position)
-                    messages.append((content, names))
+                    messages.append(self._same.setdefault((content, names), (content, names)))
             elif kind is Settled:
                 self._settled.append(position)
             elif kind in (Cancelled, Ended):
@@ -174,6 +187,18 @@ class Lookahead:
             if not assumed & one.group:
                 self.depends |= one.group
                 return
+
+    def withholds(self, assumed: int) -> bool:
+        """Whether what is assumed contradicts a reading that has to stay possible."""
+        if not assumed or not self.required & ~assumed:
+            return False
+        self.withheld = True
+        return True
+
+    def may_assume(self, assumed: int, one: Assumption | None) -> bool:
+        """Whether something more may be assumed."""
+        met = meet(assumed, (one,)) if one else 0
+        return met != 0 and not self.withholds(met)
 
     def rely(self) -> None:
         """Note that something was left out since something else assumes no more."""
@@ -210,7 +235,7 @@ class Lookahead:
                 return None
             if found[1] is not None:
                 assumed = meet(assumed, (found[1],))
-                if not assumed:
+                if not assumed or self.withholds(assumed):
                     return None
             narrow.append(found[0])
         if all(map(operator.is_, narrow, channels)):
@@ -242,7 +267,7 @@ class Lookahead:
             if first >= cut:
                 break
             ahead = called >= self.at or any(one.name == call and one.done is None for one in explanation.calls)
-            if ahead and not self._foresees(explanation, message):
+            if ahead and not self._foresees(explanation, message, first):
                 return False
         return True
 
@@ -279,30 +304,38 @@ class Lookahead:
 
     def _stretch(self, channel: int) -> _Stretch:
         """What is known of a channel with that name from now on."""
-        key = channel, self.at
-        found = self._stretches.get(key)
-        if found is not None:
-            return found
+        known = self._stretches.get(channel)
+        if known is not None and known[0] <= self.at <= known[1]:
+            return known[2]
         positions, messages = self._messages.get(channel, _NO_MESSAGES)
         cut = self._cut
         end = min(self._ended.get(channel, cut), cut)
         first, last = bisect.bisect_left(positions, self.at), bisect.bisect_left(positions, end)
         quiet, quieter = bisect.bisect_left(self._settled, self.at), bisect.bisect_left(self._settled, end)
+        # Up to the next of these that is observed, no less is known.
+        until = min(
+            cut,
+            positions[first] if first < len(positions) else cut,
+            self._settled[quiet] if quiet < len(self._settled) else cut,
+        )
         over = end < cut or (self._last and cut == self._horizon)
         nothing = first >= last and quiet >= quieter
         if quiet < quieter:
             last = bisect.bisect_left(positions, self._settled[quiet], first)
-        due = messages[first : min(last, first + NEXT)]
-        found = self._stretches[key] = self._known.setdefault(
+        shown = slice(first, min(last, first + NEXT))
+        found = self._known.setdefault(
             (channel, first, quiet, end),
             _Stretch(
-                due,
+                messages[shown],
+                positions[shown],
                 messages[first - 1] if first else self._latest.get(channel),
+                self._settled[quiet] if quiet < quieter else cut,
                 nothing=nothing,
                 rests=quiet < quieter and last - first <= NEXT,
                 over=over and (nothing or (last - first <= NEXT and quiet == quieter)),
             ),
         )
+        self._stretches[channel] = self.at, until, found
         return found
 
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
@@ -315,15 +348,14 @@ class Lookahead:
         for one in (delivery.skips, delivery.repeats):
             self.depends |= one.group if one else 0
         assumed = explanation.assumed
-        skips = delivery.skips is not None and bool(meet(assumed, (delivery.skips,)))
-        repeats = delivery.repeats is not None and bool(meet(assumed, (delivery.repeats,)))
+        skips, repeats = self.may_assume(assumed, delivery.skips), self.may_assume(assumed, delivery.repeats)
         key = channel, skips, repeats
         found = stretch.led.get(key)
         if found is None:
             self._make_room(explanation)
             found = stretch.led[key] = self._leading(channel, stretch, skips=skips, repeats=repeats)
         narrowed, shows = found
-        return narrowed if shows is None or self._foresees(explanation, shows) else None
+        return narrowed if shows is None or self._foresees(explanation, *shows) else None
 
     def _leading(self, channel: Channel, stretch: _Stretch, *, skips: bool, repeats: bool) -> _Led:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
@@ -337,26 +369,40 @@ class Lookahead:
             led, shows = self._leading(trimmed, stretch, skips=skips, repeats=repeats)
             return (led and (led[0], led[1] or assumes, led[2])), shows
         owed, last, before = channel.owed, channel.last, stretch.before
+        shown = [self._showable_as(one) for one in owed]
         can_repeat = repeats or self.spec.delivery(channel.topic).echoes is not None
-        passable = [skips or self._may_go_unsaid(channel, index) for index in range(len(owed))]
+        repeatable = [*zip(shown, owed, strict=True)] if can_repeat else []
+        if can_repeat and last is not None:
+            repeatable.append((self._showable_as(last), last))
+        known: dict[int, bool] = {}
+
+        def passable(index: int) -> bool:
+            found = known.get(index)
+            if found is None:
+                found = known[index] = skips or self._may_go_unsaid(channel, index)
+            return found
+
         places = {0}
         for position, message in enumerate(stretch.due):
             following: set[int] = set()
-            for place in places:
-                for index in range(place, len(owed)):
-                    if self._may_show(owed[index], message):
+            looked = -1
+            for place in sorted(places):
+                for index in range(max(place, looked + 1), len(owed)):
+                    if self._shows(shown[index], owed[index], message):
                         following.add(index if owed[index].stays else index + 1)
-                    if not passable[index]:
+                    looked = index
+                    if not passable(index):
                         break
-            if can_repeat and any(self._may_show(one, message) for one in (last, *owed) if one is not None):
+            if any(self._shows(row, one, message) for row, one in repeatable):
                 following |= places
             if not following:
                 # What is owed before it has to go unsaid then, and the message to show what is to come.
-                if not all(passable[max(places) :]):
+                if not all(map(passable, range(max(places), len(owed)))):
                     return None, None
-                return (
-                    (channel, None, False) if position or not owed else self._passed_over(channel, len(owed))
-                ), message
+                narrowed: Narrowed | None = (channel, None, False)
+                if owed and not position:
+                    narrowed = self._passed_over(channel, len(owed))
+                return narrowed, (message, stretch.positions[position])
             places, before = following, message
         shown_by = max(places)
         if (
@@ -370,7 +416,7 @@ class Lookahead:
             return (Channel(channel.name, channel.topic, last, owed[:shown_by]), None, True), None
         left = [one for one in owed[shown_by:] if not one.passing]
         settles = stretch.rests and before is not None and left and not self._may_show(left[-1], before)
-        return (channel, None, False), before if settles else None
+        return (channel, None, False), (before, stretch.rest) if settles and before is not None else None
 
     def _without_unshown(self, channel: Channel, stretch: _Stretch, *, repeats: bool) -> Narrowed:
         """The channel without what it owes before the first that can be what it shows next: that is passed over."""
@@ -389,8 +435,9 @@ class Lookahead:
         if self.spec.delivery(channel.topic).every_time:
             return False
         return any(
-            other.view == one.view
-            and len(other.names) == len(one.names)
+            len(other.names) == len(one.names)
+            and hash(other.view) == hash(one.view)
+            and other.view == one.view
             and all(map(_may_be_one, other.names, one.names))
             for other in (channel.last, *channel.owed[:index])
             if other is not None
@@ -416,28 +463,52 @@ class Lookahead:
             for stretch in self._known.values():
                 stretch.led.clear()
 
-    def _foresees(self, explanation: Explanation, message: Message) -> bool:
-        """Whether the state may come to be shown so."""
+    def _calls_before(self, explanation: Explanation, position: int) -> frozenset[str]:
+        """The operations of the calls that may take effect before an event."""
+        key = bisect.bisect_left(self._call_positions, self.at), bisect.bisect_left(self._call_positions, position)
+        found = self._sent_between.get(key)
+        if found is None:
+            found = self._sent_between[key] = frozenset(self._call_operations[slice(*key)])
+        operation = self.spec.request_operation
+        waiting = {operation(call.request) for call in explanation.calls if call.done is None}
+        waiting.update([operation(request) for request, *_ in explanation.lost])
+        return found if waiting <= found else found | waiting
+
+    def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
+        """Whether the state may come to be shown so before an event."""
         content, names = message
-        if not set(explanation.gone).isdisjoint(names):
+        if explanation.gone is not self._gone[0]:
+            self._gone = explanation.gone, frozenset(explanation.gone)
+        if not self._gone[1].isdisjoint(names):
             return False
         foresees = self.spec.foresees
         if foresees is None:
             return True
-        key = (explanation.state, explanation.names, message)
+        calls = self._calls_before(explanation, position)
+        key = (explanation.state, explanation.names, id(message), calls)
         found = self._foreseen.get(key)
         if found is None:
             self._make_room(explanation)
-            found = self._foreseen[key] = foresees(explanation.state, explanation.names, content, names, self._calls)
+            found = self._foreseen[key] = foresees(explanation.state, explanation.names, content, names, calls)
         return found
 
     def _may_show(self, owed: Owed, message: Message) -> bool:
-        key = (owed.view, owed.names, message)
-        found = self._showable.get(key)
+        return self._shows(self._showable_as(owed), owed, message)
+
+    def _showable_as(self, owed: Owed) -> dict[int, bool]:
+        """Which of the messages may be one that is owed, as far as that was looked at."""
+        found = self._showable.get(owed)
+        if found is None:
+            found = self._showable[owed] = {}
+        return found
+
+    def _shows(self, known: dict[int, bool], owed: Owed, message: Message) -> bool:
+        """Whether a message may be one that is owed, which is remembered."""
+        found = known.get(id(message))
         if found is None:
             content, names = message
             matches = self.spec.matches(owed.view, content)
-            found = self._showable[key] = not isinstance(matches, Mismatch) and any(
+            found = known[id(message)] = not isinstance(matches, Mismatch) and any(
                 all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
                 for match in matches
             )

@@ -8,12 +8,14 @@ effect, the state is the same, and no more is assumed. A `Lookahead` leaves out 
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from attrs import define, field
 
-from missionfsm.kernel.history import Called, Received
+from missionfsm.kernel.history import Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.calls import CallSearch, Node, OtherwiseError, are_calls_alone
@@ -32,6 +34,15 @@ WIDTH = 1
 EFFORT = 300
 """How much of the budget goes into finding more than one explanation of an event at once, the first time."""
 
+
+LOOK_BACK = 128
+"""How many events are looked back to where more of them are known."""
+
+USUAL, USUAL_EACH = 5_000, 50
+"""How many explanations may be looked at where every ambiguity is read in its usual way, and how many more an event."""
+
+FURTHER = 64
+"""How many events behind the one where that leads nowhere are looked at under all readings."""
 
 PUT_OFF = 64
 """How many explanations under unusual readings are put off at once."""
@@ -61,6 +72,7 @@ class Layer:
         effort: how much of the budget goes into finding more than one explanation at once.
         tried: what is remembered of the explanations.
         depends: the bits of the ambiguities on which it has depended what comes of them.
+        withheld: whether unusual readings were not looked at.
     """
 
     explanations: tuple[Explanation, ...]
@@ -70,11 +82,12 @@ class Layer:
     effort: int = EFFORT
     tried: tuple[_Tried, ...] = field(default=(), repr=False)
     depends: int = 0
+    withheld: bool = False
 
     @property
     def unfinished(self) -> bool:
         """Whether there may be other explanations of the event after these that were not looked at."""
-        return self.more is not None
+        return self.more is not None or self.withheld
 
 
 class Search:
@@ -111,19 +124,19 @@ class Search:
         self._start = tuple(start)
         self._symbols = symbols
         self._latest = latest
-        requests = {what[0] for kind, *what in symbols if kind is Called}
-        for one in start:
-            requests.update(call.request for call in one.calls)
-            requests.update(request for request, *_ in one.lost)
-        self._operations = frozenset(map(transitions.spec.request_operation, requests))
-        self._defaults = choose(transitions.spec.ambiguities)
-        self._budget = budget
+        ambiguities = transitions.spec.ambiguities
+        self._defaults = choose(ambiguities) & functools.reduce(operator.or_, (one.group for one in ambiguities), 0)
+        # Of several explanations one is followed first that reads most in its usual way.
+        usual = [one.assumed & self._defaults for one in start]
+        self._required, self._built = max(usual, key=int.bit_count, default=0), 0
+        self.budget = budget
         self._memory = memory
         self._bytes = 0
         self.whole = False
         self.width = WIDTH
         self._layers: list[Layer] = []
         self._end: tuple[CallSearch, Node] | None = None
+        self._explained: int | None = None
         self.reached = 0
         self.beyond: set[int] = set()
         self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
@@ -144,6 +157,9 @@ class Search:
     def explain(self, horizon: int) -> bool:
         """Whether the first events up to a horizon are explained.
 
+        Every ambiguity is first read in its usual way: few implementations need many other readings. Which ones, is
+        learned where that leads nowhere, by looking at all readings of what is before and a little behind that.
+
         Raises:
             ExhaustedError: it costs more than the budget.
         """
@@ -152,29 +168,73 @@ class Search:
                 return self._spending_on_calls(horizon)
             except OtherwiseError:
                 self.calls_alone = False
-        last = self.whole and horizon == len(self._symbols)
-        self._ahead = Lookahead(
+        usual = min(USUAL + USUAL_EACH * horizon, self.budget)
+        while self._required:
+            try:
+                if self._go_on(horizon, usual):
+                    return True
+            except ExhaustedError:
+                pass
+            usual -= self.successors.spent
+            required, self._required = self._required, 0
+            if not self._go_on(min(self._stuck + FURTHER, horizon), self.budget):
+                return False
+            left = required
+            for one in self.layers[-1].explanations:
+                left &= one.assumed
+            self._required = left if left != required and usual > 0 else 0
+        return self._go_on(horizon, self.budget)
+
+    def _go_on(self, horizon: int, budget: int) -> bool:
+        """Whether the first events up to a horizon are explained under the readings that are required.
+
+        It goes on where it has explained those up to a nearer one: what it tried before leads nowhere still.
+        """
+        before, self._explained = self._explained, None
+        anew = before is None or before > horizon or self._built & ~self._required
+        self._ahead = ahead = Lookahead(
             self.transitions.spec,
             self._symbols,
             horizon,
             self._latest,
-            calls=self._operations,
             beyond=self.beyond,
-            last=last,
+            last=self.whole and horizon == len(self._symbols),
         )
-        self._horizon = horizon
-        self._bytes = 0
-        start = (self._ahead.narrowed(one) for one in self._start)
-        self.layers = [Layer(tuple(one for one in start if one))]
-        self._tried: list[dict[Place, list[_Tried]]] = [{} for _ in range(horizon + 1)]
+        self._horizon, self._built = horizon, self._required
         self.successors.reset()
-        return self._spending(self._explain)
+        if anew:
+            self._bytes = 0
+            start = (ahead.narrowed(one) for one in self._start)
+            self.layers = [Layer(tuple(one for one in start if one))]
+            self._tried: list[dict[Place, list[_Tried]]] = []
+        self._tried += [{} for _ in range(horizon + 1 - len(self._tried))]
+        ahead.required = self._required
+        if not anew:
+            self._drop_what_leads_nowhere()
+        self._stuck = 0
+        try:
+            found = self._spending(self._explain, budget)
+        finally:
+            self._stuck = max(self._stuck, len(self.layers) - 1)
+            self.reached = max(self.reached, min(self._stuck, horizon))
+        self._explained = horizon if found else None
+        return found
+
+    def _drop_what_leads_nowhere(self) -> None:
+        """Go back before the explanations that cannot lead to what is known now; only the last ones are looked at."""
+        layers, ahead = self.layers, self._ahead
+        for position in range(max(1, len(layers) - LOOK_BACK), len(layers)):
+            ahead.at = position
+            if not any(ahead.narrowed(one) for one in layers[position].explanations):
+                del layers[position:]
+                layers[-1].depends, layers[-1].withheld = UNCONSTRAINED, True
+                return
 
     def _spending_on_calls(self, horizon: int) -> bool:
         """The same for a window of calls alone. Raises OtherwiseError where something else can happen."""
         successors = self.successors
         budget = successors.budget
-        successors.budget = successors.limit = min(self._budget, self._memory // ENTRY)
+        successors.budget = successors.limit = min(self.budget, self._memory // ENTRY)
         successors.reset()
         try:
             self.layers = []
@@ -189,11 +249,11 @@ class Search:
             successors.budget = successors.limit = budget
         return False
 
-    def _spending(self, work: Callable[[], T]) -> T:
-        """Do some work on the budget of the search."""
+    def _spending(self, work: Callable[[], T], limit: int) -> T:
+        """Do some work on a budget of the search."""
         successors = self.successors
-        budget, successors.budget, successors.ahead = successors.budget, self._budget, self._ahead
-        successors.limit = self._budget
+        budget, successors.budget, successors.ahead = successors.budget, limit, self._ahead
+        successors.limit = limit
         try:
             return work()
         finally:
@@ -222,30 +282,23 @@ class Search:
             if found:
                 self._enter(found)
             else:
-                self.reached = max(self.reached, position)
+                self._stuck = max(self._stuck, position)
                 self._leave()
         return True
 
     def _next(self, here: Layer, position: int) -> tuple[Successor, ...]:
         """Some more explanations of the next event; none where there are no others."""
         ahead, tried, successors = self._ahead, self._tried[position + 1], self.successors
+        ahead.consulted, ahead.depends, ahead.withheld = 0, 0, False
         if not here.begun:
-            here.begun = True
-            kind, *what = self._symbols[position]
-            explains = self.transitions.beyond if position in self.beyond else self.transitions.explained
-            here.more = self._usual_first(here.explanations, explains(here.explanations, kind, *what))
-            if self._reckons_at(position):
-                here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
-        ahead.consulted = ahead.depends = 0
+            self._begin(here, position)
         self._entering: list[_Tried] = []
         found: list[Successor] = []
         begun = successors.spent
         try:
             while here.more is not None and not found:
                 for one in here.more:
-                    ahead.at = position + 1
-                    narrow = ahead.narrowed(one.explanation)
-                    ahead.at = position
+                    narrow = self._narrowed_behind(one.explanation, position)
                     if narrow and not self._outdone(tried, narrow):
                         self._remember(narrow)
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
@@ -262,7 +315,18 @@ class Search:
         finally:
             successors.limit = successors.budget
             here.depends |= ahead.depends
+            here.withheld |= ahead.withheld
         return prune(successors, found)
+
+    def _begin(self, here: Layer, position: int) -> None:
+        """Look at the next event from the beginning."""
+        here.begun = True
+        kind, *what = self._symbols[position]
+        explains = self.transitions.beyond if position in self.beyond else self.transitions.explained
+        before = [one for one in here.explanations if not self._ahead.withholds(one.assumed)]
+        here.more = self._usual_first(before, explains(before, kind, *what))
+        if self._reckons_at(position):
+            here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
 
     def _usual_first(self, before: Sequence[Explanation], found: Iterable[Successor]) -> Iterator[Successor]:
         """What was found, but first what every ambiguity may be read in its default way for, as far as before.
@@ -285,6 +349,16 @@ class Search:
                 off.clear()
                 begun = successors.spent
         yield from off
+
+    def _narrowed_behind(self, explanation: Explanation, position: int) -> Explanation | None:
+        """An explanation of an event, as far as it leads on; None where it does not."""
+        ahead = self._ahead
+        if ahead.withholds(explanation.assumed):
+            return None
+        ahead.at = position + 1
+        narrow = ahead.narrowed(explanation)
+        ahead.at = position
+        return narrow
 
     def _reckons_at(self, position: int) -> bool:
         """Whether something besides the system itself is asked for an event."""
@@ -327,6 +401,7 @@ class Search:
             if self.transitions.is_hopeless(*self._symbols[found], leniently=True):
                 break
             self.beyond.add(found)
+            self._explained = None
             found = self._first_unexplained()
         return found
 

@@ -21,6 +21,9 @@ def prune(successors: Successors, found: Iterable[Successor], focus: FocusOf | N
         found: the explanations.
         focus: what was observed, where what happens elsewhere is left to later observations.
     """
+    found = tuple(found)
+    if len(found) <= 1:
+        return found
     points: dict[Place, list[Successor]] = {}
     for successor in found:
         here = place_with_lost(successor.explanation)

@@ -242,9 +242,12 @@ class Successors:
     def meet(self, assumed: int, assumptions: Iterable[Assumption]) -> int:
         """What is assumed once these are assumed as well; 0 when that is contradictory."""
         assumptions = tuple(assumptions)
+        met = meet(assumed, assumptions)
         if self.ahead and assumptions:
             self.ahead.consult(assumed, assumptions)
-        return meet(assumed, assumptions)
+            if self.ahead.withholds(met):
+                return 0
+        return met
 
     def rely(self) -> None:
         """Something is left out since something else assumes no more."""
@@ -258,10 +261,10 @@ class Successors:
 
         The call `besides` does not need to: whoever looks for its answer looks at every explanation on the way.
         """
+        if self.ahead and step.assumes and not self.meet(explanation.assumed, step.assumes):
+            return None
         if explanation.calls and step.after is not explanation.state:
             explanation = self._remember(explanation, besides)
-        if self.ahead and step.assumes:
-            self.ahead.consult(explanation.assumed, step.assumes)
         passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
         return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)
 
@@ -272,11 +275,11 @@ class Successors:
         for call in explanation.calls:
             if call.done is None and call.name != besides:
                 known = tuple(dict.fromkeys((*call.ready, *self._idle_answers(explanation, call))))
-                if self.ahead and len(known) > 1:
-                    for one in known:
-                        self.ahead.consult(explanation.assumed, one.assumes)
-                    self.ahead.rely()
-                    known = _without_fussier(known, explanation.assumed)
+                if self.ahead and known:
+                    known = tuple(one for one in known if self.meet(explanation.assumed, one.assumes))
+                    if len(known) > 1:
+                        self.ahead.rely()
+                        known = _without_fussier(known, explanation.assumed)
                 if known != call.ready:
                     call = InFlight(call.name, call.request, call.args, known, call.done)  # noqa: PLW2901 - the same call, knowing more
             calls.append(call)

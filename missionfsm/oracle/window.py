@@ -38,6 +38,7 @@ class Window:
         self._lookout = belief.lookout()
         self._latest = belief.latest
         self._symbols: list[Symbol] = []
+        self._search: Search | None = None
         self.positions: list[int] = []
         self.events: list[Event] = []
 
@@ -57,14 +58,14 @@ class Window:
         """
         waiting = {call.name: call.request for one in self._belief.node.explanations for call in one.calls}
         for kind, *what in self._symbols:
-            if kind is Called:
+            if kind is Called and not what[2]:
                 waiting[what[3]] = what[0]
             elif kind is Returned:
                 waiting.pop(what[2], None)
         return frozenset(call for call, request in waiting.items() if not self._streams(request))
 
     def search(self, lost: frozenset[int] | None = None) -> Search:
-        """A search through the window; it has not begun yet.
+        """A search through the window, which goes on with what came since it was last asked for.
 
         Args:
             lost: where no further events come, the numbers of the calls that are never answered.
@@ -75,10 +76,12 @@ class Window:
             symbols = [(*one[:3], True, one[4]) if one[0] is Called and one[4] in lost else one for one in symbols]
         least, each = (FIRST, MORE) if lost is None else (WINDOW_BUDGET, EACH)
         budget = least + each * len(symbols)
-        search = Search(
-            self._belief.automaton.transitions, start, symbols, self._latest, budget, self._belief.automaton.memory
-        )
-        search.whole = lost is not None
+        search = None if lost else self._search
+        if search is None or search.calls_alone:
+            transitions, memory = self._belief.automaton.transitions, self._belief.automaton.memory
+            search = Search(transitions, start, symbols, self._latest, budget, memory)
+        search.budget, search.whole = budget, lost is not None
+        self._search = None if lost else search
         return search
 
     def _streams(self, request: object) -> bool:

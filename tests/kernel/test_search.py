@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -46,10 +47,16 @@ def explained(automaton: Automaton, world: object, events: list[history.Event]) 
     return all(belief.observe(event) for event in events)
 
 
-def searched(belief: Belief, events: list[history.Event], width: int, *, whole: bool) -> tuple[Window, Search]:
-    """A window of events, searched."""
+def searched(
+    belief: Belief, events: list[history.Event], width: int, *, whole: bool, before: Iterable[int] = ()
+) -> tuple[Window, Search]:
+    """A window of events, to be searched; before so many of them come, it is searched up to there."""
     window = Window(belief)
-    for event in events:
+    for at, event in enumerate(events):
+        if at in before:
+            earlier = window.search()
+            earlier.width = width
+            earlier.first_unexplained()
         window.add(event)
     search = window.search(window.unanswered if whole else None)
     search.width = width
@@ -61,12 +68,12 @@ def compare(alphabet: Alphabet, automaton: Automaton, data: st.DataObject) -> No
     world, *events = walked(alphabet, automaton, data, 12)
     cut = data.draw(st.integers(0, len(events)))
     width = data.draw(st.sampled_from([1, 2, 16]))
-    whole = data.draw(st.booleans())
+    whole, earlier = data.draw(st.booleans()), data.draw(st.sets(st.integers(0, 12), max_size=2))
     alone, before = Belief(automaton, world), Belief(automaton, world)
     right = next((position for position, event in enumerate(events) if not alone.observe(event)), None)
     if not all(before.observe(event) for event in events[:cut]):
         return
-    window, search = searched(before, events[cut:], width, whole=whole)
+    window, search = searched(before, events[cut:], width, whole=whole, before=earlier)
     found = search.first_unexplained()
     assert (events, None if found is None else cut + window.positions[found]) == (events, right)
     if right is None:
@@ -79,7 +86,10 @@ def compare(alphabet: Alphabet, automaton: Automaton, data: st.DataObject) -> No
 
 @pytest.mark.parametrize("alphabet", ALPHABETS, ids=lambda one: one.name)
 def test_a_search_finds_what_the_belief_finds(alphabet: Alphabet) -> None:
-    """A window that is searched has its first unexplained event where the belief has it; no reading is lost."""
+    """A window that is searched has its first unexplained event where the belief has it; no reading is lost.
+
+    So it is where the search goes on with events that come later.
+    """
     automaton = Automaton(alphabet.spec, alphabet.driven)
 
     @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))

@@ -1,18 +1,20 @@
 """What a later status message tells of a robot before it: where a search through a recording need not look.
 
 Whatever happens to a robot, the missions that it lists keep their order. Those that have ended are forgotten together,
-before those that wait; those that wait vanish together, after all others, and only where a mission has failed or was
-cancelled, or a workflow takes their place. What is new comes last; only a charge may come before missions that wait,
-and nothing before one that has started. No call makes a mission that is there already or moves one that has ended.
+before those that wait, and only by a call that clears the list or makes missions; those that wait vanish together,
+after all others, and only where a mission has failed or was cancelled, or a workflow takes their place. What is new is
+made by a call and comes last; only a charge may come before missions that wait, and nothing before one that has
+started. No call makes a mission that is there already or moves one that has ended.
 """
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 
 from attrs import frozen
 
 from missionfsm.bear.mission.inputs import Request
+from missionfsm.bear.mission.readings import AM_13
 from missionfsm.bear.mission.state import Kind, Mission, Robot
 from missionfsm.bear.mission.stream import Seen, has_goals
 from missionfsm.bear.wire.messages import MissionState, State
@@ -24,13 +26,13 @@ _CHARGE = Mission(Kind.CHARGE)
 
 
 def foresees(
-    robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: Container[str]
+    robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: frozenset[str]
 ) -> bool:
     """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
     if isinstance(content, Malformed) or not all(content.named):
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
-    return later.all_kept() or later.some_forgotten()
+    return later.all_kept() or (not calls.isdisjoint(_FORGETS) and later.some_forgotten())
 
 
 def succeeds(
@@ -58,6 +60,9 @@ _MAKES = frozenset(
 )
 """Operations that are answered with the names of new missions."""
 
+_FORGETS = frozenset({"ClearMissionStatus", *AM_13})
+"""Operations that may make a robot forget missions that have ended."""
+
 
 @frozen
 class _Later:
@@ -67,7 +72,7 @@ class _Later:
     names: tuple[int, ...]
     missions: Sequence[MissionState]
     shown: tuple[int, ...]
-    calls: Container[str]
+    calls: frozenset[str]
 
     def all_kept(self) -> bool:
         """Whether the message may list everything that has started, before all else."""
@@ -147,7 +152,8 @@ class _Later:
 
     def _end_here(self, name: int, place: int, *, survived: bool) -> bool:
         """Whether those from a name on may have vanished, and what is listed from a place on be new."""
-        if not all(map(self._is_new, range(place, len(self.shown)))):
+        new = range(place, len(self.shown))
+        if new and (self.calls.isdisjoint(_MAKES) or not all(map(self._is_new, new))):
             return False
         if name == len(self.names) or not survived:
             return True

@@ -31,7 +31,7 @@ from missionfsm.kernel.step import Emission, Mismatch, Step
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import head
-from missionfsm.tools.check.explain import ACCUSED
+from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import Plan, conform
@@ -372,7 +372,7 @@ RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.ro
 def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
     """Of a sample of mutants: each violation names one to three rules, the one that was broken among them."""
     found = list(accusations(systems.system(name), every=SAMPLED[name], first=2))
-    assert [str(one) for one in found if not 1 <= len(one.violation.rules) <= ACCUSED] == []
+    assert [str(one) for one in found if not 1 <= len(one.violation.rules) <= MAX_RULES] == []
     assert [str(one) for one in found if not one.is_right(systems.system(name))] == []
     assert found
 
@@ -382,7 +382,7 @@ def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
 def test_most_violations_name_the_rule_that_is_broken(name: str) -> None:
     """Of many mutants no violation names more than three rules, and most name the one that was broken."""
     found = list(accusations(systems.system(name), every=MANY[name], conversations=8))
-    assert [str(one) for one in found if len(one.violation.rules) > ACCUSED] == []
+    assert [str(one) for one in found if len(one.violation.rules) > MAX_RULES] == []
     wrong = [str(one) for one in found if not one.is_right(systems.system(name))]
     assert len(wrong) <= (1 - RIGHT[name]) * len(found), wrong
 
@@ -448,7 +448,7 @@ def test_every_case_that_violates_names_a_rule() -> None:
         verdict = check(systems.system(first["system"]), head(first), lines)
         if verdict.violation is not None:
             named[path.name] = len(verdict.violation.rules)
-    assert {name: rules for name, rules in named.items() if not 1 <= rules <= ACCUSED} == {}
+    assert {name: rules for name, rules in named.items() if not 1 <= rules <= MAX_RULES} == {}
     assert named
 
 

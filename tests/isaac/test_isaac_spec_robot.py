@@ -45,7 +45,8 @@ def passes(seconds: float) -> Any:
 
 def judged(*lines: Any) -> Verdict:
     """The verdict on a history of a robot whose drives are all commanded."""
-    head = Head("isaac.robot", {}, ("line", "behaviorSucceeded", "behaviorFailed", "advance"))
+    drives = ("line", "behaviorSucceeded", "behaviorFailed", "advance", "disconnect", "connect")
+    head = Head("isaac.robot", {}, drives)
     return check(ROBOT, head, lines)
 
 
@@ -104,6 +105,27 @@ def test_what_is_wrong_is_said_by_its_rule(lines: tuple[Any, ...], rule: str) ->
 def test_what_no_reading_allows(lines: tuple[Any, ...]) -> None:
     """Reports without a mission, after its end, before it, about another, or none at all."""
     assert not judged(*lines).conforms
+
+
+DROPPED, BACK = {"drive": {"event": "disconnect"}}, {"drive": {"event": "connect"}}
+
+
+@pytest.mark.parametrize(
+    ("lines", "readings"),
+    [
+        ((DROPPED, passes(1), BACK, passes(1), says("failure")), {"AI-15.mission": ("c",), "AI-15.status": ("b",)}),
+        ((DROPPED, SUCCEEDED, BACK, passes(1), says("success")), {"AI-15.status": ("a", "b")}),
+        ((DROPPED, SUCCEEDED, passes(1), BACK, passes(1), says("success")), {"AI-15.status": ("b",)}),
+        ((SUCCEEDED, DROPPED, BACK, passes(1), says("success")), {"AI-31.end": ("b",)}),
+    ],
+    ids=["fails with it", "not due yet", "due and kept", "drops before it is due"],
+)
+def test_what_is_due_while_there_is_no_connection(lines: tuple[Any, ...], readings: dict[str, tuple[str, ...]]) -> None:
+    """It is lost or kept once it is due; where no time has passed, nobody knows. A mission may fail with it."""
+    verdict = judged(arrives(ONE), *lines, SETTLED)
+    assert verdict.conforms, verdict
+    followed = {name: verdict.readings.get(name, ("a", "b")) for name in readings}
+    assert followed == readings
 
 
 def test_an_integer_that_is_a_number_is_told_by_its_place() -> None:

@@ -163,8 +163,10 @@ def _unconnected(
     yield Step(evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(AI_15_STATUS["a"],))
     reports = tuple(_waits(here, one) for one in due)
     names = (*before, *_names_in(due), *runs)
-    kept = evolve(after, waiting=(*here.waiting, *reports))
-    yield Step(kept, names=names, rules=ids, assumes=(AI_15_STATUS["b"],))
+    kept = Step(evolve(after, waiting=(*here.waiting, *reports)), names=names, rules=ids)
+    yield evolve(kept, assumes=(AI_15_STATUS["b"],))
+    # What waits for the codelet's tick is not due before that: whether it is lost shows only where time passes.
+    yield evolve(kept, assumes=tuple(one.when["b"] for one in due[:1]))
 
 
 # Lines.
@@ -289,7 +291,7 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
 def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
     """Time passes: what has to be said within a bound was said by now, or may have been."""
     if not here.connected:
-        return (Step(here),)
+        return tuple(_awaits(here, event.time))
     starts: tuple[Step, ...] = (Step(here),)
     if here.waiting:
         # What waits is sent in this time, or waits on.
@@ -298,6 +300,18 @@ def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
             starts += (Step(evolve(here, waited=here.waited + event.time)),)
     reported = (step for start in starts for step in _reports(start, _old(here), event.time))
     return tuple(step for one in reported for step in _introduces(one, event.time))
+
+
+def _awaits(here: Codelet, time: int) -> Iterator[Step]:
+    """Time passes without a connection: what waits becomes due, and is lost or kept, or waits for the tick."""
+    if not here.waiting:
+        yield Step(here)
+        return
+    lost = evolve(here, waiting=(), waited=0)
+    yield Step(lost, names=here.mission, rules=(rules.LINKED.id,), assumes=(AI_15_STATUS["a"],))
+    yield Step(here, rules=(rules.LINKED.id,), assumes=(AI_15_STATUS["b"],))
+    if here.waited + time < TICK:
+        yield Step(evolve(here, waited=here.waited + time))
 
 
 def _reports(step: Step, about: int | None, time: int) -> Iterator[Step]:
@@ -335,12 +349,13 @@ def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
     if not here.connected:
         return ()
     gone = Step(evolve(here, connected=False), clears=(STATUSES, NAMES), rules=(rules.LINKED.id,))
-    ways = (evolve(gone, assumes=(AI_15_STATUS["b"],)), _forgetful(gone)) if here.waiting else (gone,)
+    ways = (gone, _forgetful(gone)) if here.waiting else (gone,)
     if not here.running:
         return ways
     return (
         *(evolve(way, assumes=(*way.assumes, AI_15_MISSION["a"])) for way in ways),
         *(_given_up(way) for way in ways),
+        _failed(gone),
     )
 
 
@@ -357,6 +372,15 @@ def _given_up(gone: Step) -> Step:
     names = tuple(range(here.identifiers - len(here.mission)))
     after = moved(here, "the connection drops")
     return evolve(gone, after=after, names=names, assumes=(*gone.assumes, AI_15_MISSION["b"]))
+
+
+def _failed(gone: Step) -> Step:
+    """The mission that runs fails with the connection, and its FAILURE waits with what waits (AI-15.mission c)."""
+    here: Codelet = gone.after
+    failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False)
+    after = evolve(moved(here, "the connection drops"), waiting=(*here.waiting, failure))
+    names = tuple(range(here.identifiers))
+    return evolve(gone, after=after, names=names, assumes=(AI_15_STATUS["b"], AI_15_MISSION["c"]))
 
 
 def _connected(here: Codelet) -> Step:

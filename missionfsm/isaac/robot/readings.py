@@ -15,7 +15,11 @@ AI_10 = Ambiguity(
 AI_15_MISSION = Ambiguity(
     "AI-15.mission",
     "What becomes of the mission that runs when the robot's connection drops?",
-    {"a": "it goes on", "b": "it is given up without a word"},
+    {
+        "a": "it goes on",
+        "b": "it is given up without a word",
+        "c": "it fails, which is told once the connection is there again",
+    },
     default="a",
 )
 AI_15_STATUS = Ambiguity(

@@ -34,7 +34,7 @@ LIFECYCLE: Chart[str] = Chart(
     {
         "an unusable mission arrives": "AI-33.unusable, AI-33.preempts a",
         "an unusable mission is passed over": "AI-33.preempts b",
-        "the connection drops": "AI-15.mission b",
+        "the connection drops": "AI-15.mission b, c",
     },
 )
 """Whether a behavior tree runs."""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, covers, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, meet
 from missionfsm.kernel.spec import Failure, Spec
 from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
 from missionfsm.kernel.terms import Refs, Request, State
@@ -509,7 +509,7 @@ class Successors:
             key = (self.ahead.state(explanation), *key[1:])
         others = seen.setdefault(key, [])
         for assumed, left in others:
-            if covers(assumed, explanation.assumed) and within(explanation.lost, left):
+            if explanation.assumed | assumed == assumed and within(explanation.lost, left):
                 if self.ahead and self.ahead.consulted & ~assumed:
                     self.ahead.rely()
                 return True

@@ -1,5 +1,5 @@
 """The Bear API over gRPC: descriptors at run time, the reference as a server, a server as a subject, a proxy between.
 
-May import kernel, app's live reference and the table of the wire; needs the extra ``grpc``. Begin with `descriptors`:
-everything else speaks in its messages.
+They import the kernel and the messages of `missionfsm.bear.wire`, and need the extra ``grpc``. Begin with
+`descriptors`: everything else speaks in its messages.
 """

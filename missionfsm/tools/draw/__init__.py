@@ -1,4 +1,5 @@
 """Drawing a system: lifecycles, quotients of the state space and task graphs, in seven formats.
 
-It imports the kernel and `missionfsm.tools.explore`. Begin with `missionfsm.tools.draw.gallery`.
+It imports the kernel, and of the tools `explore`, `check`, `reference` and the placeholders. Begin with
+`missionfsm.tools.draw.gallery`.
 """

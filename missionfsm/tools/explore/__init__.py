@@ -1,4 +1,5 @@
 """Walking through all states of a small world.
 
-It imports the kernel and the placeholders. Begin with `missionfsm.tools.explore.explore`.
+It imports the kernel, the oracle, and of the tools `check`, `reference` and the placeholders. Begin with
+`missionfsm.tools.explore.explore`.
 """

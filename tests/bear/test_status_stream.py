@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import pytest
@@ -440,6 +441,18 @@ def test_a_location_that_gains_a_robot_may_show_it_or_not(letter: str, shown: bo
         SETTLED,
     ]
     assert readings(judge(lines), "AS-25") == (letter,)
+
+
+@pytest.mark.parametrize("shown", ["STATE_UNKNOWN", "STATE_DISCONNECTED"])
+def test_a_robot_that_joins_a_location_is_shown_as_a_new_stream_would_show_it(shown: str) -> None:
+    """AS-09, AS-25: of a robot that never said that it is connected a stream that it joins may show that it is not."""
+    never = copy.deepcopy(WORLDS[0])
+    never["robots"][2]["state"].pop("connection", None)
+    there = online_message(1, r1=(1, "STATE_CONNECTED"), r2=(1, "STATE_CONNECTED"))
+    lines = [*opened(1, ONLINE, at("L1")), there, MOVED]
+    assert conforms(*lines, online_message(1, r3=(1, shown)), SETTLED, world=never)
+    assert conforms(*lines, SETTLED, world=never)
+    assert not conforms(*lines, online_message(1, r3=(1, "STATE_CONNECTED")), SETTLED, world=never)
 
 
 def test_a_location_that_loses_a_robot_may_go_on_showing_it_or_not() -> None:

@@ -358,6 +358,10 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     early = sure or EITHER in invalid
     about = dict.fromkeys(ambiguity for _, ambiguity in forbidding)
     yield INVALID_ARGUMENT, tuple(one["a", "c"] if early and "c" in one.readings else one["a"] for one in about)
+    # AM-41: what is told by the family of the robot is neither the format nor the state of its missions.
+    if FORM not in invalid:
+        either = (one for one in holding if one.kind == EITHER and one.code != INVALID_ARGUMENT)
+        yield from ((code, ()) for code in _codes(either))
     for code, one in forbidding:
         yield code, (one["b"] if sure or "c" not in one.readings else one["b", "c"],)
 

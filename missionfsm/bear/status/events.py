@@ -40,7 +40,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import UPDATES
 from missionfsm.bear.status.values import clamped
-from missionfsm.bear.status.views import About, Assumed, View, blank, each, view
+from missionfsm.bear.status.views import BLANK, About, Assumed, View, blank, each, view
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.terms import Refs
@@ -282,17 +282,27 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     if after.location == robot.location:
         return (Step(fleet, label="move"),)
     emits = tuple(
-        Emission(
-            About(endpoint, after.id, after.location, followed=True), shown, (), AS_25[endpoint.value]["b"], stays=True
-        )
+        Emission(About(endpoint, after.id, after.location, followed=True), shown, (), only, stays=True)
         for endpoint in Endpoint
-        if robot.owned and (shown := _anything(fleet, after, endpoint))
+        if robot.owned
+        for shown, only in _joining(fleet, after, endpoint)
     )
     return (Step(fleet.put(after), emits=emits, label="move"),)
 
 
-def _anything(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> View | None:
-    return View(robot.id, endpoint, unheard=True) if fleet.unheard else view(robot, endpoint)
+def _joining(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator[tuple[View, Assumption]]:
+    """What a stream of a location may show of a robot that has come: what a new one could begin with (AS-09)."""
+    followed = AS_25[endpoint.value]["b"]
+    if fleet.unheard:
+        yield View(robot.id, endpoint, unheard=True), followed
+        return
+    shown = view(robot, endpoint)
+    if shown:
+        yield shown, followed
+    if endpoint in BLANK and (shown is None or robot.offline):
+        yield blank(robot, endpoint), AS_18[endpoint.value]["b"] if endpoint is Endpoint.NAVIGATION else followed
+    if endpoint is Endpoint.ONLINE and shown is None:
+        yield View(robot.id, endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED)), followed
 
 
 def armed(fleet: Fleet, _: Event, __: Refs) -> tuple[Step, ...]:

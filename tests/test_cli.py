@@ -144,6 +144,7 @@ def test_the_built_in_reference_conforms(command_line: CommandLine) -> None:
     assert ended.out.startswith("conforms in part: bear.mission missionfsm reference 1, ")
 
 
+@pytest.mark.long
 def test_an_adapter_that_refuses_everything_is_inconclusive(command_line: CommandLine, tmp_path: Path) -> None:
     """An adapter that answers every call with a documented failure proves nothing: inconclusive, status 1."""
     path = tmp_path / "adapter.py"
@@ -169,7 +170,7 @@ def test_a_robot_that_does_nothing_is_inconclusive(
     assert told == (1, "inconclusive", None, "nothing was exercised")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_recorded_is_judged_alike(command_line: CommandLine, tmp_path: Path) -> None:
     """The history that ``conform --record`` writes is one that ``check`` finds the same violation in."""
     log = tmp_path / "violation.jsonl"

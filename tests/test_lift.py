@@ -12,7 +12,7 @@ import pytest
 LIFT = Path(__file__).parent.parent / "examples" / "lift"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_its_own_tests_pass(tmp_path: Path) -> None:
     """Installed like any package, the lift is known by name, its building conforms, and all nine bugs are found."""
     about = tmp_path / "lift-0.dist-info"

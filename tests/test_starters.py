@@ -58,7 +58,9 @@ LANGUAGES: dict[str, tuple[Callable[[Path], list[str]], str, Path | None]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize(
+    "language", [pytest.param(one, marks=pytest.mark.long) if one in ("rust", "java") else one for one in LANGUAGES]
+)
 def test_a_starter_conforms(language: str, tmp_path: Path) -> None:
     """Where its toolchain is installed, a starter is built and conforms, and nothing about it is flagged."""
     command, program, library = LANGUAGES[language]

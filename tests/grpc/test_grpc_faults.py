@@ -79,7 +79,7 @@ async def subscribe_all(robot: Served, streams: int) -> int:
         return len({decode(SUBSCRIBE.response, one)["metadata"]["sequenceNumber"] for one in messages})
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_thousand_subscribers_see_one_event_and_are_forgotten() -> None:
     """A thousand streams at once are served, see the event under one number, and are given up when they go."""
     with serve("bear.mission") as robot:

@@ -167,7 +167,7 @@ def test_a_robot_that_comes_back_while_it_is_stopped(monkeypatch: pytest.MonkeyP
 # Servers.
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_server_that_ships_with_its_file(command_line: CommandLine, diamond: Path, port: int) -> None:
     """`missionfsm dispatch` conforms, started anew with its file for every conversation."""
     server = (*MISSIONFSM, "dispatch", diamond, "--host", "127.0.0.1", "--port", port)
@@ -178,7 +178,7 @@ def test_the_server_that_ships_with_its_file(command_line: CommandLine, diamond:
     assert f"a tolerance of {TOLERANCE} s" in ended.out
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_server_with_another_file(command_line: CommandLine, diamond: Path, tmp_path: Path, port: int) -> None:
     """A server that was given other missions than the oracle is found out by what it sends."""
     other = tmp_path / "other.json"
@@ -194,7 +194,7 @@ def test_a_server_with_another_file(command_line: CommandLine, diamond: Path, tm
     assert "the configuration is" in again.out
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("broken", "status"), [((), 0), (("--eager",), 1)], ids=["right", "eager"])
 def test_a_server_with_an_adapter(
     command_line: CommandLine, port: int, broken: tuple[str, ...], *, status: int

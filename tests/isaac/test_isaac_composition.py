@@ -191,7 +191,11 @@ def test_forklifts_and_arm() -> None:
     assert outcomes == (bringing - {(done, done, canceled, canceled, canceled)}) | leaving | arm
 
 
-@pytest.mark.parametrize("profile", [DOCUMENTED, attrs.evolve(DOCUMENTED, ai_12="b", ai_10="b")], ids=["a", "strict"])
+@pytest.mark.parametrize(
+    "profile",
+    [DOCUMENTED, pytest.param(attrs.evolve(DOCUMENTED, ai_12="b", ai_10="b"), marks=pytest.mark.long)],
+    ids=["a", "strict"],
+)
 def test_lost_connections(profile: Profile) -> None:
     """Connections that drop at any moment make no mission run twice or early, and everything still ends."""
     plan: Plan = (("r1", ()), ("r2", (0,)), ("r1", ()))

@@ -107,7 +107,7 @@ def test_independent_robots_do_not_multiply() -> None:
     assert widest(done(12)) <= 2 * widest(done(3))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_eleven_missions_whose_times_are_measured_stay_few() -> None:
     """As over TCP, where every time may be off: three robots with eleven missions that wait for one another."""
     assert widest(eleven(), {"tolerance": 0.3}) < 250

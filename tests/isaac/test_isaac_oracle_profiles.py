@@ -163,7 +163,11 @@ def test_the_known_fault_is_named_with_the_upstream_rule() -> None:
         assert "isaac.server/dependencies/a-failed-upstream-cancels" in [one.id for one in verdict.violation.rules]
 
 
-@pytest.mark.parametrize("late", [{}, {"ai_03_when": "q", "scheduling_period": 1.0}], ids=["at once", "in a pass"])
+@pytest.mark.parametrize(
+    "late",
+    [{}, pytest.param({"ai_03_when": "q", "scheduling_period": 1.0}, marks=pytest.mark.long)],
+    ids=["at once", "in a pass"],
+)
 def test_the_known_fault_is_found_in_a_short_story(late: dict[str, Any]) -> None:
     """The tester finds it under documented and names the upstream's rule, whenever the cancellation comes."""
     faulty = ServerSubject(attrs.evolve(DOCUMENTED, started_upstream_fails=True, **late))

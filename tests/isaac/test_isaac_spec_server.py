@@ -185,7 +185,7 @@ def shipped() -> dict[str, Verdict]:
     """The verdicts on the server that ships, under both profiles."""
     profiles = {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
     return {
-        name: conform(SERVER, ServerSubject(profile), plan=Plan(4, 4, 40, 20), seed=1)
+        name: conform(SERVER, ServerSubject(profile), plan=Plan(4, 4, 40, 20, 0), seed=1)
         for name, profile in profiles.items()
     }
 
@@ -288,6 +288,7 @@ def uncaught(names: Iterable[str]) -> list[str]:
     return survived
 
 
+@pytest.mark.long
 @needs_node
 def test_breaks_of_the_independent_server_are_caught() -> None:
     """What the Node.js server does wrong on purpose no reading explains; the scripts suffice to find it."""
@@ -310,6 +311,7 @@ UNDER_OTHER_READINGS = ("a-key-is-unknown", "a-channel-is-empty", "the-configura
 """Reasons to refuse that the default readings do not know."""
 
 
+@pytest.mark.long
 def test_every_state_of_two_missions_and_one_connection() -> None:
     """Under the default readings every status is reached, every invariant holds, and every reason to refuse matters."""
     found = explore(SERVER, Bounds(2), assumed=choose(SERVER.spec.ambiguities))

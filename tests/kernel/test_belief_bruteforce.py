@@ -223,7 +223,7 @@ def test_the_belief_accepts_what_brute_force_accepts(alphabet: Alphabet) -> None
     """On every event that could come next, at every point of a history, the belief decides as brute force does."""
     automaton = Automaton(alphabet.spec, alphabet.driven)
 
-    @settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+    @settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
     @given(st.data())
     def compare(data: st.DataObject) -> None:
         check(alphabet, automaton, data)

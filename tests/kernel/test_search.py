@@ -92,7 +92,7 @@ def test_a_search_finds_what_the_belief_finds(alphabet: Alphabet) -> None:
     """
     automaton = Automaton(alphabet.spec, alphabet.driven)
 
-    @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+    @settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
     @given(st.data())
     def run(data: st.DataObject) -> None:
         compare(alphabet, automaton, data)

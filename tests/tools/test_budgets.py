@@ -184,7 +184,7 @@ def test_what_only_comes_later_does_not_come_and_go(seed: int) -> None:
 @pytest.mark.slow
 def test_a_run_may_be_stopped_at_any_time() -> None:
     """Wherever a run is broken off, also where a conversation drawn alike went on, it ends in a verdict."""
-    for steps in range(290, 600, 10):
+    for steps in range(290, 600, 30):
         asked = itertools.count()
         verdict = conform(
             LAMP,

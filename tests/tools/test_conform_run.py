@@ -100,7 +100,7 @@ def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     assert verdict.to_json()["coverage"]["rare"] == verdict.rare
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rule", "readings", "why"),
     [

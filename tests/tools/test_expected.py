@@ -29,7 +29,7 @@ def judged(subject: Subject, *expected: str) -> Verdict:
     return conform(MISSION, subject, examples=2, tours=18, steps=20, seed=2, expected=expected, advice=False)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_search_goes_on_after_a_violation_that_is_known() -> None:
     """It ends well, has had all its conversations, and says how often it met the violation."""
     verdict = judged(answering("NOT_FOUND", BUSY), BUSY)
@@ -47,7 +47,7 @@ def test_another_violation_is_found_behind_one_that_is_known() -> None:
     assert EMPTY in [rule.id for rule in verdict.violation.rules]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_expectation_that_is_not_met_fails_the_run() -> None:
     """An implementation that does right by now has to be taken off the list."""
     verdict = judged(answering("NOT_FOUND", BUSY), BUSY, NEVER)

@@ -237,6 +237,7 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     assert (page.count("2 lines that both begin with"), page.count("Here the conversations part:")) == (1, 1)
 
 
+@pytest.mark.long
 def test_a_violation_is_recorded_in_the_form_that_is_asked_for(tmp_path: Path, command_line: CommandLine) -> None:
     """A history that `check` reads, a pytest function, a sequence diagram: by the name of the file."""
     for name in ("found.jsonl", "test_found.py", "found.mmd"):

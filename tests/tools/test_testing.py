@@ -140,7 +140,7 @@ def test_an_adapter_that_fails_is_said_to(tmp_path: Path) -> None:
     assert (run.status, "the adapter failed: " in run.out, "Traceback" in run.out) == (1, True, False)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_known_to_be_broken_does_not_fail(suites: Run) -> None:
     """It is expected to fail; known of something that is not broken, it fails the test of everything."""
     assert suites.outcome("TestKnown::test_operation[CreateMission]") == "XFAIL"

@@ -135,15 +135,9 @@ def _of_file(path: str) -> Picture:
 
 def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
     """Write one picture: the whole of it, but as an SVG, which of what is too much for one picture has the parts."""
-    from missionfsm.tools.draw.gallery import SVG  # noqa: PLC0415 - commands load what they need
-
     asked = shown
     if len(shown) > 1:
-        wholes = {(one.system, one.name) for one in shown}
-        drawn = (
-            one for one in shown if (not one.divided if forms == (SVG,) else (one.system, one.whole) not in wholes)
-        )
-        shown = tuple(drawn)
+        shown = _drawn(shown, forms)
     if len(shown) != 1 or len(forms) != 1:
         ids = ", ".join(picture.id for picture in shown)
         whole = next((one for one in asked if one.divided), None)
@@ -157,6 +151,16 @@ def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
     if text is None:
         stop(_no_machine(shown[0], forms[0]), BAD_INPUT)
     say(text.rstrip("\n"))
+
+
+def _drawn(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> tuple[Picture, ...]:
+    """Of pictures and their parts the parts where an SVG is asked for, else the wholes."""
+    from missionfsm.tools.draw.gallery import SVG  # noqa: PLC0415 - commands load what they need
+
+    if forms == (SVG,):
+        return tuple(one for one in shown if not one.divided)
+    wholes = {(one.system, one.name) for one in shown}
+    return tuple(one for one in shown if (one.system, one.whole) not in wholes)
 
 
 def _no_machine(shown: Picture, form: str) -> str:

@@ -357,13 +357,23 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     sure = not invalid.isdisjoint((FORM, SHAPE))  # of EITHER nobody knows whether it is noticed so early
     early = sure or EITHER in invalid
     about = dict.fromkeys(ambiguity for _, ambiguity in forbidding)
-    yield INVALID_ARGUMENT, tuple(one["a", "c"] if early and "c" in one.readings else one["a"] for one in about)
-    # AM-41: what is told by the family of the robot is neither the format nor the state of its missions.
+    yield INVALID_ARGUMENT, tuple(_format_first(one, early=early) for one in about)
     if FORM not in invalid:
-        either = (one for one in holding if one.kind == EITHER and one.code != INVALID_ARGUMENT)
-        yield from ((code, ()) for code in _codes(either))
+        yield from _of_the_family(holding)
     for code, one in forbidding:
         yield code, (one["b"] if sure or "c" not in one.readings else one["b", "c"],)
+
+
+def _format_first(ambiguity: Ambiguity, *, early: bool) -> Assumption:
+    """The readings of a part of AM-01 under which a format that is looked at so early comes before the state."""
+    return ambiguity["a", "c"] if early and "c" in ambiguity.readings else ambiguity["a"]
+
+
+def _of_the_family(holding: tuple[Rule, ...]) -> Ranked:
+    """AM-41: what is told by the family of the robot is neither the format nor the state of its missions."""
+    yield from (
+        (code, ()) for code in _codes(one for one in holding if one.kind == EITHER and one.code != INVALID_ARGUMENT)
+    )
 
 
 def _forbidding(operation: str, holding: tuple[Rule, ...]) -> Iterator[tuple[str, Ambiguity]]:

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Sequence
 from missionfsm.kernel.history import Returned
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK, Rule
+from missionfsm.kernel.step import Step
 from missionfsm.oracle.explanation import Explanation, InFlight, Ready
 from missionfsm.tools.check.candidates import Candidate
 from missionfsm.tools.check.nearest import Nearest
@@ -90,13 +91,9 @@ def _held_last(nearest: Nearest, event: Returned, reasons: Sequence[Rule]) -> li
         return []
     ids = {rule.id for rule in reasons}
     for _, node in belief.walked:
-        held = {
-            rule
-            for here in node.explanations[:MAX_LOOKED_AT]
-            for step in successors.outcomes(here.state, request, ())
-            if step.answer is not None and step.answer.code == event.answer.code
-            for rule in step.rules
-        }
+        looked_at = node.explanations[:MAX_LOOKED_AT]
+        steps = (step for here in looked_at for step in successors.outcomes(here.state, request, ()))
+        held = _rules_of(steps, event.answer.code)
         if held & ids:
             return [rule for rule in reasons if rule.id in held]
     return []
@@ -111,14 +108,17 @@ def _held_of_another(nearest: Nearest, event: Returned, reasons: Sequence[Rule])
         own = successors.refs(here, call.args)
         for ref in (*range(len(here.names)), None):
             steps = successors.outcomes(here.state, call.request, (ref,)) if (ref,) != own else ()
-            possible = (step for step in steps if meet(here.assumed, step.assumes))
-            given = (step for step in possible if step.answer is not None and step.answer.code == event.answer.code)
-            would = {rule for step in given for rule in step.rules}
+            would = _rules_of((step for step in steps if meet(here.assumed, step.assumes)), event.answer.code)
             found = [rule for rule in reasons if rule.id in would]
             if found:
                 name = None if ref is None else nearest.belief.name(here.names[ref])
                 return found, "an unknown name" if name is None else name_words(name)
     return [], ""
+
+
+def _rules_of(steps: Iterable[Step], code: str) -> set[str]:
+    """The rules by which steps are answered with a code."""
+    return {rule for step in steps if step.answer is not None and step.answer.code == code for rule in step.rules}
 
 
 def _asking(nearest: Nearest, event: Returned) -> list[tuple[Explanation, InFlight]]:

@@ -19,7 +19,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import Incident, Refs, Request
+from missionfsm.kernel.terms import Incident, Refs, Request, State
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.successors import Successors
 from missionfsm.tools.conform.actions import CANCEL, Bindings, NameRef
@@ -112,7 +112,7 @@ class Guide:
         self.visited: Counter[Hashable] = Counter()
         self._edges: dict[Any, tuple[Edge, Hashable] | None] = {}
         self._growth: dict[Any, int] = {}
-        self._idle: dict[Hashable, tuple[str, tuple[str, ...]]] = {}
+        self._idle: dict[Hashable, Edge] = {}
 
     def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
         """The calls of each operation; those that are the same request in other words only once."""
@@ -249,21 +249,25 @@ class Guide:
                 return (self._where(here, shape, []), *self._idle[idle]), shape
         key = (here.state if exact else shape, request, places)
         if key not in self._edges:
-            successors = conversation.judge.automaton.successors
-            steps = [
-                step for step in successors.outcomes(here.state, request, refs) if meet(here.assumed, step.assumes)
-            ]
-            operation = self.system.spec.request_operation(request)
-            says = tuple(sorted({rule for step in steps for rule in step.rules}))
-            if idle and steps and all(step.after is here.state for step in steps):
-                self._idle[idle] = operation, says
-            after = next((step.after for step in steps if step.after is not here.state), here.state)
-            leads_to = shape if after is here.state else self.abstraction.shape(after)
-            where = self._where(here, shape, steps)
-            self._edges[key] = ((where, operation, says), leads_to) if steps else None
-            self._growth[key] = size(after) - size(here.state)
+            outcomes = conversation.judge.automaton.successors.outcomes(here.state, request, refs)
+            steps = [step for step in outcomes if meet(here.assumed, step.assumes)]
+            found = self._edges[key] = self._leading(here, shape, request, steps)
+            if idle and found and all(step.after is here.state for step in steps):
+                self._idle[idle] = found[0][1:]
+            self._growth[key] = size(_after(here, steps)) - size(here.state)
         grows = self._growth[key]
         return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.size else None
+
+    def _leading(
+        self, here: Explanation, shape: Hashable, request: Request, steps: list[Step]
+    ) -> tuple[Edge, Hashable] | None:
+        """The edge of a call that may take these steps, and the shape that it leads to; none without a step."""
+        if not steps:
+            return None
+        says = tuple(sorted({rule for step in steps for rule in step.rules}))
+        after = _after(here, steps)
+        leads_to = shape if after is here.state else self.abstraction.shape(after)
+        return (self._where(here, shape, steps), self.system.spec.request_operation(request), says), leads_to
 
     def _places(self, here: Explanation, refs: Refs) -> tuple[Hashable, ...]:
         """Where the named things stand: a shape does not tell their positions apart."""
@@ -344,3 +348,8 @@ def template_of(system: System, method: str, params: JSON) -> Template:
         what = system.codec.request(method, rest)
     of = {name: slot for slot, name in made.items()}
     return Template(method, params, what, wants, tuple(of.get(one) for one in names))
+
+
+def _after(here: Explanation, steps: Iterable[Step]) -> State:
+    """The state after the first of the steps that changes it."""
+    return next((step.after for step in steps if step.after is not here.state), here.state)

@@ -296,10 +296,8 @@ def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
     assert [pair for pair in alike if answers(pair[0]) != answers(pair[1])] == []
 
 
-@pytest.mark.parametrize(
-    "decided",
-    [pytest.param(True, id="default readings"), pytest.param(False, id="all readings", marks=pytest.mark.long)],
-)
+@pytest.mark.parametrize("decided", [pytest.param(True, id="default readings"), pytest.param(False, id="all readings")])
+@pytest.mark.long
 def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
     """The shortcut of a system reaches exactly the states that its steps reach, in every world.
 

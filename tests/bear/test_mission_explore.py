@@ -95,6 +95,7 @@ def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
 
 
+@pytest.mark.long
 def test_six_missions_and_two_goals() -> None:
     """Under the default readings six missions of two goals, the ended ones counted, make 8,696 states."""
     found = explore(MISSION, Bounds(6, goals=2, batch=2), assumed=DEFAULT, forget_ended=True)

@@ -58,6 +58,7 @@ class _Appending:
         """The subject is closed by whoever has made it."""
 
 
+@pytest.mark.long
 def test_others_may_use_the_robot_where_that_is_said() -> None:
     """A mission that somebody else appended breaks a rule, unless others use the robot; then it is flagged."""
     found = {}

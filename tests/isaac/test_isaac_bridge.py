@@ -104,7 +104,7 @@ def test_a_robot_on_the_wrong_channel() -> None:
     assert "isaac.robot/status/statuses-go-to-the-status-channel" in [one.id for one in verdict.violation.rules]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_robot_that_ships(command_line: CommandLine, port: int) -> None:
     """`missionfsm robot` conforms; the verdict says the tolerance."""
     robot = (*MISSIONFSM, "robot", "--name", "r1", "--port", port, "--duration", "0.5")

@@ -122,7 +122,7 @@ def test_a_suite_has_a_test_for_every_operation_and_every_group_of_rules(suites:
     assert suites.outcome("TestRight::test_operation[CreateMission]") == "PASSED"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_broken_rule_fails_the_test_of_its_operation_alone(suites: Run) -> None:
     """The other operations pass, since the search goes on after what it finds."""
     wrong = [line.split()[0] for line in suites.out.splitlines() if "TestWrong::" in line and " FAILED " in line]

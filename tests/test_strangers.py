@@ -10,24 +10,20 @@ from missionfsm import systems
 from missionfsm.app.foreign import judge_all, subjects
 
 STRANGERS = Path(__file__).parent / "strangers"
-SAMPLE = 25
+SAMPLE = 60
 """Of so many faults one is judged; all of them are for `missionfsm teeth SYSTEM --subjects FOLDER`."""
 SECONDS = 300.0
 """How long one is judged at most."""
 
 
-MISSED = {"bear.status": {"bug-offline-location-not-found"}}
-"""What a run does not find yet: nobody asks for a location after all robots there have gone offline."""
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("name", systems.names())
 def test_a_sample_of_their_faults_is_noticed(name: str) -> None:
-    """Each of the sample but those that are known to be missed is a violation, and names a rule."""
+    """Each of the sample is a violation, and names a rule."""
     faults = [one for one in subjects(STRANGERS / name) if one.verdict == "violates"]
     report = judge_all(name, faults[::SAMPLE], seed=1, seconds=SECONDS, jobs=1)
-    assert {one.subject.name for one in report.wrong} == MISSED.get(name, set())
-    assert all(one.rules for one in report.judged if one.said == "violates")
+    assert [str(one) for one in report.wrong] == []
+    assert all(one.rules for one in report.judged if not one.only_flagged)
 
 
 @pytest.mark.parametrize("name", systems.names())

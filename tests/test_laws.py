@@ -39,8 +39,9 @@ from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
 from missionfsm.tools.mutate.teeth import Mutant, mutants
 
 BOUNDS = Bounds(2, goals=2, batch=2)
-LONG_OF_STATUS = [pytest.param(one, marks=pytest.mark.long) if one == "bear.status" else one for one in systems.names()]
-"""Every system; that with most messages in the long tests."""
+LARGE = ("bear.status", "isaac.server")
+EVERY = [pytest.param(one, marks=pytest.mark.long) if one in LARGE else one for one in systems.names()]
+"""Every system; the large ones in the long tests."""
 NEAR = 100
 """How many states of an exploration are looked at, nearest first."""
 
@@ -160,7 +161,7 @@ class Lab:
 
 @pytest.fixture(
     scope="module",
-    params=LONG_OF_STATUS,
+    params=EVERY,
 )
 def lab(request: pytest.FixtureRequest) -> Lab:
     return Lab(request.param)
@@ -414,7 +415,7 @@ FINDINGS = 12
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param("bear.mission", marks=pytest.mark.long), *(one for one in LONG_OF_STATUS if one != "bear.mission")],
+    [pytest.param("bear.mission", marks=pytest.mark.long), *(one for one in EVERY if one != "bear.mission")],
 )
 def test_what_a_run_has_found_can_be_expected_of_the_next(name: str) -> None:
     """Of a sample of mutants: with all findings listed, a run with the same seed ends well, with none of them stale."""
@@ -489,7 +490,7 @@ print(ledger.hexdigest())
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", LONG_OF_STATUS)
+@pytest.mark.parametrize("name", EVERY)
 def test_nothing_depends_on_the_hash_seed(name: str) -> None:
     """Pure: under other hash seeds the same steps come in the same order."""
     ledgers = {

@@ -35,6 +35,7 @@ def test_ten_busy_clients_are_recorded_whole_and_nothing_is_wrong(tmp_path: Path
     assert verdict.violation is None, str(verdict)
 
 
+@pytest.mark.long
 def test_a_break_among_ten_busy_clients_is_found(tmp_path: Path) -> None:
     """A robot that breaks a rule is judged wrong while the clients are busy, and its traffic passes all the same."""
     ran = run(tmp_path, 2, pause=0.3, broken=BREAK)

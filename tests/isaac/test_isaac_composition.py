@@ -191,6 +191,7 @@ def test_forklifts_and_arm() -> None:
     assert outcomes == (bringing - {(done, done, canceled, canceled, canceled)}) | leaving | arm
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "profile",
     [DOCUMENTED, pytest.param(attrs.evolve(DOCUMENTED, ai_12="b", ai_10="b"), marks=pytest.mark.long)],

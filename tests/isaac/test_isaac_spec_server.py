@@ -190,12 +190,14 @@ def shipped() -> dict[str, Verdict]:
     }
 
 
+@pytest.mark.long
 def test_both_profiles_conform(shipped: dict[str, Verdict]) -> None:
     """The server that runs under the sockets conforms as documented and as shipped, and exercises almost every rule."""
     assert {name: verdict.conforms for name, verdict in shipped.items()} == {"documented": True, "as-shipped": True}
     assert [rule for rule in shipped["documented"].uncovered if "/submit/" not in rule] == []
 
 
+@pytest.mark.long
 def test_profiles_are_told_apart(shipped: dict[str, Verdict]) -> None:
     """The readings that are reported tell one profile from the other."""
     names = ("AI-10", "AI-12", "AI-14.status", "AI-22.started", "AI-25.header", "AI-39")

@@ -14,13 +14,10 @@ from filelock import FileLock
 from missionfsm import systems
 from missionfsm.pages.graph import MOST_STATES
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.long]
 
 # One mission of a server goes through as much as two of a robot.
 MISSIONS = {"bear.mission": 2, "bear.status": 1, "isaac.server": 1, "isaac.robot": 1}
-
-# What a server can do takes long to draw.
-NAMES = [pytest.param(name, marks=pytest.mark.long) if name == "isaac.server" else name for name in systems.names()]
 
 # Presses buttons at random, with a seed; says how many steps that made.
 WANDER = """
@@ -104,7 +101,7 @@ AFTER = ["mission-1 paused serving table-1 table-2", "mission-2 waiting navigate
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", ["desktop", "phone"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", systems.names())
 def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: Explorers, open_page: Opener) -> None:
     """At the start and on the way, folded and unfolded, the page is as wide as the window."""
     seen = open_page(explorers[name], size, scheme)
@@ -217,9 +214,7 @@ def test_a_step_rules_readings_out(explorers: Explorers, open_page: Opener) -> N
     assert "ruled out by a step on the way" in ruled_out.first.inner_text()
 
 
-@pytest.mark.parametrize(
-    "name", [one if one == "isaac.robot" else pytest.param(one, marks=pytest.mark.long) for one in systems.names()]
-)
+@pytest.mark.parametrize("name", systems.names())
 def test_what_was_clicked_conforms(name: str, explorers: Explorers, open_page: Opener, tmp_path: Path) -> None:
     """The history of any walk, under whatever readings it assumed, is one that the oracle explains."""
     page = open_page(explorers[name]).page
@@ -341,7 +336,7 @@ CROSSINGS = """
 
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", systems.names())
 def test_no_line_of_the_map_crosses_a_shape(name: str, size: str, explorers: Explorers, open_page: Opener) -> None:
     """Wherever one stands no line runs through a shape, no shape covers another, and at most ten ways are next."""
     page = open_page(explorers[name], size).page

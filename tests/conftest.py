@@ -6,6 +6,7 @@ import io
 import os
 import signal
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
@@ -25,13 +26,11 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_I
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 WEB = Path(__file__).parent / "web"
-MANY = 10
-"""A test with more parameters than this goes through a list, of which `--part` takes a part."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """``--part 1/2``: of each test that goes through a long list only every second parameter, from the second on."""
-    parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th parameter of long lists, from K on")
+    """``--part 1/3``: of each long test with parameters only every third one, in turn."""
+    parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th parameter of long tests, the K-th turn")
 
 
 def pytest_xdist_auto_num_workers() -> int:
@@ -40,18 +39,22 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what is not of the part that is asked for."""
-    first, _, every = config.getoption("--part").partition("/")
+    """Leave out what is not of the part that is asked for.
+
+    N parts one after the other are everything. Each test begins at a place of its own, so that a part has of all of
+    them a little; what has one parameter alone is in every part.
+    """
+    turn, _, every = config.getoption("--part").partition("/")
     lists: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.get_closest_marker("long"):
             lists.setdefault(item.nodeid.partition("[")[0], []).append(item)
     left_out = {
         item
-        for found in lists.values()
-        if len(found) > MANY
-        for number, item in enumerate(found)
-        if number % int(every) != int(first) % int(every)
+        for name, found in lists.items()
+        if len(found) > 1
+        for number, item in enumerate(found, zlib.crc32(name.encode()))
+        if (number - int(turn)) % int(every)
     }
     # What takes longest is begun first, so that nobody waits for it at the end.
     items.sort(key=lambda item: not Path(item.path).is_relative_to(WEB))

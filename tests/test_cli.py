@@ -188,6 +188,7 @@ def test_what_is_recorded_is_judged_alike(command_line: CommandLine, tmp_path: P
     assert command_line("check", log).status == 0
 
 
+@pytest.mark.long
 def test_explore_says_what_it_saw(command_line: CommandLine) -> None:
     """``explore`` ends with 0 where everything holds, and its JSON has the counts."""
     ended = command_line("explore", "bear.mission", "--missions", 1, "--goals", 1, "--batch", 1, "--json", "-")

@@ -28,7 +28,7 @@ def test_every_rule_has_a_mutant() -> None:
     [
         "CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued",
         "UpdateMission/NOT_FOUND/the-mission-is-still-queued",
-        "lifecycle/goals-are-taken-up-in-order skips one",
+        pytest.param("lifecycle/goals-are-taken-up-in-order skips one", marks=pytest.mark.long),
         "SubscribeMissionStatus/sequence-numbers-grow",
     ],
 )

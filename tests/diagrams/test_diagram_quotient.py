@@ -224,10 +224,10 @@ def test_pictures_are_small(name: str, sketch: Sketch) -> None:
         assert set(drawn.starts) <= set(drawn.nodes) != set()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "which", "names"),
-    [("bear.mission", "queue", 3), pytest.param("isaac.server", "dispatch", 3, marks=pytest.mark.long)],
+    [("bear.mission", "queue", 3), ("isaac.server", "dispatch", 3)],
 )
 def test_what_stands_for_a_state_does_as_it_does(name: str, which: str, names: int) -> None:
     """The picture is the same where no state stands for another (in a part of it that is small enough)."""

@@ -182,6 +182,7 @@ def test_a_refusal_that_comes_late_is_waited_for_where_beginnings_are_told() -> 
         hesitant.stop()
 
 
+@pytest.mark.long
 def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -> None:
     """Messages that a server's network loses are explained and flagged, unless the transport is said to be strict."""
     found = {}
@@ -193,7 +194,8 @@ def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -
     assert found == {"imperfect": (True, True), "strict": (False, False)}
 
 
-@pytest.mark.parametrize("late", [0.3, pytest.param(0.9, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("late", [0.3, 0.9])
 def test_a_network_that_is_slower_than_the_silence_is_no_violation(late: float) -> None:
     """Updates that take many times as long as a silence are waited for, and silences become as long as they take."""
     slow = serve("bear.mission", control=False, faults=[f"late:{late}"])

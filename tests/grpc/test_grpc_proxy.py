@@ -313,6 +313,7 @@ def test_a_full_disk_ends_the_file_and_nothing_else() -> None:
     assert judged.conforms
 
 
+@pytest.mark.long
 def test_a_page_says_how_it_stands(tmp_path: Path) -> None:
     """While traffic goes on the page refreshes itself, at once with what broke; at the end it is the report."""
     page = tmp_path / "day.html"

@@ -150,6 +150,7 @@ while True:
 """
 
 
+@pytest.mark.long
 def test_a_robot_that_comes_back_while_it_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is not taken for the one that is started next."""
     bridge = RobotBridge(0, TOLERANCE, host="127.0.0.1")

@@ -115,7 +115,7 @@ class Without:
         """Nothing is held."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_robot_without_four_of_ten_calls_conforms_in_part() -> None:
     """The calls that it answers UNIMPLEMENTED are named."""
     absent = ("AppendMissionBatch", "ChargeRobot", "SkipGoal", "UpdateMission")

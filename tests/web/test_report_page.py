@@ -66,7 +66,7 @@ def _history(path: Path, lines: tuple[object, ...]) -> Path:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", ["desktop", "phone"])
-@pytest.mark.parametrize("which", ["violating", "conforming"])
+@pytest.mark.parametrize("which", ["violating", pytest.param("conforming", marks=pytest.mark.long)])
 def test_it_fits_the_window(
     which: str, size: str, scheme: str, open_page: Opener, request: pytest.FixtureRequest
 ) -> None:

@@ -75,6 +75,7 @@ class Census:
         spec = system.spec
         self._assumed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
         self._shown: dict[Hashable, tuple[str, ...]] = {}
+        self._defaults = choose(spec.ambiguities)
         self._all = system.alphabet({}, BOUNDS).worlds
         for world, params in enumerate(self._all):
             self._look(world, spec.initial(system.codec.world(params)), params)
@@ -146,12 +147,11 @@ class Census:
             count = self.system.spec.names(step.after) if emission.refs is None else len(emission.refs)
             rules = self._shown.get(emission.view)
             if rules is None:
-                rules = self._shown[emission.view] = tuple(_rules_of(self.system, emission.view, count))
+                rules = self._shown[emission.view] = tuple(self._rules_of(emission.view, count))
             yield from rules
 
-
-def _rules_of(system: System, view: View, count: int) -> Iterator[str]:
-    names = tuple(f"n{number}" for number in range(count))
-    for matches in recognised(system, view, names, choose(system.spec.ambiguities)):
-        if not isinstance(matches, Mismatch):
-            yield from dict.fromkeys(rule for match in matches for rule in match.rules)
+    def _rules_of(self, view: View, count: int) -> Iterator[str]:
+        names = tuple(f"n{number}" for number in range(count))
+        for matches in recognised(self.system, view, names, self._defaults):
+            if not isinstance(matches, Mismatch):
+                yield from dict.fromkeys(rule for match in matches for rule in match.rules)

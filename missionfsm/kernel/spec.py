@@ -77,6 +77,19 @@ class Delivery:
 
 
 @frozen
+class Unwatched:
+    """What of a drive may happen with no line that says so, where a log need not hold all there was.
+
+    Attributes:
+        reading: the question whether it did; "a" is no, and "b", which is flagged, is what such steps assume.
+        world: a world to the one in which it may.
+    """
+
+    reading: Ambiguity
+    world: Callable[[World], World]
+
+
+@frozen
 class Drive:
     """Something that a tester may be able to make happen.
 
@@ -91,6 +104,8 @@ class Drive:
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
         waits: whether one that was driven before still waits in a state; the tester drives none while one does.
         later: for a drive that only lets time pass: its words before what comes next ("2 s later"); None for others.
+        unwatched: what of it may happen unseen in recorded logs of those who do not command it; None for nothing but
+            what is `by_itself`.
     """
 
     name: str
@@ -102,6 +117,7 @@ class Drive:
     impossible: tuple[str, ...] = ()
     waits: Callable[[State], bool] = lambda _: False
     later: Callable[[Incident], str] | None = None
+    unwatched: Unwatched | None = None
 
 
 @frozen

@@ -72,6 +72,8 @@ class Step:
         label: what happened, for people.
         applied: False for an outcome that may still take effect after its answer (a deadline that passed).
         kinds: what the names that it adds are names of, in order, for a model that makes them up.
+        alone: for one that happens unseen: it is imagined only where somebody has been shown all there was before it,
+            or nobody watches. It is for what could go on and on, one such step after the other.
     """
 
     after: State
@@ -89,6 +91,7 @@ class Step:
     label: str = ""
     applied: bool = True
     kinds: tuple[str, ...] = ()
+    alone: bool = False
 
     def adds(self, names: int) -> int:
         """How many names it adds to so many that the state before it has."""

@@ -70,10 +70,11 @@ ENDS = frozenset({OK, DEADLINE_EXCEEDED})
 def over_transport(spec: Spec) -> Spec:
     """The same system, seen through a transport that is not perfect."""
     decided = spec.decided
+    unwatched = (one.unwatched.reading for one in spec.drives.values() if one.unwatched)
     return evolve(
         spec,
         transport=True,
-        ambiguities=(*spec.ambiguities, *TRANSPORT),
+        ambiguities=(*spec.ambiguities, *TRANSPORT, *unwatched),
         decided=None if decided is None else lambda assumed: over_transport(decided(assumed)),
         rebuilt=None,
     )

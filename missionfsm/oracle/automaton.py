@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from attrs import define, field
 
-from missionfsm.kernel.readings import UNCONSTRAINED
+from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle import memory
 from missionfsm.oracle.calls import FEW, is_of_calls_alone
@@ -15,7 +15,7 @@ from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.memory import MEMORY
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import EVENT_BUDGET, Successor, Successors
-from missionfsm.oracle.symbols import Symbol
+from missionfsm.oracle.symbols import Part, Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
 Tally = defaultdict[int, int]
@@ -91,6 +91,15 @@ class Automaton:
         self.memory = memory
         self.successors = Successors(spec, driven, assumed, budget, memory=memory)
         self.transitions = TransitionFunction(self.successors, eager=eager)
+        self._unwatched = tuple(
+            drive.unwatched
+            for drive in spec.drives.values()
+            if spec.transport and drive.unwatched and drive.name not in self.successors.driven
+        )
+        self._watched: TransitionFunction | None = None
+        watched = meet(assumed, (one.reading["a"] for one in self._unwatched))
+        if self._unwatched and watched and not eager:
+            self._watched = TransitionFunction(Successors(spec, driven, watched, budget, memory=memory))
         self._nodes: dict[tuple[Explanation, ...], Node] = {}
         self._edges = 0
         self._has_calls_alone = not spec.drives and not any(one.streaming for one in spec.operations.values())
@@ -101,6 +110,8 @@ class Automaton:
     def start(self, world: object, *, used: bool = False) -> Node:
         """The node in which an instance in this world is that is fresh, or that was used and then cleared."""
         spec = self.successors.spec
+        for unwatched in self._unwatched:
+            world = unwatched.world(world)
         state = (spec.used if used and spec.used else spec.initial)(world)
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)
@@ -122,6 +133,8 @@ class Automaton:
         self._nodes.clear()
         self._edges = self.bytes = 0
         self.successors.forget()
+        if self._watched is not None:
+            self._watched.successors.forget()
 
     def edge(self, node: Node, symbol: Symbol) -> Edge:
         """Compute where a symbol leads from a node and remember it. An empty node means: no explanation is left."""
@@ -130,13 +143,20 @@ class Automaton:
         if self._has_calls_alone and not successors.live and all(map(is_of_calls_alone, node.explanations)):
             successors.limit = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
         try:
-            edge = self.arrive(node, self.transitions.step(node.explanations, kind, *what))
+            edge = self.arrive(node, self._step(node.explanations, kind, *what))
         finally:
             successors.limit = successors.budget
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += memory.ENTRY
         return edge
+
+    def _step(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> tuple[Successor, ...]:
+        """What explains an event. Live, what may happen unwatched is thought of only where nothing else is left."""
+        found: tuple[Successor, ...] = ()
+        if self._watched is not None and self.successors.live:
+            found = self._watched.step(explanations, kind, *what)
+        return found or self.transitions.step(explanations, kind, *what)
 
     def arrive(self, node: Node, found: tuple[Successor, ...]) -> Edge:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""

@@ -215,7 +215,11 @@ class Successors:
             return
         yield from self.urgent(state)
         if self._may_go_on(explanation):
-            yield from self.unseen(state)
+            channels = explanation.channels
+            shown = not channels or not all(channel.owed for channel in channels)
+            for step in self.unseen(state):
+                if shown or not step.alone:
+                    yield step
 
     def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
         """The ways in which a message shows what is owed."""

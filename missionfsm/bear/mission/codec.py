@@ -243,7 +243,9 @@ def write_message(view: Listing, names: tuple[Name, ...], choice: int, number: i
 
 # Worlds and drives: written by testers and authors of logs, so what is wrong is refused.
 
-_WORLD: Mapping[str, str] = {camel(attribute.name): attribute.name for attribute in attrs.fields(World)}
+_WORLD: Mapping[str, str] = {
+    camel(attribute.name): attribute.name for attribute in attrs.fields(World) if attribute.name != "unwatched"
+}
 
 
 def _world_field(name: str, value: JSON) -> Hashable:
@@ -285,7 +287,7 @@ def world(given: JSON) -> World:
 
 def write_world(one: World) -> JSON:
     """The parameters of `reset`."""
-    fields = {camel(name): value for name, value in attrs.asdict(one, recurse=False).items()}
+    fields = {name: getattr(one, field) for name, field in _WORLD.items()}
     return {
         name: value.value if isinstance(value, Family) else list(value) if isinstance(value, tuple) else value
         for name, value in fields.items()

@@ -7,6 +7,7 @@ nor on how many wait. That makes it worth remembering, and every outcome is comp
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
@@ -52,7 +53,8 @@ from missionfsm.bear.mission.state import (
     World,
     free_goal,
 )
-from missionfsm.bear.wire.messages import Command, State
+from missionfsm.bear.mission.unwatched import worlds
+from missionfsm.bear.wire.messages import Command, Goal, State
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
     CANCELLED,
@@ -75,6 +77,23 @@ from missionfsm.kernel.terms import Refs
 @functools.lru_cache(maxsize=100_000)
 def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcome, ...]:
     """Every answer that the rules of an operation allow to a call, success first."""
+    found = dict.fromkeys(_outcomes(operation, robot, call))
+    for seen, unseen in worlds(robot.world, _looked_at(robot, call))[1:]:
+        elsewhere = _outcomes(operation, evolve(robot, world=seen), call)
+        found |= dict.fromkeys(evolve(one, assumes=(*one.assumes, *unseen)) for one in elsewhere if one not in found)
+    return tuple(sorted(found, key=lambda one: one.code != OK))
+
+
+def _looked_at(robot: Situation, call: Call) -> tuple[Goal, ...]:
+    """The goals of which it matters to a call whether they are free."""
+    wanted = (one.goals for one in call.request.wanted if one.kind in AUTOMATIC)
+    active = robot.active
+    moves = active is not None and active.kind in AUTOMATIC and call.request.operation in ("SkipGoal", "UpdateMission")
+    return (*itertools.chain.from_iterable(wanted), *(active.goals if active is not None and moves else ()))
+
+
+def _outcomes(operation: Operation, robot: Situation, call: Call) -> Iterator[Outcome]:
+    """Every answer that the rules of an operation allow to a call in the world as it is."""
     found: list[Outcome] = []
     for decision in decisions(operation.blocking(robot, call), robot, call):
         if decision.code is None:
@@ -90,9 +109,8 @@ def outcomes(operation: Operation, robot: Situation, call: Call) -> tuple[Outcom
             # The request was accepted, and a robot that is unable to start does not confirm.
             late = (*decision.assumes, AM_53[operation.name]["t"])
             found.append(Outcome(DEADLINE_EXCEEDED, assumes=late, applied=False))
-    found = [faulty for one in found for faulty in _with_fault(robot, one, operation.failures)]
-    found.sort(key=lambda one: one.code != OK)
-    return tuple(found)
+    for one in found:
+        yield from _with_fault(robot, one, operation.failures)
 
 
 def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -> Iterator[Outcome]:

@@ -25,6 +25,7 @@ from missionfsm.bear.mission.state import (
     is_foreign,
     is_missing,
 )
+from missionfsm.bear.mission.unwatched import worlds
 from missionfsm.bear.wire.messages import Goal, State
 from missionfsm.kernel.values import value
 
@@ -56,23 +57,46 @@ def _started(world: World, head: Mission) -> Iterator[Way]:
     if head.kind not in AUTOMATIC or head.doomed or head.goal != NOT_CHOSEN:
         yield ((Op.START, running),), ()
         return
-    chosen = free_goal(head.goals, world)
-    if chosen != NOT_CHOSEN:
-        yield ((Op.START, evolve(running, goal=chosen)),), ()
-        return
-    none = AM_45_NONE[part_of(head.kind)]
-    yield ((Op.START, running),), (none["a"],)
-    yield ((Op.START, evolve(running, doomed=True)),), (none["b"],)
-    yield ((Op.START, evolve(running, goal=0)),), (none["d"],)
+    for seen, unseen in worlds(world, head.goals):
+        chosen = free_goal(head.goals, seen)
+        if chosen != NOT_CHOSEN:
+            yield ((Op.START, evolve(running, goal=chosen)),), unseen
+            continue
+        none = AM_45_NONE[part_of(head.kind)]
+        yield ((Op.START, running),), (none["a"], *unseen)
+        yield ((Op.START, evolve(running, doomed=True)),), (none["b"], *unseen)
+        yield ((Op.START, evolve(running, goal=0)),), (none["d"], *unseen)
 
 
 def _due_of_active(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
     if active.doomed:
         yield from failed_to_start(_alone(world, active, queued=queued), active)
-    elif active.kind in AUTOMATIC and active.goal == NOT_CHOSEN and active.state is State.STATE_RUNNING:
+    elif _looks(active) and not world.unwatched:
         chosen = free_goal(active.goals, world)
         if chosen != NOT_CHOSEN:
             yield become(evolve(active, goal=chosen)), ()
+
+
+def _looks(mission: Mission) -> bool:
+    """Whether a mission runs and has not selected a goal yet."""
+    return mission.kind in AUTOMATIC and mission.goal == NOT_CHOSEN and mission.state is State.STATE_RUNNING
+
+
+def unwatched_choices(world: World, active: Mission | None) -> Iterator[Way]:
+    """What a NavigateAuto mission may select at any time where others take and leave goals unseen (AM-45)."""
+    if active is None or not world.unwatched or active.kind not in AUTOMATIC or active.doomed:
+        return
+    if active.state is not State.STATE_RUNNING:
+        return
+    for seen, unseen in worlds(world, active.goals):
+        if _looks(active):
+            chosen = free_goal(active.goals, seen)
+            ways: Iterable[Way] = ((become(evolve(active, goal=chosen)), ()),) if chosen != NOT_CHOSEN else ()
+        else:
+            ways = reselected(seen, active) if unseen else ()
+        for edit, assumes in ways:
+            if edit != become(active):
+                yield edit, (*assumes, *unseen)
 
 
 def by_itself(

@@ -11,7 +11,7 @@ from attrs import evolve
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
 from missionfsm.bear.mission.describe import describe
 from missionfsm.bear.mission.effects import UNLISTED_CODES, call_of, failing, outcomes, target
-from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
+from missionfsm.bear.mission.events import Event, apply_event, by_itself, due, unwatched_choices
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
@@ -50,6 +50,7 @@ from missionfsm.bear.mission.stream import (
     matches,
 )
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
+from missionfsm.bear.mission.unwatched import UNWATCHED
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
@@ -220,7 +221,9 @@ def _spontaneous(robot: Robot) -> tuple[Step, ...]:
     head = robot.pending[0] if robot.pending else None
     queued = len(robot.pending) > (robot.active is None)
     ways = by_itself(robot.world, robot.active, head, halted=robot.halted, queued=queued)
-    return tuple(_step(robot, edit, assumes, (_MOVES["fail"].id,)) for edit, assumes in ways)
+    failing = (_step(robot, edit, assumes, (_MOVES["fail"].id,)) for edit, assumes in ways)
+    anew = (_step(robot, edit, assumes) for edit, assumes in unwatched_choices(robot.world, robot.active))
+    return (*failing, *(evolve(step, alone=True) for step in anew))
 
 
 def _restarted(robot: Robot) -> Step:
@@ -307,7 +310,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
             for one in (
                 *(Drive(name, _drive, (Event(name),), impossible=rules) for name, rules in _JUSTIFIED.items()),
                 # A map is what it is said to be, and failures that nobody arms are outcomes of their own.
-                Drive("world", _drive),
+                Drive("world", _drive, unwatched=UNWATCHED),
                 Drive("fault", _drive, waits=lambda robot: robot.fault is not None),
             )
         },

@@ -150,6 +150,8 @@ class World:
         destinations: display names on the robot's map.
         occupied: those that another robot holds or claims.
         blocked: whether the robot is unable to start a mission.
+        unwatched: whether what is occupied may change with nobody saying so (`missionfsm.bear.mission.unwatched`); no
+            field of the protocol.
     """
 
     family: Family = Family.SERVI
@@ -158,6 +160,7 @@ class World:
     destinations: tuple[str, ...] = ("table-1", "table-2", "table-3")
     occupied: tuple[str, ...] = ()
     blocked: bool = False
+    unwatched: bool = False
 
 
 def without_place(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:

@@ -8,7 +8,7 @@ from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON, Codec, Malformed, UnreadableError
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.rules import FAILED_PRECONDITION, OK, Document, Operation, decide, rule
+from missionfsm.kernel.rules import FAILED_PRECONDITION, OK, Document, Operation, decide, refusal
 from missionfsm.kernel.spec import Delivery, Drive, Spec
 from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
@@ -23,13 +23,13 @@ DIM_OFF = Ambiguity("L-01", "What does Dim do to a lamp that is off?", {"a": "it
 # What it refuses. The state is "off", "dim", "on" or "burnt out".
 
 
-@rule(FAILED_PRECONDITION, cite=PAGE["Switch", "Errors"])
+@refusal(FAILED_PRECONDITION, cite=PAGE["Switch", "Errors"])
 def the_lamp_is_burnt_out(state: str, _: str) -> bool:
     """The lamp is burnt out."""
     return state == "burnt out"
 
 
-@rule(FAILED_PRECONDITION, cite=PAGE["Dim", "Errors"], assumes=DIM_OFF["a"])
+@refusal(FAILED_PRECONDITION, cite=PAGE["Dim", "Errors"], assumes=DIM_OFF["a"])
 def the_lamp_is_off(state: str, _: str) -> bool:
     """The lamp is off, and only light can be dimmed (L-01)."""
     return state == "off"

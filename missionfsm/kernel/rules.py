@@ -108,7 +108,7 @@ class Rule:
         code: the gRPC status of a refusal; None for a promise.
         holds: the condition of a refusal.
         assumes: the reading that makes the condition refuse, or None where no reading matters.
-        kind: what sort of check a refusal is, where readings rank the sorts (the form of a request before the state).
+        sort: what a refusal looks at, where readings rank that (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
     """
 
@@ -119,7 +119,7 @@ class Rule:
     code: str | None = None
     holds: Condition | None = field(default=None, eq=False, repr=False)
     assumes: Assumption | None = None
-    kind: str = ""
+    sort: str = ""
     id: str = ""
 
     def __call__(self, state: State, call: Request) -> bool:
@@ -141,8 +141,8 @@ def _words(function: Condition) -> tuple[str, str, str]:
     return function.__name__.strip("_").replace("_", "-"), says.strip(), " ".join(argues.split())
 
 
-def rule(
-    code: str, *, cite: Citation, assumes: Assumption | None = None, kind: str = ""
+def refusal(
+    code: str, *, cite: Citation, assumes: Assumption | None = None, sort: str = ""
 ) -> Callable[[Condition], Rule]:
     """Make a refusal of a condition: its name is the name, its docstring the message and the argument.
 
@@ -150,12 +150,12 @@ def rule(
         code: the gRPC status that the document gives.
         cite: where it stands.
         assumes: the reading that makes the condition refuse.
-        kind: what sort of check it is, for readings that rank the sorts (shape before state, say).
+        sort: what it looks at, for readings that rank that (the form before the state, say).
     """
 
     def register(condition: Condition) -> Rule:
         name, says, argues = _words(condition)
-        return Rule(name, says, argues, cite, code, condition, assumes, kind)
+        return Rule(name, says, argues, cite, code, condition, assumes, sort)
 
     return register
 

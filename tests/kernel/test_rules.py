@@ -18,7 +18,7 @@ from missionfsm.kernel.rules import (
     Rule,
     decide,
     promise,
-    rule,
+    refusal,
     unranked,
 )
 
@@ -108,7 +108,7 @@ def test_decide_without_rules_lets_the_operation_take_effect() -> None:
     assert decide(()) == (Decision(None, (), ()),)
 
 
-@rule("BAD", cite=PAGE["Create", "Errors"], assumes=SHAPE["a"], kind="shape")
+@refusal("BAD", cite=PAGE["Create", "Errors"], assumes=SHAPE["a"], sort="shape")
 def _the_number_is_odd(state: int, call: int) -> bool:
     """The number is odd.
 
@@ -139,7 +139,7 @@ def test_a_rule_without_a_message_is_refused() -> None:
         return True
 
     with pytest.raises(TypeError, match="silent has no docstring"):
-        rule("BAD", cite=PAGE["Errors"])(silent)
+        refusal("BAD", cite=PAGE["Errors"])(silent)
 
 
 def test_an_operation_registers_its_rules() -> None:

@@ -18,7 +18,7 @@ from missionfsm.kernel.rules import (
     Operation,
     decide,
     promise,
-    rule,
+    refusal,
 )
 from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
 from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
@@ -70,25 +70,25 @@ class Asked:
 # What it refuses.
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Call", "Errors"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Call", "Errors"])
 def there_is_no_such_floor(_: Lift, asked: Asked) -> bool:
     """The building has no such floor."""
     return asked.floor is None
 
 
-@rule(RESOURCE_EXHAUSTED, cite=PAGE["Call", "Errors"])
+@refusal(RESOURCE_EXHAUSTED, cite=PAGE["Call", "Errors"])
 def enough_rides_wait(lift: Lift, _: Asked) -> bool:
     """Three rides wait already."""
     return len(lift.waiting) >= MOST_WAITING
 
 
-@rule(NOT_FOUND, cite=PAGE["Cancel", "Errors"])
+@refusal(NOT_FOUND, cite=PAGE["Cancel", "Errors"])
 def there_is_no_such_ride(_: Lift, asked: Asked) -> bool:
     """No ride of that name waits or is under way."""
     return asked.at is None
 
 
-@rule(FAILED_PRECONDITION, cite=PAGE["Cancel", "Errors"], assumes=UNDER_WAY["a"])
+@refusal(FAILED_PRECONDITION, cite=PAGE["Cancel", "Errors"], assumes=UNDER_WAY["a"])
 def the_ride_is_under_way(lift: Lift, asked: Asked) -> bool:
     """The ride is under way, and only one that waits can be cancelled (L-01)."""
     return lift.moving and asked.at == 0

@@ -32,7 +32,7 @@ from missionfsm.kernel.rules import (
     Operation,
     Rule,
     promise,
-    rule,
+    refusal,
 )
 
 _GET = STATUS[GET, "Errors"]
@@ -43,55 +43,55 @@ _ANY = STATUS["SubscribeBatteryStatus", "Errors"]
 # The request by itself.
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def the_request_is_malformed(_: Fleet, request: Request) -> bool:
     """The request is not of the documented form: a value of another type."""
     return bool(request.malformed)
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def a_field_is_unknown(_: Fleet, request: Request) -> bool:
     """The request has a field that is not documented, and such a request is taken for malformed (AS-06)."""
     return "request" in request.unknown_fields
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def a_field_of_the_selector_is_unknown(_: Fleet, request: Request) -> bool:
     """The selector has a field that is not documented, and such a request is taken for malformed (AS-06)."""
     return "selector" in request.unknown_fields
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def a_field_of_the_robot_ids_is_unknown(_: Fleet, request: Request) -> bool:
     """The robot_ids have a field that is not documented, and such a request is taken for malformed (AS-06)."""
     return "ids" in request.unknown_fields
 
 
-@rule(INVALID_ARGUMENT, cite=_GET)
+@refusal(INVALID_ARGUMENT, cite=_GET)
 def the_robot_id_is_empty(_: Fleet, request: Request) -> bool:
     """The robot_id is empty or not set."""
     return not request.malformed and request.ids == ("",)
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def the_selector_is_not_set(_: Fleet, request: Request) -> bool:
     """There is no selector, or it selects neither by ids nor by location."""
     return not request.malformed and not request.by_ids and request.location is None
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def the_list_of_robot_ids_is_empty(_: Fleet, request: Request) -> bool:
     """The selector's list of robot_ids is empty."""
     return request.by_ids and not request.ids
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def the_location_id_is_empty(_: Fleet, request: Request) -> bool:
     """The selector's location_id is empty."""
     return request.location == ""
 
 
-@rule(INVALID_ARGUMENT, cite=STATUS["SubscribeBatteryStatus", "Request"])
+@refusal(INVALID_ARGUMENT, cite=STATUS["SubscribeBatteryStatus", "Request"])
 def the_selector_has_both_arms(_: Fleet, request: Request) -> bool:
     """The selector has robot_ids and a location_id, of which it takes one.
 
@@ -100,13 +100,13 @@ def the_selector_has_both_arms(_: Fleet, request: Request) -> bool:
     return request.both and not _blank(request)
 
 
-@rule(INVALID_ARGUMENT, cite=_ANY)
+@refusal(INVALID_ARGUMENT, cite=_ANY)
 def a_robot_id_is_empty(_: Fleet, request: Request) -> bool:
     """One of the robot_ids is empty (AS-06)."""
     return _by_ids(request) and "" in request.ids
 
 
-@rule(INVALID_ARGUMENT, cite=STATUS["SubscribeBatteryStatus", "Request"])
+@refusal(INVALID_ARGUMENT, cite=STATUS["SubscribeBatteryStatus", "Request"])
 def a_robot_id_is_repeated(_: Fleet, request: Request) -> bool:
     """One of the robot_ids occurs twice, and that is taken for invalid (AS-05)."""
     return _by_ids(request) and request.repeated
@@ -138,55 +138,55 @@ def _is_unknown(fleet: Fleet, request: Request) -> bool:
     return any(one and one not in known for one in request.ids)
 
 
-@rule(PERMISSION_DENIED, cite=_GET)
+@refusal(PERMISSION_DENIED, cite=_GET)
 def the_robot_is_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """The robot belongs to another account."""
     return bool(foreign(fleet, request))
 
 
-@rule(PERMISSION_DENIED, cite=_GET)
+@refusal(PERMISSION_DENIED, cite=_GET)
 def there_is_no_such_robot(fleet: Fleet, request: Request) -> bool:
     """No robot has this id, which is answered as if it were somebody else's (AS-02)."""
     return _is_unknown(fleet, request)
 
 
-@rule(NOT_FOUND, cite=_GET)
+@refusal(NOT_FOUND, cite=_GET)
 def the_robot_is_not_found(fleet: Fleet, request: Request) -> bool:
     """No robot has this id (AS-02 read as a matter of its own; the page lists NOT_FOUND for locations only)."""
     return _is_unknown(fleet, request)
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def all_robots_are_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """None of the robots that exist among those selected is the account's."""
     return _by_ids(request) and bool(foreign(fleet, request)) and not own(fleet, request)
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def some_robots_are_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """One of the selected robots belongs to another account (AS-01)."""
     return _by_ids(request) and bool(foreign(fleet, request)) and bool(own(fleet, request))
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def a_robot_does_not_exist(fleet: Fleet, request: Request) -> bool:
     """No robot has one of the ids, which is answered as if it were somebody else's (AS-02)."""
     return _by_ids(request) and _is_unknown(fleet, request)
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def a_robot_is_not_found(fleet: Fleet, request: Request) -> bool:
     """No robot has one of the ids (AS-02 read as a matter of its own)."""
     return _by_ids(request) and _is_unknown(fleet, request)
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def an_empty_robot_id_is_nobodys(_: Fleet, request: Request) -> bool:
     """One of the robot_ids is empty, and so not the account's (AS-06)."""
     return _by_ids(request) and "" in request.ids
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def a_robot_beside_a_location_is_not_the_accounts(fleet: Fleet, request: Request) -> bool:
     """A selector with both arms names a robot that is not the account's: invalid and forbidden at once."""
     both = request.both and not _blank(request)
@@ -216,61 +216,61 @@ def _owners_at(fleet: Fleet, request: Request) -> set[bool]:
     return {one.owned for one in fleet.robots if one.location == request.location}
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def the_location_does_not_exist(fleet: Fleet, request: Request) -> bool:
     """There is no such location, so no robots are found for it (AS-03)."""
     return _is_unknown_place(fleet, request)
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def the_unknown_location_is_not_the_accounts(fleet: Fleet, request: Request) -> bool:
     """There is no such location, which is answered as if it were somebody else's (AS-03)."""
     return _is_unknown_place(fleet, request)
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def no_robot_is_at_the_location(fleet: Fleet, request: Request) -> bool:
     """No robot is at the account's location (AS-03)."""
     return _is_own_place(fleet, request) and not _owners_at(fleet, request)
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def no_robot_of_the_account_is_at_the_location(fleet: Fleet, request: Request) -> bool:
     """Only robots of somebody else are at the account's location, so that none is found for it (AS-03)."""
     return _is_own_place(fleet, request) and _owners_at(fleet, request) == {False}
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def the_robots_at_the_location_are_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """Only robots of somebody else are at the account's location, and they may not be seen (AS-03)."""
     return _is_own_place(fleet, request) and _owners_at(fleet, request) == {False}
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def a_robot_at_the_location_is_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """Robots of the account are at its location, and one of somebody else, which may not be seen (AS-03)."""
     return _is_own_place(fleet, request) and _owners_at(fleet, request) == {True, False}
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def the_location_is_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """The location belongs to another account (AS-03)."""
     return _is_foreign_place(fleet, request) and bool(_owners_at(fleet, request))
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def nothing_is_found_at_somebody_elses_location(fleet: Fleet, request: Request) -> bool:
     """The location belongs to another account, so nothing is found for it (AS-03)."""
     return _is_foreign_place(fleet, request) and bool(_owners_at(fleet, request))
 
 
-@rule(PERMISSION_DENIED, cite=_ANY)
+@refusal(PERMISSION_DENIED, cite=_ANY)
 def the_vacant_location_is_somebody_elses(fleet: Fleet, request: Request) -> bool:
     """The location belongs to another account, though no robot is there (AS-03)."""
     return _is_foreign_place(fleet, request) and not _owners_at(fleet, request)
 
 
-@rule(NOT_FOUND, cite=_ANY)
+@refusal(NOT_FOUND, cite=_ANY)
 def no_robot_is_at_somebody_elses_location(fleet: Fleet, request: Request) -> bool:
     """No robot is at the location, which belongs to another account (AS-03)."""
     return _is_foreign_place(fleet, request) and not _owners_at(fleet, request)

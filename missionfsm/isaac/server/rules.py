@@ -6,7 +6,7 @@ from missionfsm.isaac.server.inputs import EMPTY, HANDLE, KEY, MALFORMED, NEGATI
 from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_33_NULL
 from missionfsm.isaac.server.state import SYSTEM, Server
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
-from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, rule
+from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, refusal
 
 KEYS = PAGE["Sample Usage", "Key"]
 SERVER = PAGE["MissionServer Class"]
@@ -15,13 +15,13 @@ NAMES = PAGE["Robot Identification"]
 CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS)
+@refusal(INVALID_ARGUMENT, cite=KEYS)
 def the_mission_is_malformed(_: Server, ask: Ask) -> bool:
     """The mission is no object, or a field has a wrong type (AI-20 a)."""
     return MALFORMED in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "upstream"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "upstream"])
 def an_upstream_is_no_handle(_: Server, ask: Ask) -> bool:
     """An upstream is not a non-negative integer.
 
@@ -30,7 +30,7 @@ def an_upstream_is_no_handle(_: Server, ask: Ask) -> bool:
     return HANDLE in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=DEPENDENCIES)
+@refusal(INVALID_ARGUMENT, cite=DEPENDENCIES)
 def an_upstream_is_unknown(_: Server, ask: Ask) -> bool:
     """An upstream is a mission that was never submitted; the mission itself is one of those.
 
@@ -39,43 +39,43 @@ def an_upstream_is_unknown(_: Server, ask: Ask) -> bool:
     return None in ask.upstream
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "timeout"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "timeout"])
 def a_timeout_is_negative(_: Server, ask: Ask) -> bool:
     """A timeout is less than 0 (AI-24 c)."""
     return NEGATIVE in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"])
 def the_robots_name_is_empty(_: Server, ask: Ask) -> bool:
     """The robot's name is empty, which no robot can be called (AI-37 d)."""
     return NO_NAME in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"], assumes=AI_19["c"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "robot"], assumes=AI_19["c"])
 def the_mission_has_no_robot(_: Server, ask: Ask) -> bool:
     """No robot is named, and such a mission is refused (AI-19)."""
     return ask.submission.robot is None
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_KEYS["a"])
+@refusal(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_KEYS["a"])
 def a_key_is_unknown(_: Server, ask: Ask) -> bool:
     """The mission has a key that is not documented, and such a mission is refused (AI-20.keys)."""
     return KEY in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_NULL["a"])
+@refusal(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_NULL["a"])
 def a_field_is_null(_: Server, ask: Ask) -> bool:
     """A field that has a type is null, and that is taken for a wrong type (AI-20.null)."""
     return NULL in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_EMPTY["a"])
+@refusal(INVALID_ARGUMENT, cite=KEYS, assumes=AI_20_EMPTY["a"])
 def a_channel_is_empty(_: Server, ask: Ask) -> bool:
     """A channel's name is empty, and such a mission is refused (AI-20.empty)."""
     return EMPTY in ask.submission.defects
 
 
-@rule(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "config"], assumes=AI_33_NULL["b"])
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "config"], assumes=AI_33_NULL["b"])
 def the_configuration_is_null(_: Server, ask: Ask) -> bool:
     """The configuration is null, and that is taken for a wrong type (AI-33.null)."""
     return NULL_CONFIG in ask.submission.defects

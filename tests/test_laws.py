@@ -93,7 +93,7 @@ class Lab:
         self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
 
     def start(self, world: JSON) -> State:
-        return self.spec.initial(self.system.codec.world(world))
+        return self.spec.initial(self.system.codec.read_world(world))
 
     def extent(self, here: State) -> int:
         return self.spec.extent(here)
@@ -346,8 +346,8 @@ def test_what_is_shown_is_recognised(lab: Lab) -> None:
                 continue
             seen.add((name, emission.view, width))
             names = tuple(f"name-{index}" for index in range(width))
-            ((known, _, rest),) = codec.strip(codec.write_message(emission.view, names, choice, 1, 0.0))
-            matches = lab.spec.matches(emission.view, codec.content(rest))
+            ((known, _, rest),) = codec.split_message(codec.write_message(emission.view, names, choice, 1, 0.0))
+            matches = lab.spec.matches(emission.view, codec.read_content(rest))
             assert not isinstance(matches, Mismatch), (name, lab.spec.describe(emission.view), matches.says)
             agreeing = [match for match in matches if meet(choice, match.assumes)]
             assert agreeing, (name, lab.spec.describe(emission.view))
@@ -474,7 +474,7 @@ bounds = Bounds(1, goals=2, batch=1)
 alphabet = found.alphabet(world, bounds)
 plain = Labels.from_alphabet(found, alphabet.core_inputs, alphabet.core_drives)
 everything = Labels.from_alphabet(found, alphabet.inputs, alphabet.drives)
-start = found.spec.initial(found.codec.world(world))
+start = found.spec.initial(found.codec.read_world(world))
 ledger = hashlib.sha256()
 most = max(1, found.spec.names(start))
 for here in list(reachable(found.spec, start, plain, most, choose(found.spec.ambiguities)))[:20]:

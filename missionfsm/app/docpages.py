@@ -187,7 +187,7 @@ def _cut(text: str) -> str:
 
 def _world(name: str) -> str:
     codec = the_system(name).codec
-    return _fenced("json", iter((json.dumps(codec.write_world(codec.world({}))),)))
+    return _fenced("json", iter((json.dumps(codec.write_world(codec.read_world({}))),)))
 
 
 def _statuses(_: str) -> str:

@@ -93,7 +93,7 @@ class Live:
     def reset(self, world: JSON) -> None:
         """Begin anew in a world; every stream is forgotten. Raises UnreadableError for what is no world."""
         with self._lock:
-            self.system.codec.world(world)
+            self.system.codec.read_world(world)
             self._subject.exchange("reset", {"world": world})
             self._listeners.clear()
             self._history.clear()

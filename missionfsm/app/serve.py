@@ -66,7 +66,7 @@ def _cue(line: str, system: System) -> Cue:
     after = found.get("after", 0)
     if isinstance(after, bool) or not isinstance(after, int | float) or not 0 <= after < float("inf"):
         raise ValueError(f"after: {brief(after)} is no number of seconds")
-    system.codec.drive(found["drive"])
+    system.codec.read_drive(found["drive"])
     return Cue(float(after), found["drive"])
 
 

@@ -140,7 +140,7 @@ class Fleet:
             "locations": [{"locationId": place, "owned": owned} for place, owned in places.items()],
         }
         self._model = Reference(SYSTEM, readings)
-        self._here = self._model.start(SYSTEM.codec.world(world))
+        self._here = self._model.start(SYSTEM.codec.read_world(world))
         self._subscriptions: dict[Name, Updates[Any]] = {}
         self._clock = clock
         self._shown_so_far = 0
@@ -218,7 +218,7 @@ class Fleet:
 
     def _ask(self, method: str, params: JSON, opened: Updates[Any] | None = None) -> Reply:
         self._give_up()
-        self._here, reply = self._model.call(self._here, SYSTEM.codec.request(method, params))
+        self._here, reply = self._model.call(self._here, SYSTEM.codec.read_request(method, params))
         self._deliver(reply, opened)
         if reply.answer is not None and reply.answer.code != OK:
             rules = tuple(SYSTEM.spec.rule(rule) for rule in reply.rules)
@@ -265,7 +265,7 @@ class Fleet:
         return self._drive({"event": event, **fields})
 
     def _drive(self, given: JSON) -> bool:
-        event, _ = SYSTEM.codec.drive(given)
+        event, _ = SYSTEM.codec.read_drive(given)
         self._give_up()
         self._here, reply = self._model.drive(self._here, event)
         self._deliver(reply)

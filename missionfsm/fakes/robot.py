@@ -104,7 +104,7 @@ class Robot:
             "chargingLocation": charging_location,
             "blocked": blocked,
         }
-        self._here = self._model.start(SYSTEM.codec.world(fields))
+        self._here = self._model.start(SYSTEM.codec.read_world(fields))
 
     def __repr__(self) -> str:
         return f"<Robot {self._here.state.world.family.value}: {describe(self._here.state)}>"
@@ -242,9 +242,9 @@ class Robot:
         return tuple(map(str, self._ask(method, params)))
 
     def _ask(self, method: str, params: JSON, opened: Updates | None = None) -> tuple[Name, ...]:
-        names, rest = SYSTEM.codec.split(method, params)
+        names, rest = SYSTEM.codec.split_request(method, params)
         self._give_up()
-        self._here, reply = self._model.call(self._here, SYSTEM.codec.request(method, rest), names)
+        self._here, reply = self._model.call(self._here, SYSTEM.codec.read_request(method, rest), names)
         self._deliver(reply, opened)
         assert reply.answer is not None, "a call is answered"  # noqa: S101 - a model always answers
         if reply.answer.code != OK:
@@ -308,7 +308,7 @@ class Robot:
         return self._drive({"event": event, **fields})
 
     def _drive(self, given: JSON) -> bool:
-        event, names = SYSTEM.codec.drive(given)
+        event, names = SYSTEM.codec.read_drive(given)
         self._give_up()
         self._here, reply = self._model.drive(self._here, event, names)
         self._deliver(reply)

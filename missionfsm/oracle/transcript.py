@@ -229,12 +229,12 @@ class Transcript:
         return (Returned(("call", number), answer, names),)
 
     def _request(self, method: str, params: JSON) -> tuple[Request, tuple[Name, ...]]:
-        names, rest = self.codec.split(method, params)
+        names, rest = self.codec.split_request(method, params)
         key = (method, self._fingerprint(rest))
         request = self._requests.get(key)
         if request is None:
             self._make_room(key[1])
-            request = self.codec.request(method, rest)
+            request = self.codec.read_request(method, rest)
             # One object for one request, however it is written: the oracle then knows it by identity.
             request = self._requests[key] = self._interned.setdefault(request, request)
         return request, names
@@ -257,7 +257,7 @@ class Transcript:
             if answer is None:
                 answer = self._errors[status] = Answer(status)
             return (Returned(("call", number), answer, ()),)
-        answer, names = self.codec.answer(method, line["result"])
+        answer, names = self.codec.read_answer(method, line["result"])
         return (Returned(("call", number), answer, names),)
 
     def _status(self, error: JSON) -> str:
@@ -283,7 +283,7 @@ class Transcript:
 
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
         found = []
-        parts = self.codec.strip(message)
+        parts = self.codec.split_message(message)
         repeats_last = bool(self.codec.streams) and self._comes_again(channel, message, parts)
         for names, marks, rest in parts:
             key = self._fingerprint(rest)
@@ -309,7 +309,7 @@ class Transcript:
 
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
         self._make_room(key)
-        content = self._contents[key] = self.codec.content(rest)
+        content = self._contents[key] = self.codec.read_content(rest)
         return content
 
     def _connection(self, line: dict[str, JSON]) -> tuple[Event, ...]:
@@ -322,7 +322,7 @@ class Transcript:
         return self._received(connection, line["line"])
 
     def _drive(self, line: dict[str, JSON]) -> tuple[Event, ...]:
-        event, names = self.codec.happened(line["drive"])
+        event, names = self.codec.read_drive_result(line["drive"])
         return (Driven(event, names),)
 
     def _settled(self, line: dict[str, JSON]) -> tuple[Event, ...]:

@@ -126,7 +126,7 @@ class Doings:
         for prompt in self.alphabet.core_inputs:
             method = prompt.method
             for filled in self._filled(prompt.params, kinds, functools.partial(self._names_asked, method)):
-                request = codec.request(method, codec.split(method, filled.params)[1])
+                request = codec.read_request(method, codec.split_request(method, filled.params)[1])
                 if (request, filled.refs) in seen:
                     continue
                 seen.add((request, filled.refs))
@@ -137,12 +137,12 @@ class Doings:
                 yield _Asked(doing, method, request)
 
     def _names_asked(self, method: str, params: JSON) -> tuple[Name, ...]:
-        return self.system.codec.split(method, params)[0]
+        return self.system.codec.split_request(method, params)[0]
 
     def _drives(self, kinds: tuple[str, ...]) -> Iterator[_Event]:
         for drive in self.alphabet.core_drives:
-            for filled in self._filled(drive, kinds, lambda given: self.system.codec.drive(given)[1]):
-                event = self.system.codec.drive(filled.params)[0]
+            for filled in self._filled(drive, kinds, lambda given: self.system.codec.read_drive(given)[1]):
+                event = self.system.codec.read_drive(filled.params)[0]
                 yield _Event(event, filled, self.system.spec.describe(event))
 
     def _driven(self, one: _Event, names: int, opened: tuple[str, ...]) -> Doing:
@@ -152,7 +152,7 @@ class Doings:
         positions = {at: names + number for number, at in enumerate(fixed)}
         first = names + len(fixed)
         places = [self.writer.place(kind, first + at) for at, kind in enumerate(opened)]
-        drive = {**filled.params, **self.system.codec.write_happened(one.event, (*filled.names, *places))}
+        drive = {**filled.params, **self.system.codec.write_drive_result(one.event, (*filled.names, *places))}
         line = self.writer.text({"drive": drive}, {filled.names[at]: position for at, position in positions.items()})
         refs = (
             *(positions.get(at, ref) for at, ref in enumerate(filled.refs)),

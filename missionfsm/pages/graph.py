@@ -78,7 +78,7 @@ class Graph:
         self._rules, self._assumptions, self._doings, self._effects = (Shared() for _ in range(4))
         self._parts, self._topics = Shared(), Shared()
         self._known: dict[tuple[object, ...], tuple[int, tuple[str, ...]]] = {}
-        self._start = self.spec.initial(system.codec.world(self.world))
+        self._start = self.spec.initial(system.codec.read_world(self.world))
         # What subscribers see can be looked up in every state, what is sent on connections is told as it is sent.
         self._sends = not system.codec.streams
         self._looks = dict(self._looking())
@@ -246,8 +246,8 @@ class Graph:
         for prompt in (*((self.alphabet.look,) if self.alphabet.look else ()), *self.alphabet.core_inputs):
             if prompt.method in found or not (prompt is self.alphabet.look or prompt.method in codec.streams):
                 continue
-            names, rest = codec.split(prompt.method, prompt.params)
-            request = codec.request(prompt.method, rest)
+            names, rest = codec.split_request(prompt.method, prompt.params)
+            request = codec.read_request(prompt.method, rest)
             if not names and any(self._seen(self._start, (), prompt.method, request)):
                 found.add(prompt.method)
                 yield prompt.method, request

@@ -27,7 +27,7 @@ def labels(bounds: Bounds, world: object = None) -> Labels:
 
 
 def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
-    start = SPEC.initial(MISSION.codec.world({}))
+    start = SPEC.initial(MISSION.codec.read_world({}))
     return reachable(SPEC, start, labels(bounds), bounds.size, assumed, forget_ended=forgetting)
 
 
@@ -90,7 +90,7 @@ def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     """Without the shortcut, counting what has ended reaches the same states."""
     bounds = Bounds(2, goals=1, batch=2)
     slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, shortcut=None))
-    start = SPEC.initial(MISSION.codec.world({}))
+    start = SPEC.initial(MISSION.codec.read_world({}))
     found = reachable(slow, start, labels(bounds), bounds.size, assumed, forget_ended=True)
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
 
@@ -132,7 +132,7 @@ def test_every_rule_fires_and_rests() -> None:
     rests: set[str] = set()
     for world in WORLDS:
         alphabet = MISSION.alphabet(world, bounds)
-        start = SPEC.initial(MISSION.codec.world(world))
+        start = SPEC.initial(MISSION.codec.read_world(world))
         found = reachable(SPEC, start, labels(bounds, world), bounds.size)
         situations = {SPEC.abstraction.situation(here): here for here in found}
         everything = Labels.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)

@@ -38,7 +38,7 @@ Named = tuple[Any, tuple[int, ...]]
 
 def lives(random: Random, length: int) -> Iterator[tuple[Named, list[Named], frozenset[str]]]:
     """Robots after one another, by whatever steps under whatever readings, what each makes seen, and by which call."""
-    robot: Robot = SPEC.initial(MISSION.codec.world(random.choice(ALPHABET.worlds)))
+    robot: Robot = SPEC.initial(MISSION.codec.read_world(random.choice(ALPHABET.worlds)))
     names: tuple[int, ...] = ()
     minted = 0
     for _ in range(length):
@@ -72,7 +72,7 @@ def content(view: Listing, choice: int) -> Any:
     """The content of the message that shows a view under some readings."""
     missions = [f"m{number}" for number in range(len(view.missions))]
     message = MISSION.codec.write_message(view, tuple(missions), choice, 1, 0.0)
-    return MISSION.codec.content(next(iter(MISSION.codec.strip(message)))[2])
+    return MISSION.codec.read_content(next(iter(MISSION.codec.split_message(message)))[2])
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -110,7 +110,7 @@ def test_what_cannot_succeed_any_more_is_not_foreseen() -> None:
     """No call makes a mission that is listed already, or skips or moves one that has ended."""
     _, robot = _queue()
     made, skipped, cleared = (
-        MISSION.codec.request(method, {}) for method in ("AppendMission", "SkipGoal", "ClearMissionStatus")
+        MISSION.codec.read_request(method, {}) for method in ("AppendMission", "SkipGoal", "ClearMissionStatus")
     )
     assert [succeeds(robot, (0, 1, 2), made, (), (name,)) for name in (1, 3)] == [False, True]
     assert [succeeds(robot, (0, 1, 2), skipped, (), (name,)) for name in (0, 1, 3)] == [False, True, True]
@@ -183,10 +183,10 @@ def test_missions_keep_their_order(case: str) -> None:
 
 def _queue() -> tuple[Any, Robot]:
     """A mission that waits, and a robot with one that has succeeded before two of them."""
-    robot: Robot = SPEC.initial(MISSION.codec.world({}))
+    robot: Robot = SPEC.initial(MISSION.codec.read_world({}))
     params = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
-    _, rest = MISSION.codec.split("CreateMission", params)
-    request = MISSION.codec.request("CreateMission", rest)
+    _, rest = MISSION.codec.split_request("CreateMission", params)
+    request = MISSION.codec.read_request("CreateMission", rest)
     created = next(step.after for step in SPEC.outcomes(robot, request, ()) if step.after.pending)
     (mission,) = created.pending
     ended = mission.moved("start").moved("succeed")

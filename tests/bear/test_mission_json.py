@@ -95,14 +95,14 @@ DEFECTIVE: dict[str, tuple[JSON, tuple[Defect, ...]]] = {
 def test_a_well_formed_request_is_read(case: str) -> None:
     """Names in either spelling, numbers as texts, null for absent: all of it is protobuf JSON."""
     params, request = WELL_FORMED[case]
-    assert CODEC.request("CreateMission", params) == request
+    assert CODEC.read_request("CreateMission", params) == request
 
 
 @pytest.mark.parametrize("case", DEFECTIVE)
 def test_an_odd_request_has_a_meaning(case: str) -> None:
     """A request that is empty, malformed, or wrong by itself is read as that, and never refused."""
     params, defects = DEFECTIVE[case]
-    assert CODEC.request("CreateMission", params).defects == defects
+    assert CODEC.read_request("CreateMission", params).defects == defects
 
 
 @pytest.mark.parametrize(
@@ -122,24 +122,24 @@ def test_an_odd_request_has_a_meaning(case: str) -> None:
 )
 def test_a_command_is_read(params: JSON, command: Command | None, defects: Any, names: tuple[str, ...]) -> None:
     """A command by name or number; one without a name, or without a mission, is what it is."""
-    found, rest = CODEC.split("UpdateMission", params)
-    request = CODEC.request("UpdateMission", rest)
+    found, rest = CODEC.split_request("UpdateMission", params)
+    request = CODEC.read_request("UpdateMission", rest)
     assert (found, request.command, request.defects) == (names, command, defects)
 
 
 def test_a_batch_has_the_defects_of_its_entries() -> None:
     """What is wrong with a batch is what is wrong with any entry; an empty batch asks for nothing."""
     good, bad = deliver({"destinationId": "table-1"}), navigate({})
-    request = CODEC.request("CreateMissionBatch", {"missions": [good, bad, {}]})
+    request = CODEC.read_request("CreateMissionBatch", {"missions": [good, bad, {}]})
     assert request.defects == (Defect.EMPTY, Defect.GOAL)
     assert [wanted.kind for wanted in request.wanted] == [Kind.SERVI_DELIVERY, Kind.BASE_NAVIGATE, None]
-    assert CODEC.request("AppendMissionBatch", {"missions": []}).defects == (Defect.EMPTY,)
+    assert CODEC.read_request("AppendMissionBatch", {"missions": []}).defects == (Defect.EMPTY,)
 
 
 @pytest.mark.parametrize("method", ["ChargeRobot", "ClearMissionStatus", "SkipGoal", "SubscribeMissionStatus"])
 def test_a_call_without_parameters_takes_none(method: str) -> None:
     """Calls without parameters take an empty message or none; a field is unknown, a text is malformed."""
-    found = [CODEC.request(method, params).defects for params in ({}, None, {"x": 1}, "all")]
+    found = [CODEC.read_request(method, params).defects for params in ({}, None, {"x": 1}, "all")]
     assert found == [(), (), (Defect.FIELD,), (Defect.FORMAT,)]
 
 
@@ -149,10 +149,10 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
     worlds = [{"family": family.value} for family in Family]
     prompts = [prompt for world in worlds for prompt in alphabet(world, Bounds(2, goals=3, batch=2)).core_inputs]
     for prompt in prompts:
-        names, rest = CODEC.split(prompt.method, prompt.params)
-        request = CODEC.request(prompt.method, rest)
-        again, rest = CODEC.split(prompt.method, CODEC.write_request(request, names))
-        assert (again, CODEC.request(prompt.method, rest)) == (names, request)
+        names, rest = CODEC.split_request(prompt.method, prompt.params)
+        request = CODEC.read_request(prompt.method, rest)
+        again, rest = CODEC.split_request(prompt.method, CODEC.write_request(request, names))
+        assert (again, CODEC.read_request(prompt.method, rest)) == (names, request)
 
 
 # Answers.
@@ -187,14 +187,14 @@ def test_a_well_formed_request_is_written_and_read_again() -> None:
 )
 def test_an_answer_is_read(method: str, result: JSON, answer: Answer, names: tuple[Any, ...]) -> None:
     """An answer has names and nothing else; one that is not of the documented form is garbled, and says how."""
-    assert CODEC.answer(method, result) == (answer, names)
+    assert CODEC.read_answer(method, result) == (answer, names)
 
 
 @pytest.mark.parametrize("result", [{}, {"stream": "1"}, {"stream": True}, [], None])
 def test_a_stream_without_a_number_is_refused(result: JSON) -> None:
     """The number of a stream is the adapter's business: without it the history is malformed."""
     with pytest.raises(UnreadableError, match="carries no stream number"):
-        CODEC.answer("SubscribeMissionStatus", result)
+        CODEC.read_answer("SubscribeMissionStatus", result)
 
 
 # Status messages.
@@ -209,9 +209,11 @@ def test_a_message_is_taken_apart() -> None:
     contents = []
     for ids, number in ((("a", "b"), 3), (("x", "y"), "4")):
         missions = [{"missionId": name, "state": "STATE_RUNNING"} for name in ids]
-        ((names, marks, rest),) = CODEC.strip(shown(*missions, timestamp="2025-01-01T00:00:00Z", sequenceNumber=number))
+        ((names, marks, rest),) = CODEC.split_message(
+            shown(*missions, timestamp="2025-01-01T00:00:00Z", sequenceNumber=number)
+        )
         assert (names, marks) == (ids, ((None, int(number)),))
-        contents.append(CODEC.content(rest))
+        contents.append(CODEC.read_content(rest))
     assert contents[0] == contents[1]
     assert isinstance(contents[0], Seen)
     assert contents[0].named == (True, True)
@@ -222,7 +224,7 @@ def test_a_message_is_taken_apart() -> None:
 )
 def test_a_number_that_is_missing_is_zero(metadata: JSON) -> None:
     """A sequence number that is left out is 0, as protobuf JSON has it."""
-    ((_, marks, rest),) = CODEC.strip(shown(**metadata))
+    ((_, marks, rest),) = CODEC.split_message(shown(**metadata))
     assert marks == ((None, 0),)
     assert rest.get("metadata") in (None, {"timestamp": None})
 
@@ -248,16 +250,16 @@ def test_a_number_that_is_missing_is_zero(metadata: JSON) -> None:
 )
 def test_a_garbled_message_says_where(message: JSON, says: str) -> None:
     """A message that is not of the documented form is garbled; what is wrong is told with its place."""
-    ((_, _, rest),) = CODEC.strip(message)
-    content = CODEC.content(rest)
+    ((_, _, rest),) = CODEC.split_message(message)
+    content = CODEC.read_content(rest)
     assert isinstance(content, Malformed)
     assert says in content.says
 
 
 def test_a_state_without_a_name_is_kept() -> None:
     """A number that an enum does not have is no malformed message."""
-    ((_, _, rest),) = CODEC.strip(shown({"missionId": "m", "state": 99}))
-    content = CODEC.content(rest)
+    ((_, _, rest),) = CODEC.split_message(shown({"missionId": "m", "state": 99}))
+    content = CODEC.read_content(rest)
     assert isinstance(content, Seen)
     assert content.states.missions[0].state == 99
 
@@ -268,11 +270,11 @@ def test_a_state_without_a_name_is_kept() -> None:
 def test_a_world_has_defaults() -> None:
     """What a world leaves out is as the adapter protocol says; what is written is read again."""
     tables = ("table-1", "table-2", "table-3")
-    assert CODEC.world({}) == World(
+    assert CODEC.read_world({}) == World(
         Family.SERVI, contact_dock=True, charging_location=True, destinations=tables, occupied=(), blocked=False
     )
     for world in (World(), World(Family.CARTI, contact_dock=False, occupied=("table-2",), blocked=True)):
-        assert CODEC.world(CODEC.write_world(world)) == world
+        assert CODEC.read_world(CODEC.write_world(world)) == world
 
 
 DRIVES = (
@@ -285,7 +287,7 @@ DRIVES = (
 @pytest.mark.parametrize("event", DRIVES, ids=[one.name for one in DRIVES])
 def test_a_drive_is_written_and_read_again(event: Event) -> None:
     """What is written for an event of the environment is read as that event."""
-    assert CODEC.drive(CODEC.write_drive(event, ())) == (event, ())
+    assert CODEC.read_drive(CODEC.write_drive(event, ())) == (event, ())
 
 
 @pytest.mark.parametrize(
@@ -301,4 +303,4 @@ def test_a_drive_is_written_and_read_again(event: Event) -> None:
 def test_a_wrong_drive_is_refused(drive: JSON, says: str) -> None:
     """A drive that the protocol does not have is the tester's mistake."""
     with pytest.raises(UnreadableError, match=says):
-        CODEC.drive(drive)
+        CODEC.read_drive(drive)

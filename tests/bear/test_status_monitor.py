@@ -229,8 +229,8 @@ def test_the_monitor_and_the_specification_agree_on_single_messages() -> None:
     for rule, endpoint, messages in CASES:
         if len(messages) > 1 or rule == "sequence-numbers-grow":
             continue
-        (part,) = CODEC.strip(copy.deepcopy(messages[0]))
-        content = CODEC.content(part[2])
+        (part,) = CODEC.split_message(copy.deepcopy(messages[0]))
+        content = CODEC.read_content(part[2])
         assert isinstance(content, Seen | Malformed)
         robot = content.robot if isinstance(content, Seen) else "a"
         found = matches(View(robot, Endpoint(endpoint), unheard=True), content)

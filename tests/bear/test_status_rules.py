@@ -17,7 +17,7 @@ from missionfsm.kernel.readings import choose, meet
 from missionfsm.kernel.rules import INTERNAL, INVALID_ARGUMENT, NOT_FOUND, OK, PERMISSION_DENIED
 from missionfsm.tools.check.verdict import Outcome
 
-FLEET = initial(CODEC.world(WORLDS[0]))
+FLEET = initial(CODEC.read_world(WORLDS[0]))
 IA, NF, PD = INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED
 BOTH: Any = {"selector": {"robotIds": {"ids": ["r3"]}, "locationId": "L1"}}
 
@@ -25,7 +25,7 @@ BOTH: Any = {"selector": {"robotIds": {"ids": ["r3"]}, "locationId": "L1"}}
 def codes(method: str, params: Any, choice: dict[str, str] | None = None) -> set[str]:
     """What may be answered in the usual world besides the failures that can always come."""
     decided = choose(AMBIGUITIES, choice) if choice is not None else -1
-    steps = SPEC.outcomes(FLEET, CODEC.request(method, params), ())
+    steps = SPEC.outcomes(FLEET, CODEC.read_request(method, params), ())
     always = {"UNAUTHENTICATED", "RESOURCE_EXHAUSTED", "UNIMPLEMENTED", "UNAVAILABLE", "CANCELLED"}
     return {
         one.answer.code
@@ -103,7 +103,7 @@ def test_every_refusal_fires_somewhere_and_not_everywhere() -> None:
     """In the usual world each condition holds for some prompt of the alphabet, and fails for another."""
     fires: dict[str, set[bool]] = {}
     for prompt in ALPHABET.inputs:
-        request = CODEC.request(prompt.method, prompt.params)
+        request = CODEC.read_request(prompt.method, prompt.params)
         for rule in OPERATIONS[prompt.method].refusals:
             fires.setdefault(rule.id, set()).add(rule(FLEET, request))
     assert {rule for rule, seen in fires.items() if seen != {True, False}} == set()
@@ -167,9 +167,9 @@ def test_a_robot_that_is_offline_may_be_answered_for_in_three_ways(letter: str, 
 
 def test_whose_the_robots_are_and_where_decides_every_refusal() -> None:
     """What robots report has no say in which rules refuse a request, so that it is decided without it."""
-    requests = [CODEC.request(one.method, one.params) for one in ALPHABET.inputs]
+    requests = [CODEC.read_request(one.method, one.params) for one in ALPHABET.inputs]
     for world in WORLDS:
-        fleet = initial(CODEC.world(world))
+        fleet = initial(CODEC.read_world(world))
         assert whose(fleet) is whose(evolve(fleet, fault=True))
         assert not any(one.seen for one in whose(fleet).robots)
         for request in requests:

@@ -71,12 +71,12 @@ def triggers(times: int) -> Callable[[], None]:
 def asked(*, whole: bool, times: int) -> Callable[[], None]:
     """So many requests to the model: what it answers in a state, or the whole next snapshot with what is seen of it."""
     model = Reference(MISSION)
-    here = model.start(MISSION.codec.world(WORLD))
-    names, rest = MISSION.codec.split("SkipGoal", {})
+    here = model.start(MISSION.codec.read_world(WORLD))
+    names, rest = MISSION.codec.split_request("SkipGoal", {})
     params = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
-    create = MISSION.codec.request("CreateMission", params)
+    create = MISSION.codec.read_request("CreateMission", params)
     here, _ = model.call(here, create)
-    skip = MISSION.codec.request("SkipGoal", rest)
+    skip = MISSION.codec.read_request("SkipGoal", rest)
     assert names == ()
 
     def steps_alone() -> None:
@@ -128,7 +128,7 @@ def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int,
     """Distinct states a second, every refusal tried in every situation; and with every state read as a value."""
     alphabet = MISSION.alphabet(WORLD, bounds)
     labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
-    start = SPEC.initial(MISSION.codec.world(WORLD))
+    start = SPEC.initial(MISSION.codec.read_world(WORLD))
     found = benchmark.pedantic(
         reachable, (SPEC, start, labels, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
     )
@@ -145,7 +145,7 @@ def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:
     bounds = Bounds(2, goals=2, batch=2)
     alphabet = MISSION.alphabet(WORLD, bounds)
     labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
-    start = SPEC.initial(MISSION.codec.world(WORLD))
+    start = SPEC.initial(MISSION.codec.read_world(WORLD))
     states = list(reachable(SPEC, start, labels, bounds.size, DEFAULT))
 
     def every_step() -> int:
@@ -172,7 +172,7 @@ def written(path: Path, lines: int) -> Path:
 
 
 def observed(automaton: Automaton, events: list[Event]) -> None:
-    belief = Belief(automaton, MISSION.codec.world(WORLD))
+    belief = Belief(automaton, MISSION.codec.read_world(WORLD))
     for event in events:
         assert belief.observe(event)
 

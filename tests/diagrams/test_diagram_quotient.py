@@ -64,10 +64,10 @@ TURNSTILE = Spec(
     ambiguities=(SECOND,),
 )
 CODEC: Any = SimpleNamespace(
-    world=lambda _: None,
-    split=lambda _, params: ((), params),
-    request=lambda method, _: method,
-    drive=lambda _: (Push(), ()),
+    read_world=lambda _: None,
+    split_request=lambda _, params: ((), params),
+    read_request=lambda method, _: method,
+    read_drive=lambda _: (Push(), ()),
 )
 SYSTEM = System("turnstile", TURNSTILE, CODEC, lambda *_: Alphabet((), (), (), (), ({},)))
 SKETCH = Sketch(
@@ -189,7 +189,7 @@ def check(name: str, sketch: Sketch, choice: dict[str, str], seeds: int) -> None
     moves = {(move.source, move.label, move.code, move.target) for move in drawn}
     for seed in range(seeds):
         walker = Walker(name, sketch, choice, seed)
-        here = walker.model.start(system.codec.world(sketch.world))
+        here = walker.model.start(system.codec.read_world(sketch.world))
         for _ in range(30):
             here, taken = walker.step(here)
             assert taken in moves or None in (taken[0], taken[3]), (choice, seed)

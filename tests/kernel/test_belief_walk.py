@@ -50,8 +50,8 @@ def robot(seed: int) -> Iterator[history.Event]:
             yield Returned(("call", called), reply.answer, reply.names)
         for sent in reply.sent:
             message = SYSTEM.codec.write_message(sent.view, sent.names, model.choice, sent.number, 0.0)
-            ((names, marks, rest),) = SYSTEM.codec.strip(message)
-            yield Received(sent.channel, SYSTEM.codec.content(rest), names, marks)
+            ((names, marks, rest),) = SYSTEM.codec.split_message(message)
+            yield Received(sent.channel, SYSTEM.codec.read_content(rest), names, marks)
 
     request = Request("SubscribeMissionStatus")
     names: tuple[history.Name, ...] = ()

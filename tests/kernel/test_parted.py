@@ -96,7 +96,7 @@ def test_a_fleet_is_judged_robot_by_robot(driven: tuple[str, ...]) -> None:
     robots = [{"robotId": name, "locationId": "L1", "state": _report(name, 75)["drive"]} for name in ("r1", "r2")]
     for robot in robots:
         robot["state"] = {"battery": robot["state"]["value"]}
-    world = found.codec.world({"robots": robots, "locations": [{"locationId": "L1"}]})
+    world = found.codec.read_world({"robots": robots, "locations": [{"locationId": "L1"}]})
     start = [
         {
             "call": 1,

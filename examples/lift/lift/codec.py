@@ -21,7 +21,7 @@ def ride_name(ride: str) -> Names:
     return (("ride", ride),)
 
 
-def split(method: str, params: JSON) -> tuple[Names, JSON]:
+def split_request(method: str, params: JSON) -> tuple[Names, JSON]:
     """The name of a ride is taken out of a request."""
     if method not in OPERATIONS:
         raise UnreadableError(f"{method} is not a method of a lift; those are {', '.join(OPERATIONS)}")
@@ -29,7 +29,7 @@ def split(method: str, params: JSON) -> tuple[Names, JSON]:
     return (ride_name(ride), {**params, "ride": "-"}) if method == "Cancel" and isinstance(ride, str) else ((), params)
 
 
-def request(method: str, params: JSON) -> Asked:
+def read_request(method: str, params: JSON) -> Asked:
     """What is left of the params is the floor."""
     floor = params.get("floor") if isinstance(params, dict) else None
     return Asked(method, floor if type(floor) is int and floor in FLOORS else None)
@@ -61,7 +61,7 @@ def write_answer(method: str, _: Answer, names: Names) -> JSON:
     return {"stream": names[0][1]} if method == "Watch" else {"ride": names[0][1]} if method == "Call" else {}
 
 
-def strip(message: JSON) -> tuple[Part, ...]:
+def split_message(message: JSON) -> tuple[Part, ...]:
     """``{"rides": [{"ride": "r1", "floor": 2}], "moving": true}``: its names, and what is left."""
     rides = message.get("rides") if isinstance(message, dict) else None
     if not isinstance(rides, list) or not all(
@@ -73,7 +73,7 @@ def strip(message: JSON) -> tuple[Part, ...]:
     return ((names, (), {**message, "rides": bare}),)
 
 
-def content(message: JSON) -> Lift | Malformed:
+def read_content(message: JSON) -> Lift | Malformed:
     """What a message shows."""
     try:
         floors = tuple(one["floor"] for one in message["rides"])
@@ -101,13 +101,13 @@ def read_drive(given: JSON) -> tuple[Event, Names]:
 CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=("Watch",),
-    world=lambda _given: None,
-    split=split,
-    request=request,
-    answer=read_answer,
-    strip=strip,
-    content=content,
-    drive=read_drive,
+    read_world=lambda _given: None,
+    split_request=split_request,
+    read_request=read_request,
+    read_answer=read_answer,
+    split_message=split_message,
+    read_content=read_content,
+    read_drive=read_drive,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,

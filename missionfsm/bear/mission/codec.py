@@ -12,7 +12,7 @@ import attrs
 from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import rendered, with_bare_feedback
-from missionfsm.bear.mission.request_codec import REQUESTS, request, split, write_request
+from missionfsm.bear.mission.request_codec import REQUESTS, read_request, split_request, write_request
 from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Family, Fault, World
 from missionfsm.bear.mission.stream import MORE, Listing, Seen, without_ids
@@ -46,7 +46,7 @@ _NAMED, _LISTED = Answer(OK), Answer(OK, unordered=True)
 _WITH_MORE = Answer(OK, MORE), Answer(OK, MORE, unordered=True)
 
 
-def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
+def read_answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     """What a successful result says; one that is not of the documented form is `Malformed`."""
     if method in STREAMS:
         return Answer(OK), (_stream(method, result),)
@@ -103,10 +103,10 @@ def write_answer(method: str, _: Answer, names: tuple[Name, ...]) -> JSON:
 # Status messages.
 
 
-def strip(message: JSON) -> tuple[Part, ...]:
+def split_message(message: JSON) -> tuple[Part, ...]:
     """The mission ids of a status message, its sequence number, and the message without them.
 
-    What is not of the documented form, or worth a remark, is left in for `content` to find.
+    What is not of the documented form, or worth a remark, is left in for `read_content` to find.
     """
     if not isinstance(message, dict):
         return (((), (), message),)
@@ -171,7 +171,7 @@ def _sequence_number(metadata: dict[str, JSON]) -> tuple[int | None, JSON]:
     return found.sequence_number, {"timestamp": None, **left} if found.timestamp is None else left
 
 
-def content(rest: JSON) -> Seen | Malformed:
+def read_content(rest: JSON) -> Seen | Malformed:
     """What a stripped status message shows."""
     bare: list[bool] = []
     metadata: JSON = {}
@@ -280,7 +280,7 @@ def _world_fields(given: JSON) -> dict[str, Any]:
     return fields
 
 
-def world(given: JSON) -> World:
+def read_world(given: JSON) -> World:
     """The world of a `reset` or of a history's first line."""
     return World(**_world_fields(given))
 
@@ -294,7 +294,7 @@ def write_world(one: World) -> JSON:
     }
 
 
-def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive."""
     if not isinstance(given, dict) or not isinstance(given.get("event"), str):
         message = f"drive: {brief(given)} names no event"
@@ -334,13 +334,13 @@ STREAMS = tuple(name for name, operation in OPERATIONS.items() if operation.stre
 CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=STREAMS,
-    world=world,
-    split=split,
-    request=request,
-    answer=answer,
-    strip=strip,
-    content=content,
-    drive=drive,
+    read_world=read_world,
+    split_request=split_request,
+    read_request=read_request,
+    read_answer=read_answer,
+    split_message=split_message,
+    read_content=read_content,
+    read_drive=read_drive,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from missionfsm.bear.mission.codec import content, strip
+from missionfsm.bear.mission.codec import read_content, split_message
 from missionfsm.bear.mission.state import ENDED, LIFECYCLE
 from missionfsm.bear.mission.stream import (
     ALL_LISTED,
@@ -88,13 +88,13 @@ class MissionMonitor:
     def feed(self, message: JSON) -> tuple[Problem, ...]:
         """What is wrong with the next message; nothing, usually."""
         self.messages += 1
-        ((names, marks, rest),) = strip(message)
+        ((names, marks, rest),) = split_message(message)
         if marks and marks[0][1] == self._number and message == self._last and not self._strict:
             self.redelivered += 1
             return ()
         found = list(self._numbered(marks[0][1])) if marks else []
         self._last = message
-        seen = content(rest)
+        seen = read_content(rest)
         if isinstance(seen, Malformed):
             found.append((WELL_FORMED, seen.says))
         elif isinstance(seen, Seen):

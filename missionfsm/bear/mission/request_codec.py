@@ -139,7 +139,7 @@ REQUESTS: Mapping[str, type] = {method: kind for method, (_, kind) in _READERS.i
 """The message that a call takes."""
 
 
-def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+def split_request(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     """The mission id of an UpdateMission and the params with a dash in its place; other requests have none."""
     if method != "UpdateMission" or not isinstance(params, dict):
         return (), params
@@ -154,7 +154,7 @@ def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     return (named,), {**params, outer: {**command, key: "-"}}
 
 
-def request(method: str, params: JSON) -> Request:
+def read_request(method: str, params: JSON) -> Request:
     """The request that a call makes, whatever its names are."""
     if method not in _READERS:
         message = f"{brief(method)} is not a method of bear.mission; those are {', '.join(_READERS)}"

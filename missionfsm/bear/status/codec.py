@@ -34,7 +34,7 @@ STREAMS = tuple(endpoint.value for endpoint in Endpoint)
 # Requests.
 
 
-def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+def split_request(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     """Requests have no names: what a tester calls robots and locations is content."""
     if method not in OPERATIONS:
         message = f"{brief(method)} is not a method of bear.status"
@@ -42,7 +42,7 @@ def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     return (), params
 
 
-def request(method: str, params: JSON) -> Request:
+def read_request(method: str, params: JSON) -> Request:
     """The request that a call makes."""
     params = {} if params is None else params
     try:
@@ -92,7 +92,7 @@ def write_request(asked: Request, _: tuple[Name, ...] = ()) -> JSON:
 # Answers.
 
 
-def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
+def read_answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     """What a successful result says; one that is not of the documented form is `Malformed`."""
     if method in STREAMS:
         stream = result.get("stream") if isinstance(result, dict) else None
@@ -123,10 +123,10 @@ def write_answer(method: str, given: Answer, names: tuple[Name, ...]) -> JSON:
 # Messages.
 
 
-def strip(message: JSON) -> tuple[Part, ...]:
+def split_message(message: JSON) -> tuple[Part, ...]:
     """A message as parts, one for each robot: its number on the track of the robot, and the message without metadata.
 
-    What is not of the documented form is left in, for `content` to find. A map without entries is no part at all, and
+    What is not of the documented form is left in, for `read_content` to find. A map without entries is no part at all, and
     null is the same as absent.
     """
     if not isinstance(message, dict):
@@ -174,7 +174,7 @@ _STRIPPED = "(metadata)"
 """Marks a message whose metadata was there and has been taken out: whether they had a timestamp."""
 
 
-def content(rest: JSON) -> Seen | Malformed:
+def read_content(rest: JSON) -> Seen | Malformed:
     """What a stripped message shows."""
     try:
         return _content(rest)
@@ -280,13 +280,13 @@ def message_of(shown: Seen, metadata: JSON) -> JSON:
 CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=STREAMS,
-    world=world,
-    split=split,
-    request=request,
-    answer=answer,
-    strip=strip,
-    content=content,
-    drive=drive,
+    read_world=world,
+    split_request=split_request,
+    read_request=read_request,
+    read_answer=read_answer,
+    split_message=split_message,
+    read_content=read_content,
+    read_drive=drive,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,

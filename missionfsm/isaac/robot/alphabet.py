@@ -39,7 +39,7 @@ def _drives(channel: str, status_channel: str) -> Iterator[JSON]:
 
 def alphabet(world: JSON, _: Bounds) -> Alphabet:
     """What is worth trying on a robot in a world."""
-    here = CODEC.world(world)
+    here = CODEC.read_world(world)
     plain = {
         "event": "line",
         "line": CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))["line"],

@@ -43,7 +43,7 @@ ANY_NAME = "robot"
 _WORLD = {"name": "name", "channel": "channel", "statusChannel": "status_channel", "nameChannel": "name_channel"}
 
 
-def world(given: JSON) -> World:
+def read_world(given: JSON) -> World:
     """The world: the robot's name, which may be left untold, and its channels."""
     given = {} if given is None else given
     if not isinstance(given, dict) or not set(given) <= set(_WORLD):
@@ -98,7 +98,7 @@ def _is_node(value: JSON) -> bool:
     return isinstance(value, dict) and all(isinstance(component, dict) for component in value.values())
 
 
-def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """The event of a drive and the mission that it names."""
     event = given.get("event") if isinstance(given, dict) else None
     if event == "line":
@@ -133,7 +133,7 @@ def write_drive(event: Event, names: tuple[Name, ...]) -> JSON:
 # Lines that the robot sends.
 
 
-def strip(line: JSON) -> tuple[Part, ...]:
+def split_message(line: JSON) -> tuple[Part, ...]:
     """The mission's identifier in a line, the uuid of its header as a mark, and what is left of it."""
     names, said = see(line)
     own = stamp(line)
@@ -180,13 +180,13 @@ CODEC = Codec(
     methods=tuple(SPEC.operations),
     streams=(),
     measured=("seconds",),
-    world=world,
-    split=_split,
-    request=_split,
-    answer=_answer,
-    strip=strip,
-    content=from_json,
-    drive=drive,
+    read_world=read_world,
+    split_request=_split,
+    read_request=_split,
+    read_answer=_answer,
+    split_message=split_message,
+    read_content=from_json,
+    read_drive=read_drive,
     write_request=lambda *_: {},
     write_answer=lambda *_: {},
     write_message=write_message,

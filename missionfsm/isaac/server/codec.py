@@ -42,7 +42,7 @@ _BUFFERS = "type"
 _MOST_DIGITS = 19
 
 
-def world(given: JSON) -> World:
+def read_world(given: JSON) -> World:
     """The name channel of a world, and by how many seconds the times of a history may be off."""
     given = given or {}
     if not isinstance(given, dict) or not set(given) <= {"nameChannel", "tolerance"}:
@@ -62,7 +62,7 @@ def write_world(given: World) -> JSON:
 # Calls.
 
 
-def split(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
+def split_request(method: str, params: JSON) -> tuple[tuple[Name, ...], JSON]:
     """The handles that a submission names as upstreams, and what is left with a 0 in the place of each."""
     mission = params.get("mission") if isinstance(params, dict) else None
     upstream = mission.get("upstream") if isinstance(mission, dict) else None
@@ -77,7 +77,7 @@ def _is_handle(value: JSON) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
-def request(method: str, params: JSON) -> Submission | Statuses:
+def read_request(method: str, params: JSON) -> Submission | Statuses:
     """The request of a call, whatever its handles are."""
     if method == "statuses":
         return Statuses()
@@ -177,7 +177,7 @@ _WORDS = {
 _BY_NAME = {name: word for word, names in _WORDS.items() for name in names}
 
 
-def answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
+def read_answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
     """What a result says. Missions are shown in the order of their handles, which is that of their submission."""
     if method == "submit":
         handle = result.get("mission") if isinstance(result, dict) else None
@@ -237,7 +237,7 @@ def _connection(given: JSON) -> Name:
     return ("connection", number)
 
 
-def drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
+def read_drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     """The event of a drive and its names: the connection, then the missions that a line names."""
     event = given.get("event") if isinstance(given, dict) else None
     if event == "connect":
@@ -252,9 +252,9 @@ def drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.server")
 
 
-def happened(given: JSON) -> tuple[Any, tuple[Name, ...]]:
+def read_drive_result(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     """The event of a drive that happened and its names: a robot that has connected has a connection."""
-    event, names = drive(given)
+    event, names = read_drive(given)
     return event, names or ((_connection(given),) if isinstance(event, Connects) else ())
 
 
@@ -300,7 +300,7 @@ def write_drive(event: Incident, names: tuple[Name, ...]) -> JSON:
     return {"event": "line", **number, "line": line}
 
 
-def write_happened(event: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
+def write_drive_result(event: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
     """What connecting tells: the connection's number."""
     return {"connection": names[0][1]} if isinstance(event, Connects) else {}  # type: ignore[index]
 
@@ -308,7 +308,7 @@ def write_happened(event: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
 # Lines that the server sends.
 
 
-def strip(line: JSON) -> tuple[Part, ...]:
+def split_message(line: JSON) -> tuple[Part, ...]:
     """The identifier in a line, the uuid of its header as a mark, and what is left of it."""
     names, said = see(line)
     own = stamp(line)
@@ -335,18 +335,18 @@ CODEC = Codec(
     methods=tuple(SPEC.operations),
     streams=(),
     measured=("seconds",),
-    world=world,
-    split=split,
-    request=request,
-    answer=answer,
-    strip=strip,
-    content=from_json,
-    drive=drive,
+    read_world=read_world,
+    split_request=split_request,
+    read_request=read_request,
+    read_answer=read_answer,
+    split_message=split_message,
+    read_content=from_json,
+    read_drive=read_drive,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
     write_world=write_world,
     write_drive=write_drive,
-    write_happened=write_happened,
-    happened=happened,
+    write_drive_result=write_drive_result,
+    read_drive_result=read_drive_result,
 )

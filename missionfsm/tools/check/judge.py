@@ -91,7 +91,7 @@ class Judge:
         self.automaton.successors.live = not waits
         self._no_flagged = no_flagged
         self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
-        world = system.codec.world(head.world)
+        world = system.codec.read_world(head.world)
         self.belief: Belief | Parted = Belief(self.automaton, world, self._tally, past)
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:

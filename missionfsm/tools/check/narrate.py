@@ -42,7 +42,7 @@ def story_of(system: System, violation: Violation) -> str:
 
 def _unusual(system: System, world: JSON) -> str:
     """The members of a world that are not as in the usual one, as JSON of moderate length; empty if it is that."""
-    read = system.codec.world
+    read = system.codec.read_world
     if read(world) == read(system.alphabet({}, Bounds()).worlds[0]):
         return ""
     differs = dict(world)

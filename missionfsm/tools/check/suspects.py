@@ -61,7 +61,9 @@ def _suspect(system: System, history: tuple[JSON, ...], at: int, readings: Mappi
     line = lines[at]
     call = next(one for one in lines if one.get("call") == line["return"])
     code = OK if "result" in line else line["error"]["status"]
-    request = system.codec.request(call["method"], system.codec.split(call["method"], call.get("params", {}))[1])
+    request = system.codec.read_request(
+        call["method"], system.codec.split_request(call["method"], call.get("params", {}))[1]
+    )
     judge = Judge(system, head(history[0]), readings=readings, apart=True)
     for one in lines[:at]:
         judge.feed(one)

@@ -165,7 +165,7 @@ class Conversation:
         self._notifications(exchange.after)
 
     def _learn(self, method: str, result: JSON) -> None:
-        answer, names = _read(self.system.codec.answer, method, result)
+        answer, names = _read(self.system.codec.read_answer, method, result)
         self._bind(names)
         if answer.code == OK and method not in self.system.codec.streams:
             self.succeeded += 1
@@ -197,7 +197,7 @@ class Conversation:
                 message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
                 raise SubjectError(message)
             self._hear({"drive": driven})
-            self._bind(_read(self.system.codec.happened, driven)[1])
+            self._bind(_read(self.system.codec.read_drive_result, driven)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(caused)
 
@@ -252,7 +252,7 @@ class Conversation:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
                 self._hear(line)
                 self._bind((("connection", line["connection"]),))
-                for names, _, _ in _read(self.system.codec.strip, line["line"]):
+                for names, _, _ in _read(self.system.codec.split_message, line["line"]):
                     self._bind(names)
 
     def _note(self, line: JSON) -> None:

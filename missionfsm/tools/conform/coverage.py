@@ -78,7 +78,7 @@ class Census:
         self._defaults = choose(spec.ambiguities)
         self._all = system.alphabet({}, BOUNDS).worlds
         for world, params in enumerate(self._all):
-            self._look(world, spec.initial(system.codec.world(params)), params)
+            self._look(world, spec.initial(system.codec.read_world(params)), params)
 
     def why(self, rule: Rule) -> str:
         """Why a rule comes up seldom."""

@@ -120,8 +120,8 @@ class Guide:
         for prompt in alphabet.inputs:
             if is_template(prompt.params):
                 continue
-            names, rest = self.system.codec.split(prompt.method, prompt.params)
-            request = self.system.codec.request(prompt.method, rest)
+            names, rest = self.system.codec.split_request(prompt.method, prompt.params)
+            request = self.system.codec.read_request(prompt.method, rest)
             found.setdefault(prompt.method, {}).setdefault(request, Call(prompt, request, bool(names)))
         return {method: list(calls.values()) for method, calls in found.items()}
 
@@ -129,7 +129,7 @@ class Guide:
         found: dict[str, list[tuple[JSON, Any]]] = {}
         for drive in alphabet.drives:
             if not is_template(drive):
-                found.setdefault(drive["event"], []).append((drive, self.system.codec.drive(drive)[0]))
+                found.setdefault(drive["event"], []).append((drive, self.system.codec.read_drive(drive)[0]))
         return found
 
     def proposals(
@@ -342,10 +342,10 @@ def template_of(system: System, method: str, params: JSON) -> Template:
     made = {slot: system.naming.make(kind, _MADE_UP + slot) for slot, kind in wants.items()}
     filled = fill(params, made, system.naming, _MADE_UP - 1)
     if method == "drive":
-        what, names = system.codec.drive(filled)
+        what, names = system.codec.read_drive(filled)
     else:
-        names, rest = system.codec.split(method, filled)
-        what = system.codec.request(method, rest)
+        names, rest = system.codec.split_request(method, filled)
+        what = system.codec.read_request(method, rest)
     of = {name: slot for slot, name in made.items()}
     return Template(method, params, what, wants, tuple(of.get(one) for one in names))
 

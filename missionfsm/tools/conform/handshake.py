@@ -79,7 +79,7 @@ def _fixed_world(system: System, result: dict[str, Any]) -> JSON:
         message = 'the adapter answered initialize with "worlds": "fixed" and without the world that it has'
         raise SubjectError(message)
     try:
-        system.codec.world(result["world"])
+        system.codec.read_world(result["world"])
     except UnreadableError as error:
         message = f"the adapter answered initialize with a world that cannot be read: {error}"
         raise SubjectError(message) from None

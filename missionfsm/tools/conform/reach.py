@@ -127,10 +127,10 @@ class Reach:
         if key not in self._read:
             codec = self.system.codec
             if action.method == "drive":
-                self._read[key] = codec.drive(action.params)[0]
+                self._read[key] = codec.read_drive(action.params)[0]
             else:
-                rest = codec.split(action.method, filled(action.params, "any"))[1]
-                self._read[key] = codec.request(action.method, rest)
+                rest = codec.split_request(action.method, filled(action.params, "any"))[1]
+                self._read[key] = codec.read_request(action.method, rest)
         return self._read[key]
 
     def choose(self, conversation: Conversation, world: int, draw: random.Random) -> Candidate | None:

@@ -190,7 +190,7 @@ class _Smoke:
         self._begun(world)
         exchange = self._ask(method, params)
         if exchange.error is None:
-            shape = self.system.codec.answer(method, exchange.result)[0].shape
+            shape = self.system.codec.read_answer(method, exchange.result)[0].shape
             if isinstance(shape, Malformed):
                 self.faults.append(f"{method}: {brief(exchange.result)} came, which is no answer to it: {shape.says}")
         self._empty("settle", {})
@@ -216,8 +216,8 @@ class _Smoke:
                 self.faults.append(fault)
 
     def _wrong(self, message: JSON) -> Iterator[str]:
-        for _, _, rest in self.system.codec.strip(message):
-            content = self.system.codec.content(rest)
+        for _, _, rest in self.system.codec.split_message(message):
+            content = self.system.codec.read_content(rest)
             if isinstance(content, Malformed):
                 yield content.says
 

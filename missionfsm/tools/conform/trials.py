@@ -198,11 +198,11 @@ class _Search:
         """
         streams = self.system.codec.streams
         params = self.lab.guide.worlds[world]
-        here = tuple(model.start(self.system.codec.world(params)) for model in self.models)
+        here = tuple(model.start(self.system.codec.read_world(params)) for model in self.models)
         node = _Node(world, here, (), {})
         if len(streams) != 1:
             return node, False
-        watching = _Move(self.system.codec.request(streams[0], {}), (), Action(1, streams[0], {}), driven=False)
+        watching = _Move(self.system.codec.read_request(streams[0], {}), (), Action(1, streams[0], {}), driven=False)
         return self._step(node, watching) or (node, False)
 
     # What can be done.
@@ -251,7 +251,7 @@ class _Search:
                 codec, serial = self.system.codec, len(node.actions) + 1
                 params = fill(template.params, picked, self.system.naming, serial, node.given)
                 driven = template.method == "drive"
-                names = codec.drive(params)[1] if driven else codec.split(template.method, params)[0]
+                names = codec.read_drive(params)[1] if driven else codec.split_request(template.method, params)[0]
             yield names, tuple((slot, node.given[name]) for slot, name in picked.items() if name in node.given)
 
     # What comes of it.

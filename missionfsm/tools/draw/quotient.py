@@ -81,7 +81,7 @@ class _Explorer:
         self._sketch = sketch
         self._assumed = assumed
         self._labels = Labels.from_alphabet(system, sketch.inputs, sketch.drives)
-        self._first = self._spec.initial(system.codec.world(sketch.world))
+        self._first = self._spec.initial(system.codec.read_world(sketch.world))
 
     def quotient(self) -> Quotient:
         node = self._sketch.node

@@ -39,11 +39,11 @@ class Labels:
         requests, events = [], []
         for prompt in prompts:
             params, picked = _filled(system, prompt.params)
-            names, rest = system.codec.split(prompt.method, params)
-            requests.append((system.codec.request(prompt.method, rest), tuple(name in picked for name in names)))
+            names, rest = system.codec.split_request(prompt.method, params)
+            requests.append((system.codec.read_request(prompt.method, rest), tuple(name in picked for name in names)))
         for drive in drives:
             params, picked = _filled(system, drive)
-            event, names = system.codec.drive(params)
+            event, names = system.codec.read_drive(params)
             events.append((event, tuple(name in picked for name in names)))
         return cls(tuple(dict.fromkeys(requests)), tuple(dict.fromkeys(events)))
 
@@ -278,7 +278,7 @@ def explore(  # noqa: PLR0913 - every one has a default
     usual = system.alphabet({}, bounds).worlds[0] if world is None else world
     alphabet = system.alphabet(usual, bounds)
     labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
-    start = spec.initial(system.codec.world(usual))
+    start = spec.initial(system.codec.read_world(usual))
     found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
     broken = _first_broken(found, spec.invariants if invariants is None else invariants)
     quotient = _quotient(spec, forget_ended=forget_ended)

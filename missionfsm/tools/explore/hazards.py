@@ -129,7 +129,7 @@ class _Search:
 
     def run(self, world: JSON) -> tuple[Hazard, ...]:
         """Visit every state within the bounds, nearest first."""
-        first = self._model.start(self._system.codec.world(world))
+        first = self._model.start(self._system.codec.read_world(world))
         situation = self._system.spec.abstraction.situation
         seen = {situation(first.state)}
         todo = [_Place(first)]

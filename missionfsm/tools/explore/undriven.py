@@ -81,7 +81,7 @@ class _Look:
         usual = system.alphabet({}, bounds).worlds[0]
         alphabet = system.alphabet(usual, bounds)
         self._labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
-        self._start = self.spec.initial(system.codec.world(usual))
+        self._start = self.spec.initial(system.codec.read_world(usual))
         self._succeeds: dict[Any, bool] = {}
 
     def _possible(self, steps: Iterable[Step]) -> Iterator[Step]:

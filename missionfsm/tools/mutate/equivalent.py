@@ -202,7 +202,7 @@ class _Explorer:
         plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
         own = Labels.from_alphabet(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
-        start = self.spec.initial(self.system.codec.world(world))
+        start = self.spec.initial(self.system.codec.read_world(world))
         extent, abstraction = self.spec.extent, self.spec.abstraction
         # Where clocks tell states apart, what answers calls is in the shape.
         same = abstraction.shape if abstraction.outline else abstraction.situation

@@ -108,7 +108,7 @@ def recognised(
     """
     codec = system.codec
     message = mutate_message(codec.write_message(view, names, choice, 1, 0.0))
-    return tuple(system.spec.matches(view, codec.content(rest)) for _, _, rest in codec.strip(message))
+    return tuple(system.spec.matches(view, codec.read_content(rest)) for _, _, rest in codec.split_message(message))
 
 
 class Reference:

@@ -88,7 +88,7 @@ class ReferenceSubject:
         return self._here
 
     def _reset(self, params: JSON) -> Exchange:
-        world = self.model.system.codec.world(params.get("world", {}) if isinstance(params, dict) else {})
+        world = self.model.system.codec.read_world(params.get("world", {}) if isinstance(params, dict) else {})
         fresh = self.model.start(world)
         # Stream numbers are never used twice in one process, so the serial numbers go on.
         self._here = Snapshot(fresh.state, fresh.names, fresh.channels, max(self._minted, fresh.minted))
@@ -96,10 +96,10 @@ class ReferenceSubject:
 
     def _drive(self, params: JSON) -> Exchange:
         codec = self.model.system.codec
-        event, names = codec.drive(params)
+        event, names = codec.read_drive(params)
         self._here, reply = self.model.drive(self._started(), event, names)
         self._minted = self._here.minted
-        measured = codec.write_happened(event, reply.names) if reply.happened else {}
+        measured = codec.write_drive_result(event, reply.names) if reply.happened else {}
         return Exchange({"happened": reply.happened, **measured}, after=self._notifications(reply))
 
     def _cancel(self, params: JSON) -> Exchange:
@@ -109,8 +109,8 @@ class ReferenceSubject:
 
     def _call(self, method: str, params: JSON) -> Exchange:
         codec = self.model.system.codec
-        names, rest = codec.split(method, params)
-        self._here, reply = self.model.call(self._started(), codec.request(method, rest), names)
+        names, rest = codec.split_request(method, params)
+        self._here, reply = self.model.call(self._started(), codec.read_request(method, rest), names)
         self._minted = self._here.minted
         self.rules = reply.rules
         answer = reply.answer

@@ -96,7 +96,7 @@ class Lab:
         return self.spec.initial(self.system.codec.read_world(world))
 
     def extent(self, here: State) -> int:
-        return self.spec.extent(here)
+        return self.spec.explore_size(here)
 
     def most(self, start: State) -> int:
         """How far a state may go to be looked at."""
@@ -127,7 +127,7 @@ class Lab:
         """A few of them in which different things can be done."""
         found: dict[Hashable, State] = {}
         for here in self.near(assumed, world):
-            found.setdefault(self.spec.abstraction.situation(here), here)
+            found.setdefault(self.spec.abstraction.enabled_key(here), here)
         return list(found.values())[:SITUATIONS]
 
     def outcomes(self, here: State, request: Any, refs: References) -> tuple[Step, ...]:
@@ -279,10 +279,10 @@ def test_invariants_hold_and_possibilities_are_met(lab: Lab, *, decided: bool) -
 
 
 def test_states_in_one_situation_answer_alike(lab: Lab) -> None:
-    """In states with one situation, every call has the same answers under the same readings."""
+    """In states with one enabled key, every call has the same answers under the same readings."""
     groups = defaultdict(list)
     for here in lab.near(UNCONSTRAINED, lab.worlds[0]):
-        groups[lab.spec.abstraction.situation(here)].append(here)
+        groups[lab.spec.abstraction.enabled_key(here)].append(here)
 
     def answers(here: State) -> list[Any]:
         return [
@@ -304,10 +304,10 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
 
     Under all readings at once, two missions are tried in the first world and one in the others.
     """
-    if lab.spec.abstraction.shortcut is None:
+    if lab.spec.abstraction.compiled is None:
         pytest.skip(f"{lab.system.name} has no shortcut")
     assumed = choose(lab.spec.ambiguities) if decided else UNCONSTRAINED
-    slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, shortcut=None))
+    slow = evolve(lab.spec, abstraction=evolve(lab.spec.abstraction, compiled=None))
     for number, world in enumerate(lab.worlds):
         bounds = Bounds(2 if decided or number == 0 else 1, goals=1, batch=2)
         alphabet = lab.system.alphabet(world, bounds)

@@ -43,7 +43,7 @@ class Compiled(Protocol):
             requests: each with what may be the name of something there, of each of its names.
             events: what may happen.
             assumed: the readings that are possible.
-            most: how large a state may be (see `Abstraction.extent`).
+            most: how large a state may be (see `Abstraction.explore_size`).
             forget_ended: what has ended is only counted.
         """
 
@@ -55,35 +55,35 @@ class Abstraction:
     It decides where they look; what a system does, it does not change.
 
     Attributes:
-        situation: state to what of it decides its steps: in states with the same one, the same calls have the same
+        enabled_key: state to what of it decides its steps: in states with the same key the same calls have the same
             outcomes, and the same events happen in the same ways.
-        shape: state to what a search tells it apart by; coarser than `situation` where that has too many.
-        idle_shape: the same for what changes nothing; None where it is `shape`.
-        asked: state to what of it decides what the rules say to a call, and whether that changes anything; None where
-            that is `shape`.
+        search_key: state to what a search tells it apart by; coarser than `enabled_key` where that has too many.
+        idle_search_key: the same for what changes nothing; None where it is `search_key`.
+        rules_key: state to what of it decides what the rules say to a call, and whether that changes anything; None
+            where that is `search_key`.
         phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
-        place: (state, position of a name) to where it stands, as far as a search tells places apart.
-        size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
+        name_key: (state, position of a name) to what a search tells it apart by.
+        search_size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
             names.
-        extent: the same for exploration; None where that is the number of its names.
-        outline: state to the one that stands for it in exploration: without what it remembers of times, and of
+        explore_size: the same for exploration; None where that is the number of its names.
+        canonical: state to the one that stands for it in exploration: without what it remembers of times, and of
             readings, since every step may follow any; None where states remember neither.
         forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
             ways, but for what is forgotten.
         indistinct: step that changes the state to one after which nobody can ever tell the difference, the same for all
             those; None where nothing of a state stays hidden for good.
-        shortcut: what makes the steps of the system again, only faster.
+        compiled: what makes the steps of the system again, only faster.
     """
 
-    situation: Callable[[State], Hashable] = lambda state: state
-    shape: Callable[[State], Hashable] = lambda state: state
-    idle_shape: Callable[[State], Hashable] | None = None
-    asked: Callable[[State], Hashable] | None = None
+    enabled_key: Callable[[State], Hashable] = lambda state: state
+    search_key: Callable[[State], Hashable] = lambda state: state
+    idle_search_key: Callable[[State], Hashable] | None = None
+    rules_key: Callable[[State], Hashable] | None = None
     phase: Callable[[State], Hashable] = lambda _: None
-    place: Callable[[State, int | None], Hashable] = lambda _, ref: ref
-    size: Callable[[State], int] | None = None
-    extent: Callable[[State], int] | None = None
-    outline: Callable[[State], State] | None = None
+    name_key: Callable[[State, int | None], Hashable] = lambda _, ref: ref
+    search_size: Callable[[State], int] | None = None
+    explore_size: Callable[[State], int] | None = None
+    canonical: Callable[[State], State] | None = None
     forget_ended: Callable[[State], State] | None = None
     indistinct: Callable[[Step], Step] | None = None
-    shortcut: Compiled | None = None
+    compiled: Compiled | None = None

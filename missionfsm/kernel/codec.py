@@ -50,8 +50,8 @@ class Codec:
         split_request: (method, params) to the names in a request and what is left of it, which is JSON again.
         read_request: (method, what is left of the params) to the request.
         read_answer: (method, result) to the answer and its names.
-        split_message: a message to its parts, each with its names, its marks and what is left of it, which is JSON again. Most
-            messages are one part; one about several robots has a part for each.
+        split_message: a message to its parts, each with its names, its marks and what is left of it, which is JSON
+            again. Most messages are one part; one about several robots has a part for each.
         read_content: what is left of a part to its content.
         read_drive: a drive's JSON to the event and its names.
         write_request: (request, names) to params.
@@ -61,14 +61,14 @@ class Codec:
         write_world: a world to the parameters of `reset`.
         write_drive: (event, names) to JSON.
         write_drive_result: (event, names) to what the result of a drive says besides that it happened.
-        read_drive_result: the JSON of a drive that happened, with what its result says, to the event and its names, among them
-            those that only the environment could give.
+        read_drive_result: the JSON of a drive that happened, with what its result says, to the event and its names,
+            among them those that only the environment could give.
         measured: fields of a drive that its result may give anew: in real time never exactly as much passes as was
             wanted.
         carries: (method, params) to whether binary protobuf can carry such a request: no two members of a oneof, no
             unknown names, no wrong types.
-        skim: the text of a message that is one part, as nearly all are written, to what `split_message` finds; None for any
-            other text. Two texts of which the same is left have the same content.
+        skim: the text of a message that is one part, as nearly all are written, to what `split_message` finds; None for
+            any other text. Two texts of which the same is left have the same content.
         robot_in_params: whether the system is about one robot, so that params that name a robot only say which.
     """
 

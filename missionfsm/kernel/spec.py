@@ -294,13 +294,13 @@ class Spec:
     others: bool = False
     used: Callable[[World], State] | None = None
 
-    def size(self, state: State) -> int:
+    def search_size(self, state: State) -> int:
         """How large a state is for a search."""
-        return (self.abstraction.size or self.names)(state)
+        return (self.abstraction.search_size or self.names)(state)
 
-    def extent(self, state: State) -> int:
+    def explore_size(self, state: State) -> int:
         """How large a state is for an exploration."""
-        return (self.abstraction.extent or self.names)(state)
+        return (self.abstraction.explore_size or self.names)(state)
 
     @property
     def all_rules(self) -> tuple[Rule, ...]:

@@ -91,7 +91,7 @@ class Graph:
         done next; `held` and `shapes` count as an exploration does.
         """
         kinds = {self._start: (TEXT,) * self.spec.names(self._start)}
-        extent, counted = self.spec.extent, self.spec.abstraction.outline or (lambda state: state)
+        extent, counted = self.spec.explore_size, self.spec.abstraction.canonical or (lambda state: state)
         numbers, todo, states = {self._start: 0}, [self._start], []
         for here in todo:  # grows while it is walked
             moves: dict[tuple[int, int, int], None] = {}

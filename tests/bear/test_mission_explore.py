@@ -72,7 +72,7 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
     bounds = Bounds(2, goals=2, batch=2)
     full, counted = graph(bounds, assumed), graph(bounds, assumed, forgetting=True)
     assert {forget_ended(here) for here in full} == set(counted)
-    short = SPEC.abstraction.shortcut
+    short = SPEC.abstraction.compiled
     assert short is not None
     tried = labels(bounds)
     events = [event for event, _ in tried.events]
@@ -89,7 +89,7 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
 def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     """Without the shortcut, counting what has ended reaches the same states."""
     bounds = Bounds(2, goals=1, batch=2)
-    slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, shortcut=None))
+    slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, compiled=None))
     start = SPEC.initial(MISSION.codec.read_world({}))
     found = reachable(slow, start, labels(bounds), bounds.size, assumed, forget_ended=True)
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
@@ -134,7 +134,7 @@ def test_every_rule_fires_and_rests() -> None:
         alphabet = MISSION.alphabet(world, bounds)
         start = SPEC.initial(MISSION.codec.read_world(world))
         found = reachable(SPEC, start, labels(bounds, world), bounds.size)
-        situations = {SPEC.abstraction.situation(here): here for here in found}
+        situations = {SPEC.abstraction.enabled_key(here): here for here in found}
         everything = Labels.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything, settled=fires & rests).items():
             fires |= {rule} if fired else set()

@@ -278,7 +278,7 @@ def _delivery(_: object) -> Delivery:
     )
 
 
-def _shape(robot: Robot) -> tuple[object, ...]:
+def _search_key(robot: Robot) -> tuple[object, ...]:
     """What a search tells robots apart by: what they are at, not where they are to go."""
     active = robot.active
     at = active and (
@@ -336,13 +336,13 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         foresees=foresees,
         succeeds=succeeds,
         abstraction=Abstraction(
-            situation=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
-            shape=_shape,
+            enabled_key=lambda robot: (situation(robot), len(robot.done), len(robot.pending)),
+            search_key=_search_key,
             phase=lambda robot: robot.active and robot.active.state,
-            place=target,
+            name_key=target,
             forget_ended=forget_ended,
             indistinct=_indistinct,
-            shortcut=Shortcut,
+            compiled=Shortcut,
         ),
         used=lambda world: Robot(world, fresh=False),
         decided=lambda decided: specification(operations, decided),

@@ -126,8 +126,8 @@ def write_answer(method: str, given: Answer, names: tuple[Name, ...]) -> JSON:
 def split_message(message: JSON) -> tuple[Part, ...]:
     """A message as parts, one for each robot: its number on the track of the robot, and the message without metadata.
 
-    What is not of the documented form is left in, for `read_content` to find. A map without entries is no part at all, and
-    null is the same as absent.
+    What is not of the documented form is left in, for `read_content` to find. A map without entries is no part at all,
+    and null is the same as absent.
     """
     if not isinstance(message, dict):
         return (((), (), message),)

@@ -185,7 +185,7 @@ def _names(_: Fleet) -> int:
     return 0
 
 
-def _shape(fleet: Fleet) -> tuple[object, ...]:
+def _search_key(fleet: Fleet) -> tuple[object, ...]:
     """Fleets that differ in values alone are of one shape: what is reported, who is offline, what is armed."""
     return (tuple(map(_outline, fleet.robots)), fleet.fault, fleet.unheard)
 
@@ -258,7 +258,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         answers=answers,
-        abstraction=Abstraction(shape=_shape, asked=lambda fleet: (whose(fleet), fleet.fault)),
+        abstraction=Abstraction(search_key=_search_key, rules_key=lambda fleet: (whose(fleet), fleet.fault)),
         parting=Parting(_parts, _alone, _whose),
         rebuilt=specification,
         # No call changes a fleet. What robots reported before a log, and a fault that waits, nobody has seen.

@@ -20,7 +20,7 @@ _SAYS: Callable[[str], Invariant] = lambda state: Invariant(  # noqa: E731 - one
 )
 
 
-def _outline(here: Codelet) -> Codelet:
+def _canonical(here: Codelet) -> Codelet:
     """The codelet without the times: since when nothing may have been said."""
     return Codelet(here.world, here.begun, here.connected, here.running, here.named, here.used, here.waiting)
 
@@ -72,6 +72,6 @@ SPEC = Spec(
             lambda here: here.begun and not here.connected,
         ),
     ),
-    abstraction=Abstraction(situation=_outline, shape=_outline, outline=_outline),
+    abstraction=Abstraction(enabled_key=_canonical, search_key=_canonical, canonical=_canonical),
     unopened=(rules.LINKED.id,),
 )

@@ -7,7 +7,7 @@ from attrs import evolve
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status
 
 
-def shape(server: Server) -> object:
+def search_key(server: Server) -> object:
     """What a search tells a server apart by: how each robot's missions stand and who is connected, not the times."""
     robots = dict.fromkeys((*(one.robot for one in server.missions), *(one.name for one in server.links)))
     return tuple(sorted((_of_robot(server, robot) for robot in robots), key=repr))
@@ -33,23 +33,23 @@ def _queue(queued: list[Mission]) -> tuple[int, tuple[int, ...], bool]:
     return min(2, sum(one.ready for one in queued)), waiting, any(one.doomed for one in queued)
 
 
-def idle_shape(server: Server) -> object:
+def idle_search_key(server: Server) -> object:
     """The same for what has no effect: whether something is under way, and whether a robot is there."""
     return any(one.status in UNDER_WAY for one in server.missions), any(one.serves for one in server.links)
 
 
-def size(server: Server) -> int:
+def search_size(server: Server) -> int:
     """How many missions have not ended; or connections, or half of all missions, if that is more."""
     open_ones = sum(one.status not in ENDED for one in server.missions)
     return max(open_ones, (len(server.missions) + 1) // 2, len(server.links))
 
 
-def extent(server: Server) -> int:
+def explore_size(server: Server) -> int:
     """How many missions there are; a second connection counts as a third mission."""
     return max(len(server.missions), 2 * len(server.links) - 1)
 
 
-def outline(server: Server) -> Server:
+def canonical(server: Server) -> Server:
     """The server with all readings open again, clocks that may strike at any time, and nothing kept for later."""
     missions = tuple(
         evolve(one, lingers=False, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))

@@ -11,7 +11,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.abstraction import extent, idle_shape, outline, shape, size
+from missionfsm.isaac.server.abstraction import canonical, explore_size, idle_search_key, search_key, search_size
 from missionfsm.isaac.server.clocks import started, zero_means
 from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
@@ -355,7 +355,13 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         invariants=INVARIANTS,
         possibilities=POSSIBILITIES,
         answers=agrees,
-        abstraction=Abstraction(shape=shape, idle_shape=idle_shape, size=size, extent=extent, outline=outline),
+        abstraction=Abstraction(
+            search_key=search_key,
+            idle_search_key=idle_search_key,
+            search_size=search_size,
+            explore_size=explore_size,
+            canonical=canonical,
+        ),
         decided=functools.partial(specification, operations),
         rebuilt=specification,
     )

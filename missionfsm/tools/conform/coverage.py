@@ -97,14 +97,14 @@ class Census:
         alphabet = self.system.alphabet(params, BOUNDS)
         plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
         everything = Labels.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
-        size = spec.size
-        situations, found, todo = set[Hashable](), {start}, [start]
+        size = spec.search_size
+        keys, found, todo = set[Hashable](), {start}, [start]
         for here in todo:  # grows while it is walked
-            situation = spec.abstraction.situation(here)
-            if situation not in situations:
-                if len(situations) >= SITUATIONS:
+            key = spec.abstraction.enabled_key(here)
+            if key not in keys:
+                if len(keys) >= SITUATIONS:
                     return
-                situations.add(situation)
+                keys.add(key)
                 self.situations += 1
                 for steps in self._moves(here, everything):
                     if self._enough():

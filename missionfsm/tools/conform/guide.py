@@ -1,6 +1,6 @@
 """Where to go next: the model says what each action would exercise, and the least exercised goes first.
 
-An *edge* is a shape of the system, an operation or drive, and what the rules say to it there. Plain random
+An *edge* is a search key of the state, an operation or drive, and what the rules say to it there. Plain random
 generation finds the common edges again and again; a guide counts them over a whole run and proposes actions on those
 that were walked least, or that lead to situations that were seen least.
 """
@@ -143,26 +143,28 @@ class Guide:
         """
         belief = conversation.judge.belief
         here = rested(conversation.judge.automaton.successors, belief.node.explanations[0])
-        shape, phase = self.abstraction.shape(here.state), self.abstraction.phase(here.state)
+        search_key, phase = self.abstraction.search_key(here.state), self.abstraction.phase(here.state)
         found: list[Proposal] = []
         labels = [only] if only else self._labels[world]
         left_out = self._waiting(conversation).union(conversation.partner.absent)
         names = self._names(conversation, here, self.alphabets[world].wrong_names[:1])
-        for label in sorted(labels, key=lambda one: (self.tried[shape, one], self.taken[one])):
+        for label in sorted(labels, key=lambda one: (self.tried[search_key, one], self.taken[one])):
             if label in left_out:
                 continue
-            found += self._called(conversation, here, shape, names, self.calls[world].get(label, ()))
+            found += self._called(conversation, here, search_key, names, self.calls[world].get(label, ()))
             for drive, event in self.events[world].get(label, ()):
-                edge = self._drive_edge(here, shape, event)
+                edge = self._drive_edge(here, search_key, event)
                 found.append(Proposal("drive", drive, None, *edge, phase))
-            found += self._filled(conversation, here, shape, self.templates[world].get(label, ()))
+            found += self._filled(conversation, here, search_key, self.templates[world].get(label, ()))
             if label == CANCEL.method:
-                found += _cancellations(conversation, shape, phase)
+                found += _cancellations(conversation, search_key, phase)
             enough = sum(not self.walked[one.edge] for one in found) >= ENOUGH or len(found) > MAX_PROPOSALS
             if enough and not rare:
                 break
         if rare:
-            found.sort(key=lambda one: (self.said[phase, one.edge[1:]], one.leads_to == shape, self.walked[one.edge]))
+            found.sort(
+                key=lambda one: (self.said[phase, one.edge[1:]], one.leads_to == search_key, self.walked[one.edge])
+            )
         else:
             found.sort(key=lambda one: (self.walked[one.edge], self.visited[one.leads_to]))
         return found
@@ -177,7 +179,7 @@ class Guide:
         self,
         conversation: Conversation,
         here: Explanation,
-        shape: Hashable,
+        search_key: Hashable,
         names: list[Named],
         calls: Iterable[Call],
     ) -> Iterator[Proposal]:
@@ -185,12 +187,12 @@ class Guide:
         phase = self.abstraction.phase(here.state)
         for call in calls:
             for where, name in names if call.named else _NAMELESS:
-                edge = self._edge(conversation, here, shape, call.request, (where,) if call.named else ())
+                edge = self._edge(conversation, here, search_key, call.request, (where,) if call.named else ())
                 if edge:
                     yield Proposal(call.prompt.method, call.prompt.params, name, *edge, phase)
 
     def _filled(
-        self, conversation: Conversation, here: Explanation, shape: Hashable, templates: Iterable[Template]
+        self, conversation: Conversation, here: Explanation, search_key: Hashable, templates: Iterable[Template]
     ) -> Iterator[Proposal]:
         """Proposals from templates, with some of the names that were given in their slots."""
         belief = conversation.judge.belief
@@ -202,9 +204,9 @@ class Guide:
                 refs = tuple(positions.get(picked.get(-1 if slot is None else slot)) for slot in template.slots)
                 edge: tuple[Edge, Hashable] | None
                 if template.method == "drive":
-                    edge = self._drive_edge(here, shape, template.what, refs, exact=True)
+                    edge = self._drive_edge(here, search_key, template.what, refs, exact=True)
                 else:
-                    edge = self._edge(conversation, here, shape, template.what, refs, exact=True)
+                    edge = self._edge(conversation, here, search_key, template.what, refs, exact=True)
                 if edge:
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
                     yield Proposal(template.method, template.params, None, *edge, phase, picks)
@@ -235,23 +237,23 @@ class Guide:
         self,
         conversation: Conversation,
         here: Explanation,
-        shape: Hashable,
+        search_key: Hashable,
         request: Request,
         refs: Refs,
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable] | None:
-        size, places = self.system.spec.size, self._places(here, refs)
+        size, places = self.system.spec.search_size, self._places(here, refs)
         idle = None
-        if self.abstraction.asked is not None and not exact:
-            idle = self.abstraction.asked(here.state), request, places
+        if self.abstraction.rules_key is not None and not exact:
+            idle = self.abstraction.rules_key(here.state), request, places
             if idle in self._idle:
-                return (self._where(here, shape, []), *self._idle[idle]), shape
-        key = (here.state if exact else shape, request, places)
+                return (self._where(here, search_key, []), *self._idle[idle]), search_key
+        key = (here.state if exact else search_key, request, places)
         if key not in self._edges:
             outcomes = conversation.judge.automaton.successors.outcomes(here.state, request, refs)
             steps = [step for step in outcomes if meet(here.assumed, step.assumes)]
-            found = self._edges[key] = self._leading(here, shape, request, steps)
+            found = self._edges[key] = self._leading(here, search_key, request, steps)
             if idle and found and all(step.after is here.state for step in steps):
                 self._idle[idle] = found[0][1:]
             self._growth[key] = size(_after(here, steps)) - size(here.state)
@@ -259,31 +261,31 @@ class Guide:
         return self._edges[key] if grows <= 0 or size(here.state) + grows <= self.bounds.size else None
 
     def _leading(
-        self, here: Explanation, shape: Hashable, request: Request, steps: list[Step]
+        self, here: Explanation, search_key: Hashable, request: Request, steps: list[Step]
     ) -> tuple[Edge, Hashable] | None:
-        """The edge of a call that may take these steps, and the shape that it leads to; none without a step."""
+        """The edge of a call that may take these steps, and the search key that it leads to; none without a step."""
         if not steps:
             return None
         says = tuple(sorted({rule for step in steps for rule in step.rules}))
         after = _after(here, steps)
-        leads_to = shape if after is here.state else self.abstraction.shape(after)
-        return (self._where(here, shape, steps), self.system.spec.request_operation(request), says), leads_to
+        leads_to = search_key if after is here.state else self.abstraction.search_key(after)
+        return (self._where(here, search_key, steps), self.system.spec.request_operation(request), says), leads_to
 
     def _places(self, here: Explanation, refs: Refs) -> tuple[Hashable, ...]:
-        """Where the named things stand: a shape does not tell their positions apart."""
-        return tuple(self.abstraction.place(here.state, ref) for ref in refs)
+        """Where the named things stand: a search key does not tell their positions apart."""
+        return tuple(self.abstraction.name_key(here.state, ref) for ref in refs)
 
     def _drive_edge(
         self,
         here: Explanation,
-        shape: Hashable,
+        search_key: Hashable,
         event: Incident,
         refs: Refs = (),
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable]:
         """The edge of a drive: where the model says that it cannot happen, the edge stays where it is."""
-        key = (here.state if exact else shape, "drive", event, self._places(here, refs))
+        key = (here.state if exact else search_key, "drive", event, self._places(here, refs))
         if key not in self._edges:
             steps = [
                 step
@@ -291,28 +293,28 @@ class Guide:
                 if meet(here.assumed, step.assumes)
             ]
             says: Hashable = event
-            if exact or self.abstraction.idle_shape is not None:
+            if exact or self.abstraction.idle_search_key is not None:
                 says = (event.name, *sorted({rule for step in steps for rule in step.rules}))
             if not steps:
                 says = (event.name, "does not happen")
-            where = self._where(here, shape, steps)
+            where = self._where(here, search_key, steps)
             after = steps[0].after if steps else here.state
-            leads_to = shape if after is here.state else self.abstraction.shape(after)
+            leads_to = search_key if after is here.state else self.abstraction.search_key(after)
             self._edges[key] = ((where, says), leads_to)
         return self._edges[key]  # type: ignore[return-value]  # a drive always has one
 
-    def _where(self, here: Explanation, shape: Hashable, steps: list[Step]) -> Hashable:
+    def _where(self, here: Explanation, search_key: Hashable, steps: list[Step]) -> Hashable:
         """Where an edge begins; where nothing changes that may be said more coarsely."""
-        idle = self.abstraction.idle_shape
-        return shape if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
+        idle = self.abstraction.idle_search_key
+        return search_key if idle is None or any(step.after is not here.state for step in steps) else idle(here.state)
 
 
-def _cancellations(conversation: Conversation, shape: Hashable, phase: Hashable) -> Iterator[Proposal]:
+def _cancellations(conversation: Conversation, search_key: Hashable, phase: Hashable) -> Iterator[Proposal]:
     """To give up each of the streams that were opened, also those that have ended."""
     streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
     for position, ref in enumerate(streams):
-        edge = (shape, (CANCEL.method, position, len(streams)))
-        yield Proposal(CANCEL.method, CANCEL.params, None, edge, shape, phase, ((0, ref),))
+        edge = (search_key, (CANCEL.method, position, len(streams)))
+        yield Proposal(CANCEL.method, CANCEL.params, None, edge, search_key, phase, ((0, ref),))
 
 
 def rested(successors: Successors, here: Explanation) -> Explanation:

@@ -203,7 +203,7 @@ class _Tour:
             return None
         least = guide.walked[proposals[0].edge]
         equal = [one for one in proposals if guide.walked[one.edge] == least]
-        if guide.system.spec.abstraction.idle_shape is not None and draw.random() < FAVOURED:
+        if guide.system.spec.abstraction.idle_search_key is not None and draw.random() < FAVOURED:
             # Where most of what can be said has no effect, what leads elsewhere comes first.
             rare = guide.visited[equal[0].leads_to]
             equal = [one for one in equal if guide.visited[one.leads_to] == rare]

@@ -209,9 +209,9 @@ class _Search:
 
     def _moves(self, node: _Node) -> Iterator[_Move]:
         """What is worth trying: everything where such a situation is met first, else what brings things on."""
-        situation = (node.world, *(self.system.spec.abstraction.situation(one.state) for one in node.here))
-        everything = situation not in self._thorough
-        self._thorough.add(situation)
+        keys = (node.world, *(self.system.spec.abstraction.enabled_key(one.state) for one in node.here))
+        everything = keys not in self._thorough
+        self._thorough.add(keys)
         yield from self._calls(node, everything=everything)
         yield from self._drives(node)
         yield from self._templates(node, everything=everything)
@@ -308,10 +308,10 @@ class _Search:
 
     def _is_new(self, node: _Node) -> bool:
         spec = self.system.spec
-        size = spec.size
+        size = spec.search_size
         if max(size(one.state) for one in node.here) > self.lab.guide.bounds.size:
             return False
-        shapes = tuple((spec.abstraction.shape(one.state), len(one.channels)) for one in node.here)
+        shapes = tuple((spec.abstraction.search_key(one.state), len(one.channels)) for one in node.here)
         key = (node.world, shapes, node.agreed)
         if key in self._seen:
             return False

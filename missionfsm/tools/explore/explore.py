@@ -169,17 +169,17 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
     *,
     forget_ended: bool = False,
 ) -> Reached:
-    """Every state whose extent is `most` or less (see `Spec.extent`).
+    """Every state whose size is `most` or less (see `Spec.explore_size`).
 
     Args:
         forget_ended: what has ended is only counted, where the system can (see `Abstraction.forget_ended`).
     """
-    if spec.abstraction.shortcut:
+    if spec.abstraction.compiled:
         events = [event for event, _ in labels.events]
-        short = spec.abstraction.shortcut(labels.requests, events, assumed, most, forget_ended=forget_ended)
+        short = spec.abstraction.compiled(labels.requests, events, assumed, most, forget_ended=forget_ended)
         return Reached(_reach(short.encode(start), short.successors), short.decode)
     quotient = _quotient(spec, forget_ended=forget_ended)
-    extent = spec.extent
+    extent = spec.explore_size
 
     def successors(here: State) -> Iterator[State]:
         for one in steps(spec, here, labels):
@@ -191,7 +191,7 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
 
 def _quotient(spec: Spec, *, forget_ended: bool) -> Callable[[State], State]:
     """What stands for a state in an exploration."""
-    return (spec.abstraction.forget_ended if forget_ended else None) or spec.abstraction.outline or _itself
+    return (spec.abstraction.forget_ended if forget_ended else None) or spec.abstraction.canonical or _itself
 
 
 def _itself(state: State) -> State:
@@ -284,11 +284,11 @@ def explore(  # noqa: PLR0913 - every one has a default
     quotient = _quotient(spec, forget_ended=forget_ended)
     possible = () if forget_ended and spec.abstraction.forget_ended else spec.possibilities
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
-    groups = Counter(map(spec.abstraction.situation, found))
-    representatives = {spec.abstraction.situation(here): here for here in found}
+    groups = Counter(map(spec.abstraction.enabled_key, found))
+    representatives = {spec.abstraction.enabled_key(here): here for here in found}
     tally = _Tally(spec)
-    for situation, here in representatives.items():
-        tally.add(here, labels, groups[situation], assumed)
+    for key, here in representatives.items():
+        tally.add(here, labels, groups[key], assumed)
     everything = Labels.from_alphabet(system, alphabet.inputs, alphabet.drives)
     firing = firings(spec, representatives.values(), everything, assumed)
     return Exploration(

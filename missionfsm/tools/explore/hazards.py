@@ -130,8 +130,8 @@ class _Search:
     def run(self, world: JSON) -> tuple[Hazard, ...]:
         """Visit every state within the bounds, nearest first."""
         first = self._model.start(self._system.codec.read_world(world))
-        situation = self._system.spec.abstraction.situation
-        seen = {situation(first.state)}
+        key = self._system.spec.abstraction.enabled_key
+        seen = {key(first.state)}
         todo = [_Place(first)]
         for place in todo:  # grows while it is walked
             for request, names, after, reply in self._calls(place.here):
@@ -143,9 +143,9 @@ class _Search:
         return tuple(sorted(self._found.values(), key=lambda one: (order.index(one.operation), one.code, one.outcome)))
 
     def _add(self, todo: list[_Place], seen: set[Any], place: _Place, after: Snapshot, says: str) -> None:
-        situation = self._system.spec.abstraction.situation(after.state)
-        if situation not in seen and self._system.spec.extent(after.state) <= self._most:
-            seen.add(situation)
+        key = self._system.spec.abstraction.enabled_key(after.state)
+        if key not in seen and self._system.spec.explore_size(after.state) <= self._most:
+            seen.add(key)
             todo.append(_Place(after, (*place.path, says)))
 
     def _calls(self, here: Snapshot) -> Iterator[tuple[Any, tuple[Name, ...], Snapshot, Reply]]:
@@ -199,14 +199,14 @@ class _Search:
 
     def _later(self, place: _Place) -> Iterator[_Place]:
         """A place, and those that the surroundings lead to from there, nearest first."""
-        situation = self._system.spec.abstraction.situation
-        seen = {situation(place.here.state)}
+        key = self._system.spec.abstraction.enabled_key
+        seen = {key(place.here.state)}
         todo = [place]
         for one in todo:  # grows while it is walked
             yield one
             for says, after in self._events(one.here):
-                if situation(after.state) not in seen:
-                    seen.add(situation(after.state))
+                if key(after.state) not in seen:
+                    seen.add(key(after.state))
                     todo.append(_Place(after, (*one.path, says)))
 
     def _repeated(self, operation: str, code: str, request: Request, names: tuple[Name, ...], place: _Place) -> None:

@@ -92,15 +92,15 @@ class _Look:
         spec, known = self.spec, set[Any]()
         found, todo = {self._start}, [self._start]
         for here in todo:  # grows while it is walked
-            situation = spec.abstraction.situation(here)
-            if situation in known:
+            key = spec.abstraction.enabled_key(here)
+            if key in known:
                 continue
             if len(known) >= most:
                 return
-            known.add(situation)
+            known.add(key)
             yield here
             for step in self._possible(self._onward(here, missing)):
-                if step.after not in found and spec.size(step.after) <= self._bounds.size:
+                if step.after not in found and spec.search_size(step.after) <= self._bounds.size:
                     found.add(step.after)
                     todo.append(step.after)
 

@@ -44,7 +44,7 @@ SCOPES = (
     Scope(Bounds(2, goals=2, batch=2), worlds=3, follows_all=False),
 )
 TIMED = (Scope(Bounds(1)),)
-"""Those for systems with clocks, which make many states of one (see `Abstraction.outline`)."""
+"""Those for systems with clocks, which make many states of one (see `Abstraction.canonical`)."""
 
 Assumed = tuple[Assumption, ...]
 Options = frozenset[Assumed]
@@ -129,7 +129,7 @@ def allowed_under(  # noqa: PLR0913 - what an implementation is made of
     """
     system = reference.model.system
     states, came_up = 0, False
-    for scope in TIMED if system.spec.abstraction.outline else SCOPES:
+    for scope in TIMED if system.spec.abstraction.canonical else SCOPES:
         explorer = _Explorer(system, model, reference, rule, operation, mutate_message, scope)
         states += sum(map(explorer.run, worlds[: scope.worlds]))
         came_up |= explorer.came_up
@@ -203,15 +203,15 @@ class _Explorer:
         own = Labels.from_alphabet(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
         start = self.spec.initial(self.system.codec.read_world(world))
-        extent, abstraction = self.spec.extent, self.spec.abstraction
+        extent, abstraction = self.spec.explore_size, self.spec.abstraction
         # Where clocks tell states apart, what answers calls is in the shape.
-        same = abstraction.shape if abstraction.outline else abstraction.situation
-        found, todo, situations = {start}, [start], set()
+        same = abstraction.search_key if abstraction.canonical else abstraction.enabled_key
+        found, todo, keys = {start}, [start], set()
         for here in todo:
             taken = [step for step in self._taken(here, plain) if extent(step.after) <= self.scope.bounds.size]
-            situation = same(here)
-            if situation not in situations and not self._passes(here):
-                situations.add(situation)
+            key = same(here)
+            if key not in keys and not self._passes(here):
+                keys.add(key)
                 asked = [step for step in self._asked_all(here, own) if extent(step.after) <= self.scope.bounds.size]
                 taken += asked if self.scope.follows_all else ()
             new = dict.fromkeys(step.after for step in taken if step.after not in found)

@@ -225,7 +225,7 @@ def _result(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, 
 
 def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
     """Both the first tour and what is written down, the cheaper one first: with clocks, tours are dear."""
-    return play(run) and toured() if system.spec.abstraction.outline else toured() and play(run)
+    return play(run) and toured() if system.spec.abstraction.canonical else toured() and play(run)
 
 
 @functools.lru_cache(maxsize=2)

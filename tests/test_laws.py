@@ -35,7 +35,7 @@ from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import Plan, conform
-from missionfsm.tools.explore.explore import Labels, bindings, reachable, steps
+from missionfsm.tools.explore.explore import Actions, bindings, reachable, steps
 from missionfsm.tools.mutate.teeth import Mutant, mutants
 
 BOUNDS = Bounds(2, goals=2, batch=2)
@@ -49,7 +49,7 @@ FEWER = {"isaac.server": 1}
 """Where two missions have too many states under all readings at once: how many are few enough for that."""
 
 SITUATIONS = 12
-"""In how many different situations every prompt is tried."""
+"""In how many different situations every input is tried."""
 
 State = Any
 References = tuple[int | None, ...]
@@ -87,8 +87,8 @@ class Lab:
         self.spec: Spec = self.system.spec
         self.worlds = self.system.alphabet({}, BOUNDS).worlds
         alphabet = self.system.alphabet(self.worlds[0], BOUNDS)
-        self.plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
-        self.everything = Labels.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
+        self.plain = Actions.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        self.everything = Actions.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
         self._near: dict[State, list[Step]] = {}
         self._steps: dict[tuple[State, Any, References], tuple[Step, ...]] = {}
 
@@ -311,10 +311,10 @@ def test_the_shortcut_takes_the_same_steps(lab: Lab, *, decided: bool) -> None:
     for number, world in enumerate(lab.worlds):
         bounds = Bounds(2 if decided or number == 0 else 1, goals=1, batch=2)
         alphabet = lab.system.alphabet(world, bounds)
-        labels = Labels.from_alphabet(lab.system, alphabet.core_inputs, alphabet.core_drives)
+        actions = Actions.from_alphabet(lab.system, alphabet.core_inputs, alphabet.core_drives)
         start = lab.start(world)
-        fast = reachable(lab.spec, start, labels, bounds.size, assumed)
-        assert set(fast) == set(reachable(slow, start, labels, bounds.size, assumed))
+        fast = reachable(lab.spec, start, actions, bounds.size, assumed)
+        assert set(fast) == set(reachable(slow, start, actions, bounds.size, assumed))
 
 
 # What is shown is recognised.
@@ -466,14 +466,14 @@ import hashlib, sys
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.systems import system
-from missionfsm.tools.explore.explore import Labels, reachable, steps
+from missionfsm.tools.explore.explore import Actions, reachable, steps
 
 found = system(sys.argv[1])
 bounds = Bounds(1, goals=2, batch=1)
 (world, *_) = found.alphabet({}, bounds).worlds
 alphabet = found.alphabet(world, bounds)
-plain = Labels.from_alphabet(found, alphabet.core_inputs, alphabet.core_drives)
-everything = Labels.from_alphabet(found, alphabet.inputs, alphabet.drives)
+plain = Actions.from_alphabet(found, alphabet.core_inputs, alphabet.core_drives)
+everything = Actions.from_alphabet(found, alphabet.inputs, alphabet.drives)
 start = found.spec.initial(found.codec.read_world(world))
 ledger = hashlib.sha256()
 most = max(1, found.spec.names(start))

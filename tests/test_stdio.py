@@ -277,7 +277,7 @@ def test_a_child_that_floods_is_given_up(adapter: Adapter, monkeypatch: pytest.M
     """Notifications without end, and a line without end, are a failure long before the memory is full."""
     flood = 'sys.stdout.write(\'{"method":"message","params":{"stream":1,"message":{}}}\\n\' * 1000)'
     endless = "sys.stdout.write('x' * 100000)"
-    monkeypatch.setattr(stdio, "MOST_NOTIFICATIONS", 20_000)
+    monkeypatch.setattr(stdio, "MAX_NOTIFICATIONS", 20_000)
     monkeypatch.setattr(stdio, "LONGEST_LINE", 2_000_000)
     for wrong, says in ((flood, "flooded: more than 20000 "), (endless, "flooded: a line of more than 2000000 bytes")):
         child = Child(adapter(f"while True: {wrong}"), timeout=20)

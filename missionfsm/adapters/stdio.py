@@ -28,10 +28,10 @@ from missionfsm.kernel.text import brief
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes in one line before a child counts as flooding."""
 
-MOST_NOTIFICATIONS = 100_000
+MAX_NOTIFICATIONS = 100_000
 """Notifications between two answers before a child counts as flooding."""
 
-MOST_READS = 100
+MAX_READS = 100
 """How many times what is left in a pipe is asked for before somebody counts as writing without end."""
 
 MOMENT = 0.05
@@ -183,9 +183,9 @@ class Child:
             message = self._parse(self._line(deadline, method))
             if "id" not in message:
                 before.append(self._notification(message))
-                if len(before) > MOST_NOTIFICATIONS:
+                if len(before) > MAX_NOTIFICATIONS:
                     raise self._failed(
-                        f"flooded: more than {MOST_NOTIFICATIONS} notifications before answering {method}"
+                        f"flooded: more than {MAX_NOTIFICATIONS} notifications before answering {method}"
                     )
                 continue
             return self._answer(message, tuple(before), method)
@@ -306,8 +306,8 @@ class Child:
             self._partial += rest
             if len(self._partial) > LONGEST_LINE:
                 raise self._failed(f"flooded: a line of more than {LONGEST_LINE} bytes")
-            if len(self._lines) > MOST_NOTIFICATIONS:
-                raise self._failed(f"flooded: more than {MOST_NOTIFICATIONS} lines at a time")
+            if len(self._lines) > MAX_NOTIFICATIONS:
+                raise self._failed(f"flooded: more than {MAX_NOTIFICATIONS} lines at a time")
             if len(data) < 1 << 20:
                 return True
 
@@ -333,7 +333,7 @@ class Child:
         return self._failed(f"{ended} before answering {method}{half}")
 
     def _failed(self, says: str) -> SubjectError:
-        for _ in range(MOST_READS):  # one that floods has always more
+        for _ in range(MAX_READS):  # one that floods has always more
             if not self._read_log():
                 break
         asked = f"; it was sent {self._asked[:ASKED]}{'…' * (len(self._asked) > ASKED)}" if self._asked else ""

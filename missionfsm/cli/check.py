@@ -161,14 +161,14 @@ class _Telling:
 
     def add(self, one: Judged) -> None:
         """A file has been judged; one that cannot be read keeps none of the others from it."""
-        from missionfsm.tools.check.baseline import excused  # noqa: PLC0415 - commands load what they need
+        from missionfsm.tools.check.baseline import with_known  # noqa: PLC0415 - commands load what they need
 
         with self.troubles.kept():
             for line in () if self.sums_up else one.said:
                 say_shown(line, json=self.json)
             self.sums_up = self.sums_up or (self.may_sum_up and len(one.verdicts) > MANY)
             for robot, judged in one.verdicts:
-                self.reached.append((readable(one.path), robot, excused(judged, self.known)))
+                self.reached.append((readable(one.path), robot, with_known(judged, self.known)))
                 self.seconds.append(one.seconds)
                 if not self.sums_up:
                     say_verdict(_headed(*self.reached[-1], verbose=self.verbose), json=self.json)

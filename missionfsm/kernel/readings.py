@@ -19,7 +19,7 @@ from attrs import field, frozen
 _bits = itertools.count()
 """Every reading has a bit of its own; the numbers have no meaning and are never written out."""
 
-MOST_NAMED = 12
+MAX_NAMED = 12
 """How many ambiguities are named one by one to somebody who asks for one that does not exist."""
 
 
@@ -186,7 +186,7 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
 
 def _unknown(name: str, known: list[str]) -> str:
     """That there is no such ambiguity; of many only the one that is meant, or what they are called together."""
-    if len(known) > MOST_NAMED:
+    if len(known) > MAX_NAMED:
         known = list(dict.fromkeys(one.partition(".")[0] for one in known))
         near = difflib.get_close_matches(name, known, len(known))
         if near:

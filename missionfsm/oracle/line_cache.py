@@ -19,7 +19,7 @@ from missionfsm.oracle.transcript import Transcript
 _CALL, _RETURN, _STREAM, _MESSAGE = b'{"call":', b'{"return":', b'{"stream":', b',"message":'
 _AFTER_CALL, _AFTER_RETURN, _AFTER_STREAM, _MESSAGE_LENGTH = map(len, (_CALL, _RETURN, _STREAM, _MESSAGE))
 """How nearly all lines begin that call, return or show a message."""
-_MOST_DIGITS, _ZERO = 19, ord("0")
+_MAX_DIGITS, _ZERO = 19, ord("0")
 _NOBODY: tuple[Name, ...] = ()
 FORMS = 100
 """How many different texts around a name are remembered."""
@@ -222,7 +222,7 @@ def _rest(text: bytes, begins: bytes, number: int) -> bytes:
 
 def _number(digits: bytes) -> int:
     """The number that is written as nearly all are, positive and not too long for JSON; 0 where it is not."""
-    return int(digits) if digits.isdigit() and len(digits) < _MOST_DIGITS and digits[0] != _ZERO else 0
+    return int(digits) if digits.isdigit() and len(digits) < _MAX_DIGITS and digits[0] != _ZERO else 0
 
 
 __all__ = ["Texts"]

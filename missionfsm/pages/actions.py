@@ -57,7 +57,7 @@ class Tried:
 
 @frozen
 class _Filled:
-    """A prompt or a drive with names in it: the params, the positions of the names, and the names.
+    """An input or a drive with names in it: the params, the positions of the names, and the names.
 
     Attributes:
         kinds: of each name its kind.

@@ -26,7 +26,7 @@ from missionfsm.pages.actions import BY_ITSELF, ENVIRONMENT, Doings, Tried
 from missionfsm.pages.naming import PLACES, TEXT, Shared, Writer, dumped
 from missionfsm.tools.check.phrases import answer_words
 
-MOST_STATES = 4_000
+MAX_STATES = 4_000
 """How many states a page holds, the nearest ones: some megabytes."""
 
 BEYOND, HERE = -1, -2
@@ -101,7 +101,7 @@ class Graph:
                         continue
                     effect, after = self._effect(tried, step, kinds[here])
                     within = extent(step.after) <= self.bounds.size
-                    if step.after not in numbers and within and len(numbers) < MOST_STATES:
+                    if step.after not in numbers and within and len(numbers) < MAX_STATES:
                         numbers[step.after] = len(numbers)
                         kinds[step.after] = after
                         todo.append(step.after)

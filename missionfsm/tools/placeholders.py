@@ -1,4 +1,4 @@
-"""Stand-ins in the params of prompts and drives: where names go that a tester picks or makes up.
+"""Stand-ins in the params of inputs and drives: where names go that a tester picks or makes up.
 
 See `pick`, `new`, `upcoming` and `as_text` in `missionfsm.kernel.alphabet`.
 """

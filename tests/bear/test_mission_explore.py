@@ -12,7 +12,7 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.spec import Invariant
 from missionfsm.systems import system
-from missionfsm.tools.explore.explore import Labels, Reached, explore, firings, reachable, steps
+from missionfsm.tools.explore.explore import Actions, Reached, explore, firings, reachable, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
@@ -21,14 +21,14 @@ WORLDS = MISSION.alphabet({}, Bounds()).worlds
 READINGS = pytest.mark.parametrize("assumed", [DEFAULT, UNCONSTRAINED], ids=["default readings", "all readings"])
 
 
-def labels(bounds: Bounds, world: object = None) -> Labels:
+def actions(bounds: Bounds, world: object = None) -> Actions:
     alphabet = MISSION.alphabet(world or {}, bounds)
-    return Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    return Actions.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
 
 
 def graph(bounds: Bounds, assumed: int, *, forgetting: bool = False) -> Reached:
     start = SPEC.initial(MISSION.codec.read_world({}))
-    return reachable(SPEC, start, labels(bounds), bounds.size, assumed, forget_ended=forgetting)
+    return reachable(SPEC, start, actions(bounds), bounds.size, assumed, forget_ended=forgetting)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_what_has_ended_need_only_be_counted(assumed: int) -> None:
     assert {forget_ended(here) for here in full} == set(counted)
     short = SPEC.abstraction.compiled
     assert short is not None
-    tried = labels(bounds)
+    tried = actions(bounds)
     events = [event for event, _ in tried.events]
     plain = short(tried.requests, events, assumed, bounds.size)
     forgetting = short(tried.requests, events, assumed, bounds.size, forget_ended=True)
@@ -91,7 +91,7 @@ def test_counting_gives_the_same_graph_step_by_step(assumed: int) -> None:
     bounds = Bounds(2, goals=1, batch=2)
     slow = evolve(SPEC, abstraction=evolve(SPEC.abstraction, compiled=None))
     start = SPEC.initial(MISSION.codec.read_world({}))
-    found = reachable(slow, start, labels(bounds), bounds.size, assumed, forget_ended=True)
+    found = reachable(slow, start, actions(bounds), bounds.size, assumed, forget_ended=True)
     assert set(found) == set(graph(bounds, assumed, forgetting=True))
 
 
@@ -105,7 +105,7 @@ def test_six_missions_and_two_goals() -> None:
 def test_a_robot_is_nearest_to_the_first_state_through_its_parent() -> None:
     """What is reached knows a state before it from which a step leads there."""
     bounds = Bounds(2, goals=1, batch=1)
-    tried = labels(bounds)
+    tried = actions(bounds)
     found = graph(bounds, DEFAULT)
     for here in found:
         if (before := found.before(here)) is not None:
@@ -133,9 +133,9 @@ def test_every_rule_fires_and_rests() -> None:
     for world in WORLDS:
         alphabet = MISSION.alphabet(world, bounds)
         start = SPEC.initial(MISSION.codec.read_world(world))
-        found = reachable(SPEC, start, labels(bounds, world), bounds.size)
+        found = reachable(SPEC, start, actions(bounds, world), bounds.size)
         situations = {SPEC.abstraction.enabled_key(here): here for here in found}
-        everything = Labels.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)
+        everything = Actions.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything, settled=fires & rests).items():
             fires |= {rule} if fired else set()
             rests |= {rule} if rested else set()

@@ -26,12 +26,12 @@ from missionfsm.kernel.step import Emission, Step
 from missionfsm.oracle import window
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.explore.explore import Labels, bindings, steps
+from missionfsm.tools.explore.explore import Actions, bindings, steps
 
 MISSION = system("bear.mission")
 SPEC = MISSION.spec
 ALPHABET = MISSION.alphabet({}, Bounds(3, goals=2, batch=2))
-LABELS = Labels.from_alphabet(MISSION, ALPHABET.core_inputs, ALPHABET.core_drives)
+LABELS = Actions.from_alphabet(MISSION, ALPHABET.core_inputs, ALPHABET.core_drives)
 Named = tuple[Any, tuple[int, ...]]
 """A robot, or what is seen of it, with the names of its missions; no two missions ever have the same."""
 

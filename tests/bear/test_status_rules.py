@@ -100,7 +100,7 @@ def test_get_robot_status_is_answered_as_its_table_says(params: Any, expected: s
 
 
 def test_every_refusal_fires_somewhere_and_not_everywhere() -> None:
-    """In the usual world each condition holds for some prompt of the alphabet, and fails for another."""
+    """In the usual world each condition holds for some input of the alphabet, and fails for another."""
     fires: dict[str, set[bool]] = {}
     for prompt in ALPHABET.inputs:
         request = CODEC.read_request(prompt.method, prompt.params)

@@ -29,7 +29,7 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.explore.explore import Labels, reachable, steps
+from missionfsm.tools.explore.explore import Actions, reachable, steps
 from missionfsm.tools.reference.model import Reference
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -127,10 +127,10 @@ def test_bench_mission_a_step_of_the_model(benchmark: Any) -> None:
 def test_bench_mission_exploration(benchmark: Any, bounds: Bounds, assumed: int, *, forgetting: bool) -> None:
     """Distinct states a second, every refusal tried in every situation; and with every state read as a value."""
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    actions = Actions.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.read_world(WORLD))
     found = benchmark.pedantic(
-        reachable, (SPEC, start, labels, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
+        reachable, (SPEC, start, actions, bounds.size, assumed), {"forget_ended": forgetting}, rounds=3
     )
     began = time.perf_counter()
     states = len(set(found))
@@ -144,12 +144,12 @@ def test_bench_mission_exploration_step_by_step(benchmark: Any) -> None:
     """Distinct states a second without the shortcut: every outcome of every call as a step with names and messages."""
     bounds = Bounds(2, goals=2, batch=2)
     alphabet = MISSION.alphabet(WORLD, bounds)
-    labels = Labels.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
+    actions = Actions.from_alphabet(MISSION, alphabet.core_inputs, alphabet.core_drives)
     start = SPEC.initial(MISSION.codec.read_world(WORLD))
-    states = list(reachable(SPEC, start, labels, bounds.size, DEFAULT))
+    states = list(reachable(SPEC, start, actions, bounds.size, DEFAULT))
 
     def every_step() -> int:
-        return sum(1 for here in states for _ in steps(SPEC, here, labels))
+        return sum(1 for here in states for _ in steps(SPEC, here, actions))
 
     taken = benchmark.pedantic(every_step, rounds=3)
     best = benchmark.stats.stats.min

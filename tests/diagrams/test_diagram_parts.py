@@ -9,7 +9,7 @@ import pytest
 from missionfsm.tools.draw.diagram import Arrow, Diagram, Node, Side
 from missionfsm.tools.draw.gallery import Picture
 from missionfsm.tools.draw.legible import faults
-from missionfsm.tools.draw.parts import MOST_EDGES, apart, edges
+from missionfsm.tools.draw.parts import MAX_EDGES, apart, edges
 from missionfsm.tools.draw.svg import drawn
 
 Line = tuple[str, str, str, Side]
@@ -40,14 +40,14 @@ def test_parts_are_the_whole(gallery: dict[str, Picture]) -> None:
 
 def test_no_picture_has_too_many_arrows(gallery: dict[str, Picture]) -> None:
     """What is drawn has at most ten arrows, or is divided."""
-    assert {one.id for one in gallery.values() if edges(one.diagram) > MOST_EDGES} == {
+    assert {one.id for one in gallery.values() if edges(one.diagram) > MAX_EDGES} == {
         one.id for one in gallery.values() if one.divided
     }
 
 
 def test_two_readings_with_much_in_common_show_what_differs() -> None:
     """Where two readings share too much for one picture, that is not drawn, and the picture says so."""
-    nodes = tuple(Node(f"n{number}", (f"n{number}",), start=number == 0) for number in range(MOST_EDGES + 1))
+    nodes = tuple(Node(f"n{number}", (f"n{number}",), start=number == 0) for number in range(MAX_EDGES + 1))
     shared = tuple(Arrow(one.id, other.id, ("on",)) for one, other in itertools.pairwise(nodes))
     only = Arrow("n3", "n0", ("back",), Side.FIRST)
     both = Diagram("two", nodes, (*shared, only), versus=("A=a", "A=b"))

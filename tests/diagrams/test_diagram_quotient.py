@@ -24,7 +24,7 @@ from missionfsm.tools.draw.diagram import Arrow, Node, Side, Stay
 from missionfsm.tools.draw.gallery import Picture
 from missionfsm.tools.draw.quotient import Move, Quotient, quotient
 from missionfsm.tools.draw.tables import of_contrast, of_quotient
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 from missionfsm.tools.reference.model import Reference, Snapshot
 
 # A turnstile: a coin unlocks it for one push. What becomes of a second coin is nowhere said.
@@ -147,9 +147,9 @@ class Walker:
         self.sketch = sketch
         self.model = Reference(self.system, choice)
         self.random = random.Random(seed)
-        labels = Labels.from_alphabet(self.system, sketch.inputs, sketch.drives)
-        self.tried = [(what, free, True) for what, free in labels.requests]
-        self.tried += [(what, free, False) for what, free in labels.events]
+        actions = Actions.from_alphabet(self.system, sketch.inputs, sketch.drives)
+        self.tried = [(what, free, True) for what, free in actions.requests]
+        self.tried += [(what, free, False) for what, free in actions.events]
 
     def named(self, here: Snapshot, ref: int | None) -> Name | None:
         """The name at a position of the state, or one that the robot had once."""

@@ -165,7 +165,7 @@ class Searcher:
         run = self.run(subject)
         try:
             for one in had:
-                if not run.have(*one):
+                if not run.converse(*one):
                     return run.conversation.judge.violation or "the readings contradict one another"
         except GibberishError as error:
             return str(error)

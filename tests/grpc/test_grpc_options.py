@@ -136,16 +136,16 @@ def test_a_token_that_expires_is_read_again_before_the_next_conversation() -> No
         server = GrpcSubject("bear.mission", Target(robot.target, token=tokens[-1]), renewed=lambda: tokens[-1])
         run = Run.against(of, server)
         run.start({})
-        assert run.act("SubscribeMissionStatus", {})
+        assert run.do("SubscribeMissionStatus", {})
         robot.renew("new")
-        assert all((run.settle(), run.act("CreateMission", NAVIGATE), run.settle()))
+        assert all((run.settle(), run.do("CreateMission", NAVIGATE), run.settle()))
         heard = [line["error"]["status"] for line in run.conversation.heard if line.get("error")]
         assert heard == ["UNAUTHENTICATED", "UNAUTHENTICATED"]
         with pytest.raises(SubjectError, match="UNAUTHENTICATED"):
             run.start({})
         tokens.append("new")
         run.start({})
-        assert all((run.act("CreateMission", NAVIGATE), run.settle()))
+        assert all((run.do("CreateMission", NAVIGATE), run.settle()))
         assert [line["result"].keys() for line in run.conversation.heard if "return" in line] == [{"missionId"}]
         server.close()
 

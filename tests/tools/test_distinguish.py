@@ -92,7 +92,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
     run.ledger.readings[name] = tuple(ambiguity.readings)
     for trial in trials(name):
         if trial.follows in run.ledger.readings[name] and set(trial.against) & set(run.ledger.readings[name]):
-            assert run.have(trial.world, trial.actions), str(run.found and run.found.judge.verdict())
+            assert run.converse(trial.world, trial.actions), str(run.found and run.found.judge.verdict())
     assert letter in run.ledger.readings[name]
     assert told & set(run.ledger.readings[name]) == set()
 

@@ -12,7 +12,7 @@ from browsing import Opener, missionfsm
 from filelock import FileLock
 
 from missionfsm import systems
-from missionfsm.pages.graph import MOST_STATES
+from missionfsm.pages.graph import MAX_STATES
 
 pytestmark = [pytest.mark.slow, pytest.mark.long]
 
@@ -253,7 +253,7 @@ def test_the_numbers_are_those_of_the_command_line(explorers: Explorers, open_pa
     shown = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
     assert shown.startswith(f"{counts}, within the bounds size 1, goals 2, batch 1. What is tried")
     held = open_page(explorers["bear.mission"]).page.locator("#bounds").inner_text()
-    assert f"; this page holds the {MOST_STATES} states that are nearest. What is tried" in held
+    assert f"; this page holds the {MAX_STATES} states that are nearest. What is tried" in held
 
 
 def _shapes(page: Any, kind: str) -> list[str]:
@@ -306,7 +306,7 @@ def test_all_shapes_hold_all_states(explorers: Explorers, open_page: Opener) -> 
     page.get_by_role("button", name="All shapes").click()
     names = page.locator("#stage .shape b").all_inner_texts()
     assert len(names) == len(set(names)) > 20
-    assert page.evaluate("Object.values(graph.shapes).reduce((sum, one) => sum + one)") == MOST_STATES
+    assert page.evaluate("Object.values(graph.shapes).reduce((sum, one) => sum + one)") == MAX_STATES
 
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])

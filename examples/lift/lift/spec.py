@@ -26,7 +26,7 @@ from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 NAME = "lift"
 PAGE = Document("Lift", "The lift's manual")
 FLOORS = range(4)
-MOST_WAITING = 3
+MAX_WAITING = 3
 
 UNDER_WAY = Ambiguity(
     "L-01",
@@ -79,7 +79,7 @@ def there_is_no_such_floor(_: Lift, asked: Asked) -> bool:
 @refusal(RESOURCE_EXHAUSTED, cite=PAGE["Call", "Errors"])
 def enough_rides_wait(lift: Lift, _: Asked) -> bool:
     """Three rides wait already."""
-    return len(lift.waiting) >= MOST_WAITING
+    return len(lift.waiting) >= MAX_WAITING
 
 
 @refusal(NOT_FOUND, cite=PAGE["Cancel", "Errors"])
@@ -270,14 +270,14 @@ SPEC = Spec(
     describe=describe,
     rules=(SHOWN, DEPARTS, ARRIVES),
     invariants=(
-        Invariant("no-more-wait-than-may", "At most three rides wait.", lambda lift: len(lift.waiting) <= MOST_WAITING),
+        Invariant("no-more-wait-than-may", "At most three rides wait.", lambda lift: len(lift.waiting) <= MAX_WAITING),
         Invariant(
             "who-moves-has-a-ride", "A lift that moves has a ride.", lambda lift: bool(lift.floors) or not lift.moving
         ),
     ),
     possibilities=(
         Invariant(
-            "all-may-wait", "Three rides wait and one is under way.", lambda lift: len(lift.floors) > MOST_WAITING
+            "all-may-wait", "Three rides wait and one is under way.", lambda lift: len(lift.floors) > MAX_WAITING
         ),
     ),
 )

@@ -43,7 +43,7 @@ from missionfsm.bear.mission.state import (
     GOALLESS,
     NOT_CHOSEN,
     PATROLS,
-    SYSTEM,
+    SYSTEM_NAME,
     Edit,
     Kind,
     Mission,
@@ -204,7 +204,7 @@ def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
 
 
 def _cited(rule: Rule) -> tuple[str, ...]:
-    return (rule.registered(SYSTEM, "SkipGoal").id,)
+    return (rule.registered(SYSTEM_NAME, "SkipGoal").id,)
 
 
 def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:

@@ -85,7 +85,7 @@ from missionfsm.bear.mission.rules import (
     there_is_nothing_to_clear,
     there_never_was_anything_to_clear,
 )
-from missionfsm.bear.mission.state import MISSION, SYSTEM, Situation
+from missionfsm.bear.mission.state import MISSION, SYSTEM_NAME, Situation
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
@@ -215,7 +215,7 @@ def _operation(
 ) -> Operation:
     own = tuple(_at_home(name, one) for one in refusals)
     return Operation.with_rules(
-        name, SYSTEM, MISSION[name], refusals=own, promises=promises, failures=failures, streaming=streaming
+        name, SYSTEM_NAME, MISSION[name], refusals=own, promises=promises, failures=failures, streaming=streaming
     )
 
 

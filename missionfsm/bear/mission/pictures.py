@@ -11,7 +11,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Part, Sketch
 from missionfsm.kernel.terms import Refs
 
-_MOST = 4
+_MAX_LISTED = 4
 """Listed missions: enough for two to wait behind one, after another has ended."""
 
 _COMMANDS = ("PAUSE", "RESUME", "CANCEL", "FINISH")
@@ -83,7 +83,7 @@ SKETCHES = (
         "a robot's missions",
         node=_node,
         label=_label,
-        within=lambda robot: len(robot.listed) <= _MOST,
+        within=lambda robot: len(robot.listed) <= _MAX_LISTED,
         simple=lambda robot, _: forget_ended(robot),
         inputs=_PROMPTS,
         drives=_DRIVES,

@@ -24,7 +24,7 @@ from missionfsm.bear.mission.state import (
     LIFECYCLE,
     MISSION,
     PATROLS,
-    SYSTEM,
+    SYSTEM_NAME,
     Edit,
     Kind,
     Op,
@@ -62,14 +62,14 @@ from missionfsm.kernel.terms import Refs
 _MOVES = {
     trigger: promise(
         trigger.replace(" ", "-"), f"A mission moves by {trigger}.", cite=MISSION["MissionState", "State enum"]
-    ).registered(SYSTEM, "lifecycle")
+    ).registered(SYSTEM_NAME, "lifecycle")
     for trigger in ("start", "succeed", "fail")
 }
 """The moves of the lifecycle that no call makes."""
 
 _NEXT_GOAL = promise(
     "goals-are-taken-up-in-order", "A mission goes from goal to goal in order.", cite=MISSION["MissionState"]
-).registered(SYSTEM, "lifecycle")
+).registered(SYSTEM_NAME, "lifecycle")
 RULES = (*_MOVES.values(), _NEXT_GOAL, *STATUS_RULES)
 
 
@@ -299,7 +299,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
     Calls have no outcomes that contradict what is assumed.
     """
     return Spec(
-        system=SYSTEM,
+        system=SYSTEM_NAME,
         title="one robot's missions",
         initial=Robot,
         operations=operations,

@@ -18,7 +18,7 @@ from missionfsm.kernel.rules import Document
 from missionfsm.kernel.values import value
 
 MISSION = Document("Mission", "Mission (robot API)")
-SYSTEM = "bear.mission"
+SYSTEM_NAME = "bear.mission"
 
 
 class Family(enum.Enum):

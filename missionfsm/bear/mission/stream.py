@@ -30,7 +30,7 @@ from missionfsm.bear.mission.state import (
     MISSION,
     NOT_CHOSEN,
     RETURN_POINT,
-    SYSTEM,
+    SYSTEM_NAME,
     Family,
     Kind,
     Mission,
@@ -117,7 +117,7 @@ class Seen:
 
 def _promise(name: str, says: str, *place: str) -> Rule:
     return promise(name, says, cite=MISSION[("SubscribeMissionStatus", *place)]).registered(
-        SYSTEM, "SubscribeMissionStatus"
+        SYSTEM_NAME, "SubscribeMissionStatus"
     )
 
 

@@ -22,7 +22,7 @@ from missionfsm.bear.status.readings import (
     AS_06_ORDER,
     Question,
 )
-from missionfsm.bear.status.state import GET, STATUS, SYSTEM, Endpoint, Fleet, Location, Request, Robot
+from missionfsm.bear.status.state import GET, STATUS, SYSTEM_NAME, Endpoint, Fleet, Location, Request, Robot
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import (
     INTERNAL,
@@ -357,7 +357,7 @@ def _subscription(endpoint: Endpoint) -> Operation:
     )
     return Operation.with_rules(
         endpoint.value,
-        SYSTEM,
+        SYSTEM_NAME,
         STATUS[endpoint.value,],
         refusals=_placed(endpoint.value, _SELECTION),
         promises=(first,),
@@ -372,7 +372,7 @@ _LATEST = promise(
 OPERATIONS: Mapping[str, Operation] = {
     GET: Operation.with_rules(
         GET,
-        SYSTEM,
+        SYSTEM_NAME,
         STATUS[GET,],
         refusals=_placed(GET, _GETTING),
         promises=(_LATEST,),

@@ -29,7 +29,7 @@ from missionfsm.bear.status.state import (
     MAPS,
     STATE_PARTS,
     STATUS,
-    SYSTEM,
+    SYSTEM_NAME,
     Endpoint,
     Event,
     Fleet,
@@ -225,7 +225,7 @@ def _alone(spec: Spec, robot: Hashable) -> Spec:
 def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
     """The page as a specification, perhaps with other rules of refusal."""
     return Spec(
-        system=SYSTEM,
+        system=SYSTEM_NAME,
         title="the status of an account's fleet",
         initial=initial,
         operations=operations,

@@ -24,7 +24,7 @@ from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.rules import Document
 
 STATUS = Document("Robot Status", "Robot Status (cloud API)")
-SYSTEM = "bear.status"
+SYSTEM_NAME = "bear.status"
 
 
 class Endpoint(enum.Enum):

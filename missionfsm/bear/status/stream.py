@@ -22,7 +22,7 @@ from missionfsm.bear.status.readings import (
 from missionfsm.bear.status.state import (
     GET,
     STATUS,
-    SYSTEM,
+    SYSTEM_NAME,
     Endpoint,
     Value,
 )
@@ -45,7 +45,7 @@ from missionfsm.kernel.text import brief
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:
-    return promise(name, says, cite=STATUS[place]).registered(SYSTEM, "messages")
+    return promise(name, says, cite=STATUS[place]).registered(SYSTEM_NAME, "messages")
 
 
 WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "GetRobotStatus", "Response")
@@ -69,7 +69,7 @@ UPDATES = _promise(
 VALUES = {
     place: promise(
         "values-are-those-reported", "What is shown is what the robot reported.", cite=STATUS[place,]
-    ).registered(SYSTEM, place)
+    ).registered(SYSTEM_NAME, place)
     for place in (GET, *(endpoint.value for endpoint in Endpoint))
 }
 RULES = (WELL_FORMED, SEQUENCE, SELECTED, UPDATES, *VALUES.values(), *(one.rule for one in CHECKS))

@@ -9,7 +9,7 @@ from missionfsm.bear.status.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
 from missionfsm.bear.status.pictures import SKETCHES
 from missionfsm.bear.status.shapes import shapes
 from missionfsm.bear.status.spec import SPEC
-from missionfsm.bear.status.state import SYSTEM as NAME
+from missionfsm.bear.status.state import SYSTEM_NAME as NAME
 from missionfsm.kernel.system import System
 
 SYSTEM = System(

@@ -28,7 +28,7 @@ from missionfsm.bear.status.messages import (
     Stuck,
     Wifi,
 )
-from missionfsm.bear.status.state import STATUS, SYSTEM
+from missionfsm.bear.status.state import STATUS, SYSTEM_NAME
 from missionfsm.bear.wire.messages import MissionState
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.readings import Assumption
@@ -77,7 +77,7 @@ def check(
         cite: Citation = STATUS[place]
         name = wrong.__name__.replace("_", "-")
         topic = of.__name__ if of else "enums"
-        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).registered(SYSTEM, topic)
+        registered = promise(name, says, cite=cite, argues=" ".join(argues.split())).registered(SYSTEM_NAME, topic)
         return Check(registered, wrong, of, robots, lasts)
 
     return register

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.robot.state import SYSTEM
+from missionfsm.isaac.robot.state import SYSTEM_NAME
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
 from missionfsm.kernel.rules import Citation, Rule, promise
 
@@ -11,7 +11,7 @@ CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
 def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
-    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM, topic)
+    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM_NAME, topic)
 
 
 STARTS = _promise(

@@ -10,7 +10,7 @@ from missionfsm.isaac.robot.effects import arrives, begins, connection, passes, 
 from missionfsm.isaac.robot.inputs import Stops
 from missionfsm.isaac.robot.readings import AMBIGUITIES
 from missionfsm.isaac.robot.rules import RULES
-from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM, Codelet
+from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
 from missionfsm.isaac.robot.stream import delivery, matches, sequence
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.spec import Drive, Invariant, Spec
@@ -26,7 +26,7 @@ def _canonical(here: Codelet) -> Codelet:
 
 
 SPEC = Spec(
-    system=SYSTEM,
+    system=SYSTEM_NAME,
     title="a robot's mission codelet",
     initial=Codelet,
     operations={},

@@ -7,7 +7,7 @@ from attrs import frozen
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 
-SYSTEM = "isaac.robot"
+SYSTEM_NAME = "isaac.robot"
 
 RUNNING_BOUND = 5 * MICROSECONDS
 """Time within which RUNNING has to be reported at least once, in microseconds. The tester's choice (AI-31)."""

@@ -39,7 +39,7 @@ from missionfsm.kernel.text import brief
 
 _KEYS = ("robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream")
 _BUFFERS = "type"
-_MOST_DIGITS = 19
+_MAX_DIGITS = 19
 
 
 def read_world(given: JSON) -> World:
@@ -198,7 +198,7 @@ def read_answer(method: str, result: JSON) -> tuple[Answer, tuple[Name, ...]]:
 
 def _is_number(key: str) -> bool:
     """Whether the key of an object is a handle."""
-    return key.isascii() and key.isdecimal() and len(key) <= _MOST_DIGITS
+    return key.isascii() and key.isdecimal() and len(key) <= _MAX_DIGITS
 
 
 def _word(status: JSON) -> str | None:

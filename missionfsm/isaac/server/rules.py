@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.server.inputs import EMPTY, HANDLE, KEY, MALFORMED, NEGATIVE, NO_NAME, NULL, NULL_CONFIG, Ask
 from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_33_NULL
-from missionfsm.isaac.server.state import SYSTEM, Server
+from missionfsm.isaac.server.state import SYSTEM_NAME, Server
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
 from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, refusal
 
@@ -82,7 +82,7 @@ def the_configuration_is_null(_: Server, ask: Ask) -> bool:
 
 
 def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
-    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM, topic)
+    return promise(name, says, cite=cite, argues=argues).registered(SYSTEM_NAME, topic)
 
 
 ACCEPTED = promise("a-mission-is-queued-for-its-robot", "A submitted mission is queued for its robot.", cite=SERVER)
@@ -232,7 +232,7 @@ OPERATIONS = {
     for one in (
         Operation.with_rules(
             "submit",
-            SYSTEM,
+            SYSTEM_NAME,
             SERVER,
             refusals=(
                 the_mission_is_malformed,
@@ -248,6 +248,6 @@ OPERATIONS = {
             ),
             promises=(ACCEPTED,),
         ),
-        Operation.with_rules("statuses", SYSTEM, PAGE["Sample Usage", "Mission.Status"], promises=(SHOWN,)),
+        Operation.with_rules("statuses", SYSTEM_NAME, PAGE["Sample Usage", "Mission.Status"], promises=(SHOWN,)),
     )
 }

@@ -37,7 +37,7 @@ from missionfsm.isaac.server.state import (
     PASS_PERIOD,
     RUN,
     START,
-    SYSTEM,
+    SYSTEM_NAME,
     Mission,
     Move,
     Server,
@@ -322,7 +322,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         if len(letters := one.possible(decided)) < len(one.readings)
     )
     return Spec(
-        system=SYSTEM,
+        system=SYSTEM_NAME,
         title="a mission server",
         initial=lambda world: _begins(Server(world.name_channel, left=left, tolerance=world.tolerance)),
         operations=operations,

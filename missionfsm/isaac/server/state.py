@@ -21,7 +21,7 @@ from missionfsm.kernel.step import Emission
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
-SYSTEM = "isaac.server"
+SYSTEM_NAME = "isaac.server"
 PASS_PERIOD = MICROSECONDS
 """How long a server that looks now and then may take to look, in microseconds (AI-39 b)."""
 

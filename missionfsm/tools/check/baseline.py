@@ -33,7 +33,7 @@ class Baseline:
         return tuple(rule for rule, times in self.met.items() if not times)
 
 
-def excused(verdict: Verdict, known: Baseline) -> Verdict:
+def with_known(verdict: Verdict, known: Baseline) -> Verdict:
     """The verdict on something in which violations may be known: one whose violation is known is no bad one."""
     if verdict.violation is None or not known(verdict.violation):
         return verdict
@@ -42,7 +42,7 @@ def excused(verdict: Verdict, known: Baseline) -> Verdict:
     return evolve(verdict, outcome=Outcome.CONFORMS, violation=None, known=rules, notes=(*verdict.notes, note))
 
 
-def held_against(verdict: Verdict, stale: tuple[str, ...]) -> Verdict:
+def with_stale(verdict: Verdict, stale: tuple[str, ...]) -> Verdict:
     """The verdict with the expectations that were not met: one that is good is inconclusive with any."""
     if not stale or not verdict.conforms:
         return verdict

@@ -39,7 +39,7 @@ from missionfsm.tools.check.candidates import (
 )
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
-MOST_LOOKED_AT = 200
+MAX_LOOKED_AT = 200
 """How many explanations are looked at, the nearest first."""
 
 
@@ -84,7 +84,7 @@ class Nearest:
         """The same with the rules of what has silently happened on the way."""
         found = self.successors.closure(self.belief.node.explanations, besides)
         try:
-            yield from itertools.islice(found, MOST_LOOKED_AT)
+            yield from itertools.islice(found, MAX_LOOKED_AT)
         except ExhaustedError:
             return
 

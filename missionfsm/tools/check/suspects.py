@@ -39,8 +39,8 @@ def suspects(
 ) -> tuple[Suspect, ...]:
     """Answers before the last event without which everything can be explained: perhaps one of those was wrong.
 
-    A violation shows where the last excuse died. Where an earlier answer was excused by an assumption that only the
-    last event refuted, that answer is the one to look at.
+    A violation shows where the last explanation died. Where an earlier answer was explained by an assumption that only
+    the last event refuted, that answer is the one to look at.
     """
     first, lines = head(history[0]), history[1:]
     found = []

@@ -16,7 +16,7 @@ from missionfsm.tools.check.basis import Reached, Untested, readings_line
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
 
-MOST_RARE = 10
+MAX_RARE = 10
 """How many of the rules that came up seldom a person is told."""
 
 MAX_CHARACTERS = 72
@@ -370,7 +370,7 @@ class Verdict:
         if not least:
             return []
         lines = [f"fewer than {RATE} times in {PER:,} steps: {len(least)} rules, the rarest of them"]
-        lines += [f"  {rule}, {self.exercised.get(rule, 0)} times: {self.rare[rule]}" for rule in least[:MOST_RARE]]
+        lines += [f"  {rule}, {self.exercised.get(rule, 0)} times: {self.rare[rule]}" for rule in least[:MAX_RARE]]
         return lines
 
     def _reading_text(self, name: str, letters: tuple[str, ...]) -> str:

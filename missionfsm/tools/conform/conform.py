@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.subject import Subject, SubjectError
 from missionfsm.kernel.system import System
-from missionfsm.tools.check.baseline import Baseline, held_against
+from missionfsm.tools.check.baseline import Baseline, with_stale
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import by_ambiguity
 from missionfsm.tools.check.narrate import story_of
@@ -240,7 +240,7 @@ def verdict_of(
         reach=run.reach.reached() if run.reach is not None and went_through else None,
     )
     # A search that was stopped says nothing of what it did not come to.
-    return verdict if run.enough() else held_against(verdict, known.stale)
+    return verdict if run.enough() else with_stale(verdict, known.stale)
 
 
 def _went_through(run: Run) -> bool:

@@ -154,17 +154,17 @@ class Conversation:
             self.actions.remove(action)
             return
         self._notifications(exchange.earlier)
-        self._note({"call": number, "method": method, "params": params})
+        self._append({"call": number, "method": method, "params": params})
         self._notifications(exchange.before)
         if exchange.error is None:
-            self._hear({"return": number, "result": exchange.result})
+            self._receive({"return": number, "result": exchange.result})
             if method != "cancel":
-                self._learn(method, exchange.result)
+                self._bind_answer(method, exchange.result)
         else:
-            self._hear({"return": number, "error": exchange.error})
+            self._receive({"return": number, "error": exchange.error})
         self._notifications(exchange.after)
 
-    def _learn(self, method: str, result: JSON) -> None:
+    def _bind_answer(self, method: str, result: JSON) -> None:
         answer, names = _read(self.system.codec.read_answer, method, result)
         self._bind(names)
         if answer.code == OK and method not in self.system.codec.streams:
@@ -196,7 +196,7 @@ class Conversation:
             if any(driven[key] != value for key, value in event.items() if key not in self.system.codec.measured):
                 message = f"the adapter answered drive {event['event']} with {brief(result)}, which is another drive"
                 raise SubjectError(message)
-            self._hear({"drive": driven})
+            self._receive({"drive": driven})
             self._bind(_read(self.system.codec.read_drive_result, driven)[1])
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(caused)
@@ -217,7 +217,7 @@ class Conversation:
         self._notifications(exchange.before)
         if self.partner.info.silences:
             self._wait_for_what_is_missing()
-        self._note({"settled": True})
+        self._append({"settled": True})
         self._notifications(exchange.after)
 
     def _wait_for_what_is_missing(self) -> None:
@@ -242,20 +242,20 @@ class Conversation:
         for one in notifications:
             if one.method in ("message", "closed"):
                 said = {**one.params, "closed": True} if one.method == "closed" else one.params
-                self._hear({key: said[key] for key in (*STREAM_KEYS, "connection") if key in said})
+                self._receive({key: said[key] for key in (*STREAM_KEYS, "connection") if key in said})
             elif one.method == "history":
-                self._hear(one.params)
+                self._receive(one.params)
                 self._asked = one.params.get("method", self._asked)
                 if "result" in one.params:
-                    self._learn(self._asked, one.params["result"])
+                    self._bind_answer(self._asked, one.params["result"])
             else:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
-                self._hear(line)
+                self._receive(line)
                 self._bind((("connection", line["connection"]),))
                 for names, _, _ in _read(self.system.codec.split_message, line["line"]):
                     self._bind(names)
 
-    def _note(self, line: JSON) -> None:
+    def _append(self, line: JSON) -> None:
         self.heard.append(line)
         if self.right:
             self.judge.feed(line)
@@ -269,9 +269,9 @@ class Conversation:
         if all(again.feed(line) for line in before.lines):
             self.judge = again
 
-    def _hear(self, line: JSON) -> None:
+    def _receive(self, line: JSON) -> None:
         """Note what came from the adapter."""
-        _read(self._note, line)
+        _read(self._append, line)
 
 
 def _read(read: Callable[..., _Read], *sent: JSON) -> _Read:

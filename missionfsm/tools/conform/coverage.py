@@ -14,7 +14,7 @@ from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import State, View
 from missionfsm.tools.check.verdict import PER, RATE
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 from missionfsm.tools.reference.model import recognised
 
 BOUNDS = Bounds(2, goals=2, batch=2)
@@ -95,8 +95,8 @@ class Census:
     def _look(self, world: int, start: State, params: JSON) -> None:
         spec = self.system.spec
         alphabet = self.system.alphabet(params, BOUNDS)
-        plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
-        everything = Labels.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
+        plain = Actions.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        everything = Actions.from_alphabet(self.system, alphabet.inputs, alphabet.drives)
         size = spec.search_size
         keys, found, todo = set[Hashable](), {start}, [start]
         for here in todo:  # grows while it is walked
@@ -115,12 +115,12 @@ class Census:
                     found.add(step.after)
                     todo.append(step.after)
 
-    def _moves(self, here: State, labels: Labels) -> Iterator[list[Step]]:
+    def _moves(self, here: State, actions: Actions) -> Iterator[list[Step]]:
         spec = self.system.spec
-        for request, free in labels.requests:
+        for request, free in actions.requests:
             for refs in bindings(spec, here, free):
                 yield self._possible(spec.outcomes(here, request, refs))
-        for event, free in labels.events:
+        for event, free in actions.events:
             for refs in bindings(spec, here, free):
                 yield self._possible(spec.drives[event.name].steps(here, event, refs))
         yield self._possible((*spec.urgent(here), *spec.spontaneous(here)))

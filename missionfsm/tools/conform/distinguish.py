@@ -74,6 +74,6 @@ def _decide(run: Run, lab: Lab, ambiguity: Ambiguity) -> bool:
             continue
         if run.enough():
             return True
-        if not run.have(trial.world, trial.actions):
+        if not run.converse(trial.world, trial.actions):
             return False
     return True

@@ -35,7 +35,7 @@ class _Talking(Protocol):
 
     world: int
 
-    def act(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> None:
+    def do(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> None:
         """Call, drive or wait for silence."""
 
 
@@ -94,20 +94,18 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
             self.world = world
             streams = run.system.codec.streams
             if watched and len(streams) == 1:
-                self.act(streams[0], {})
+                self.do(streams[0], {})
 
-        def act(
-            self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()
-        ) -> None:
+        def do(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> None:
             with _stopping():
                 if run.enough():
                     raise _Over
-                if not run.act(method, params, name, picks):
+                if not run.do(method, params, name, picks):
                     raise _Over
 
         @rule()
         def settle(self) -> None:
-            self.act(SETTLE)
+            self.do(SETTLE)
 
         @rule(data=st.data())
         def walk_what_was_walked_least(self, data: st.DataObject) -> None:
@@ -116,15 +114,15 @@ def _machine(run: Run) -> type[RuleBasedStateMachine]:
             choice, settles = data.draw(st.integers(0, CHOICES - 1)), data.draw(st.booleans())
             if proposals:
                 one = proposals[choice % len(proposals)]
-                self.act(one.method, one.params, one.name, one.picks)
+                self.do(one.method, one.params, one.name, one.picks)
                 if settles:
-                    self.act(SETTLE)
+                    self.do(SETTLE)
 
         def teardown(self) -> None:
             # Where nothing was begun, what was begun last has been gathered before.
             if hasattr(self, "world") and (run.over or run.conversation.right) and not run.enough():
-                self.act(SETTLE)
-                if not run.gather():
+                self.do(SETTLE)
+                if not run.record():
                     raise _Over
 
     for method in run.system.codec.methods:
@@ -156,9 +154,9 @@ def _call_rule(run: Run, method: str) -> object:
             texts = [given for given, one in run.conversation.given.items() if isinstance(one, str)]
             names: tuple[JSON, ...] = (*reversed(texts), *alphabet.wrong_names)
             name = names[data.draw(st.integers(0, NAMES)) % len(names)]
-        self.act(method, prompt.params, name, _picks(run, prompt.params, data))
+        self.do(method, prompt.params, name, _picks(run, prompt.params, data))
         if data.draw(st.booleans()):
-            self.act(SETTLE)
+            self.do(SETTLE)
 
     call.__name__ = f"call_{method}"
     return rule(data=st.data())(call)
@@ -181,9 +179,9 @@ def _drive_rule(run: Run, name: str) -> object:
         if not events:
             return
         event = data.draw(st.sampled_from(events))
-        self.act("drive", event, None, _picks(run, event, data))
+        self.do("drive", event, None, _picks(run, event, data))
         if data.draw(st.booleans()):
-            self.act(SETTLE)
+            self.do(SETTLE)
 
     drive.__name__ = f"drive_{name}"
     return rule(data=st.data())(drive)
@@ -193,6 +191,6 @@ def _cancel_rule(run: Run) -> object:
     def give_up_a_stream(self: _Talking, data: st.DataObject) -> None:
         picks = _picks(run, CANCEL.params, data)
         if picks:
-            self.act(CANCEL.method, CANCEL.params, None, picks)
+            self.do(CANCEL.method, CANCEL.params, None, picks)
 
     return rule(data=st.data())(give_up_a_stream)

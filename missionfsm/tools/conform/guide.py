@@ -70,7 +70,7 @@ class Template:
 
 @frozen(eq=False)
 class Call:
-    """A prompt without stand-ins but perhaps for one name, and what it says."""
+    """An input without stand-ins but perhaps for one name, and what it says."""
 
     prompt: Input
     request: Request
@@ -328,7 +328,7 @@ def rested(successors: Successors, here: Explanation) -> Explanation:
 
 
 def _prepared_templates(system: System, alphabet: Alphabet) -> dict[str, list[Template]]:
-    """The prompts and drives with stand-ins, by the name of the operation or the drive."""
+    """The inputs and drives with stand-ins, by the name of the operation or the drive."""
     asked = {repr(one.params): (one.method, one.params) for one in alphabet.inputs if is_template(one.params)}
     driven = {repr(one): ("drive", one) for one in alphabet.drives if is_template(one)}
     found: dict[str, list[Template]] = {}

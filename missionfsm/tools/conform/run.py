@@ -140,23 +140,23 @@ class Run:
         self.last = Conversation(self.partner, world, automaton)
         return self.last
 
-    def act(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> bool:
+    def do(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> bool:
         """Do something in the conversation that was begun last; False once something is found that is not expected."""
         done = self.conversation.actions
         return self.perform(Action(abs(done[-1].serial) + 1 if done else 1, method, params, name, picks))
 
     def settle(self) -> bool:
-        """Wait until all that was caused has been seen; see `act`."""
-        return self.act(SETTLE)
+        """Wait until all that was caused has been seen; see `do`."""
+        return self.do(SETTLE)
 
     def follow(self, proposal: Proposal, *, counts: bool = True) -> bool:
         """Do what the guide proposed; the guide remembers it if it counts."""
         if counts:
             self.guide.note(proposal)
-        return self.act(proposal.method, proposal.params, proposal.name, proposal.picks)
+        return self.do(proposal.method, proposal.params, proposal.name, proposal.picks)
 
     def perform(self, action: Action) -> bool:
-        """Perform an action in the conversation that was begun last; see `act`.
+        """Perform an action in the conversation that was begun last; see `do`.
 
         Where the implementation may have done more by itself than one can follow, it is waited for first.
         """
@@ -187,7 +187,7 @@ class Run:
             if self.last.right:
                 # Explained by itself, but not together with those before: a contradiction, if one question shows it.
                 known = len(self.ledger.aside)
-                if not self.gather():
+                if not self.record():
                     return False
                 self.over = len(self.ledger.aside) > known
                 if self.over:
@@ -204,7 +204,7 @@ class Run:
             self.over = True
             return True
         self.found = self.conversation
-        self.gather()
+        self.record()
         return False
 
     def knows(self, conversation: Conversation) -> bool:
@@ -214,7 +214,7 @@ class Run:
         violation = conversation.judge.violation
         return violation is not None and self.expects(violation)
 
-    def have(self, world: JSON, actions: tuple[Action, ...]) -> bool:
+    def converse(self, world: JSON, actions: tuple[Action, ...]) -> bool:
         """Have a whole conversation, judged by all that is known; False once something is found that is not expected.
 
         It shows more than one that is judged by itself: what others have decided is taken for decided.
@@ -225,9 +225,9 @@ class Run:
                 return True
             if not self.perform(action):
                 return False
-        return self.gather()
+        return self.record()
 
-    def gather(self) -> bool:
+    def record(self) -> bool:
         """Enter what the last conversation came to; False if it contradicts the readings of those before."""
         done = self.conversation
         self.ledger.count(done)

@@ -132,7 +132,7 @@ class _Search:
 
 
 def _named(here: Conversation, prompt: Input, wrong: tuple[str, ...]) -> Iterator[Action]:
-    """A prompt with each of the names that were given, and with one that was not."""
+    """An input with each of the names that were given, and with one that was not."""
     if is_template(prompt.params):
         wanted = slots(prompt.params)
         given = {name: by for by, name in here.given.items()}

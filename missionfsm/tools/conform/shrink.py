@@ -14,7 +14,7 @@ from missionfsm.tools.conform.conversation import Conversation
 Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 """Has a conversation anew: in a world, with some actions, until it cannot be explained any more."""
 
-MOST_ATTEMPTS = 2_000
+MAX_ATTEMPTS = 2_000
 FEW = 24
 """Of so many actions every run is tried to be left out."""
 
@@ -39,7 +39,7 @@ def shrink(  # noqa: PLR0913 - the last three have a default
     Args:
         found: one that shows it.
         attempt: has one anew.
-        simpler: (world, method) to prompts that may stand in for a call of that method.
+        simpler: (world, method) to inputs that may stand in for a call of that method.
         usual: the world to have it in, if that will do.
         shows: what is to be shown; that it cannot be explained, usually.
         keep: told of every conversation that is shorter than all before.
@@ -57,7 +57,7 @@ class _Shrinker:
     shows: Callable[[Conversation], bool]
     keep: Callable[[Conversation], None]
     enough: Callable[[], bool]
-    left: int = MOST_ATTEMPTS
+    left: int = MAX_ATTEMPTS
 
     def run(self) -> Conversation:
         while self._may_try() and (self._leave_out() or self._say_simply()):

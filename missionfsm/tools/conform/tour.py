@@ -48,7 +48,7 @@ def play(run: Run, most: int | None = None) -> bool:
                 break
             if not follow(run, line):
                 return False
-        if not run.settle() or not run.gather():
+        if not run.settle() or not run.record():
             return False
     return True
 
@@ -59,7 +59,7 @@ def follow(run: Run, line: ScriptStep) -> bool:
     picks = tuple(_named(run, wanted, line.picks))
     # A name without a kind goes where `ANY_NAME` stands, not into a slot.
     name = None if wanted or not line.picks else picks[0][1] if picks else WRONG_NAME
-    return run.act(line.method, line.params, name, picks if wanted else ())
+    return run.do(line.method, line.params, name, picks if wanted else ())
 
 
 def _named(run: Run, wanted: dict[int, str], picks: tuple[tuple[int, int], ...]) -> Iterator[tuple[int, NameRef]]:
@@ -103,7 +103,7 @@ def _filled(  # noqa: PLR0913 - what one conversation needs
 ) -> int | None:
     """How much was done where it was done too seldom; None where something cannot be explained."""
     streams = run.system.codec.streams
-    if len(streams) == 1 and not run.act(streams[0], {}):
+    if len(streams) == 1 and not run.do(streams[0], {}):
         return None
     if not all(follow(run, line) for line in way):
         return None
@@ -112,15 +112,15 @@ def _filled(  # noqa: PLR0913 - what one conversation needs
         one = None if run.over or run.enough() else reach.choose(run.conversation, world, draw)
         if one is None:
             break
-        if not (run.act(one.method, one.params, one.name, one.picks) and run.settle()):
+        if not (run.do(one.method, one.params, one.name, one.picks) and run.settle()):
             return None
-    return reach.met - before if run.gather() else None
+    return reach.met - before if run.record() else None
 
 
 def look(run: Run, world: int) -> bool:
     """Wait for everything to settle and see where things stand."""
     asked = run.guide.alphabets[world].look
-    return run.settle() and (asked is None or run.act(asked.method, asked.params))
+    return run.settle() and (asked is None or run.do(asked.method, asked.params))
 
 
 def tour(  # noqa: PLR0913 - the last two have a default
@@ -158,7 +158,7 @@ class _Tour:
         run, world = self.run, number % len(self.run.guide.worlds)
         streams = run.system.codec.streams
         run.start(run.guide.worlds[world])
-        if len(streams) == 1 and number % 4 != 3 and not run.act(streams[0], {}):
+        if len(streams) == 1 and number % 4 != 3 and not run.do(streams[0], {}):
             return False
         left = iter(range(self.steps))
         for _ in left:
@@ -171,7 +171,7 @@ class _Tour:
                 return False
             if not self._repeated(proposal, world, left):
                 return False
-        return run.settle() and run.gather()
+        return run.settle() and run.record()
 
     def _repeated(self, done: Proposal, world: int, left: Iterator[int]) -> bool:
         """The same again, as often as chance has it: whether everything could be explained."""

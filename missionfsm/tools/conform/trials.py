@@ -353,7 +353,7 @@ class _Search:
 
 
 def _plain(guide: Guide, world: int) -> Iterator[int]:
-    """Which of the prepared prompts and drives of a world are those that bring the system on, by identity."""
+    """Which of the prepared inputs and drives of a world are those that bring the system on, by identity."""
     alphabet = guide.alphabets[world]
     wanted = {repr(one.params) for one in alphabet.core_inputs} | {repr(one) for one in alphabet.core_drives}
     for calls in guide.calls[world].values():

@@ -13,7 +13,7 @@ from xml.etree import ElementTree as ET
 
 from attrs import field, frozen
 
-from missionfsm.tools.draw.parts import MOST_EDGES
+from missionfsm.tools.draw.parts import MAX_EDGES
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
@@ -83,7 +83,7 @@ def faults(svg: str) -> tuple[str, ...]:
     groups = [(group.get("class"), group) for group in root.iter(f"{_SVG}g")]
     nodes = {_title(group): _outline(group) for kind, group in groups if kind == "node"}
     edges = [_edge(group) for kind, group in groups if kind == "edge"]
-    found = [] if len(edges) <= MOST_EDGES else [f"{len(edges)} edges are more than {MOST_EDGES}"]
+    found = [] if len(edges) <= MAX_EDGES else [f"{len(edges)} edges are more than {MAX_EDGES}"]
     return (*found, *_lines(edges, nodes), *_labels(edges, nodes))
 
 

@@ -9,7 +9,7 @@ from attrs import evolve
 from missionfsm.kernel.picture import Part
 from missionfsm.tools.draw.diagram import MARKS, Arrow, Diagram, Node, Side, Stay
 
-MOST_EDGES = 10
+MAX_EDGES = 10
 """Arrows of one picture, those that point to a start included: more are hard to follow with the eye."""
 
 _WAY, _ENDS = Part("way", "on the way", ()), Part("ends", "how it ends", ())
@@ -23,7 +23,7 @@ def edges(diagram: Diagram) -> int:
 
 def apart(diagram: Diagram) -> Diagram:
     """Two readings in one picture, without what they share if that is too much to be drawn."""
-    if edges(diagram) <= MOST_EDGES:
+    if edges(diagram) <= MAX_EDGES:
         return diagram
     different = evolve(diagram, remarks=(*diagram.remarks, _SHARED))
     return _only(
@@ -39,7 +39,7 @@ def parts(diagram: Diagram, wanted: tuple[Part, ...] = ()) -> Iterator[tuple[Par
     Where no parts are wanted in particular, what ends everything is drawn apart from what comes before it. What
     belongs to none of them is in the first one, and so are the starts.
     """
-    if edges(diagram) <= MOST_EDGES or not diagram.machine:
+    if edges(diagram) <= MAX_EDGES or not diagram.machine:
         return
     ends = {node.id for node in diagram.nodes if node.end}
     if not wanted and not ends:

@@ -16,7 +16,7 @@ from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import State
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 
 BY_ITSELF = "by itself"
 
@@ -80,7 +80,7 @@ class _Explorer:
         self._spec: Spec = system.spec
         self._sketch = sketch
         self._assumed = assumed
-        self._labels = Labels.from_alphabet(system, sketch.inputs, sketch.drives)
+        self._actions = Actions.from_alphabet(system, sketch.inputs, sketch.drives)
         self._first = self._spec.initial(system.codec.read_world(sketch.world))
 
     def quotient(self) -> Quotient:
@@ -117,7 +117,7 @@ class _Explorer:
     def _steps(self, here: State) -> Iterator[tuple[int, str | None, Step]]:
         """Every step, with what doing it is called and the number of what is tried."""
         spec, label = self._spec, self._sketch.label
-        requests, events = self._labels.requests, self._labels.events
+        requests, events = self._actions.requests, self._actions.events
         for number, (request, free) in enumerate(requests):
             for refs in bindings(spec, here, free):
                 for step in self._possible(spec.outcomes(here, request, refs)):

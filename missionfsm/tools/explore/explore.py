@@ -24,7 +24,7 @@ Free = tuple[bool, ...]
 
 
 @frozen
-class Labels:
+class Actions:
     """What is tried in every state: requests and events, each with its names.
 
     Of every name it is told whether it may be any of the state's; one that may not is something that is new there.
@@ -34,8 +34,8 @@ class Labels:
     events: tuple[tuple[Any, Free], ...]
 
     @classmethod
-    def from_alphabet(cls, system: System, prompts: Iterable[Input], drives: Iterable[JSON]) -> Labels:
-        """The requests of some prompts, each once, and the events of some drives."""
+    def from_alphabet(cls, system: System, prompts: Iterable[Input], drives: Iterable[JSON]) -> Actions:
+        """The requests of some inputs, each once, and the events of some drives."""
         requests, events = [], []
         for prompt in prompts:
             params, picked = _filled(system, prompt.params)
@@ -146,13 +146,13 @@ class Exploration:
         return "\n".join(lines)
 
 
-def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
+def steps(spec: Spec, state: State, actions: Actions) -> Iterator[Transition]:
     """Every step from a state: calls with every answer, drives, and what the system does by itself."""
-    for request, free in labels.requests:
+    for request, free in actions.requests:
         for refs in bindings(spec, state, free):
             for step in spec.outcomes(state, request, refs):
                 yield Transition(request, step)
-    for event, free in labels.events:
+    for event, free in actions.events:
         for refs in bindings(spec, state, free):
             for step in spec.drives[event.name].steps(state, event, refs):
                 yield Transition(event, step)
@@ -163,7 +163,7 @@ def steps(spec: Spec, state: State, labels: Labels) -> Iterator[Transition]:
 def reachable(  # noqa: PLR0913 - every one but the first four has a default
     spec: Spec,
     start: State,
-    labels: Labels,
+    actions: Actions,
     most: int,
     assumed: int = UNCONSTRAINED,
     *,
@@ -175,14 +175,14 @@ def reachable(  # noqa: PLR0913 - every one but the first four has a default
         forget_ended: what has ended is only counted, where the system can (see `Abstraction.forget_ended`).
     """
     if spec.abstraction.compiled:
-        events = [event for event, _ in labels.events]
-        short = spec.abstraction.compiled(labels.requests, events, assumed, most, forget_ended=forget_ended)
+        events = [event for event, _ in actions.events]
+        short = spec.abstraction.compiled(actions.requests, events, assumed, most, forget_ended=forget_ended)
         return Reached(_reach(short.encode(start), short.successors), short.decode)
     quotient = _quotient(spec, forget_ended=forget_ended)
     extent = spec.explore_size
 
     def successors(here: State) -> Iterator[State]:
-        for one in steps(spec, here, labels):
+        for one in steps(spec, here, actions):
             if meet(assumed, one.step.assumes) and extent(one.step.after) <= most:
                 yield quotient(one.step.after)
 
@@ -263,8 +263,8 @@ def explore(  # noqa: PLR0913 - every one has a default
 ) -> Exploration:
     """Every state that a system can reach within bounds, with every step tried in each.
 
-    What is tried to get around are the plain prompts and drives of the alphabet; which rules fire is then asked for
-    every prompt, in one state of every situation.
+    What is tried to get around are the plain inputs and drives of the alphabet; which rules fire is then asked for
+    every input, in one state of every situation.
 
     Args:
         world: the world that it starts in; the usual one by default.
@@ -277,9 +277,9 @@ def explore(  # noqa: PLR0913 - every one has a default
     spec = system.spec
     usual = system.alphabet({}, bounds).worlds[0] if world is None else world
     alphabet = system.alphabet(usual, bounds)
-    labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
+    actions = Actions.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
     start = spec.initial(system.codec.read_world(usual))
-    found = reachable(spec, start, labels, bounds.size, assumed, forget_ended=forget_ended)
+    found = reachable(spec, start, actions, bounds.size, assumed, forget_ended=forget_ended)
     broken = _first_broken(found, spec.invariants if invariants is None else invariants)
     quotient = _quotient(spec, forget_ended=forget_ended)
     possible = () if forget_ended and spec.abstraction.forget_ended else spec.possibilities
@@ -288,8 +288,8 @@ def explore(  # noqa: PLR0913 - every one has a default
     representatives = {spec.abstraction.enabled_key(here): here for here in found}
     tally = _Tally(spec)
     for key, here in representatives.items():
-        tally.add(here, labels, groups[key], assumed)
-    everything = Labels.from_alphabet(system, alphabet.inputs, alphabet.drives)
+        tally.add(here, actions, groups[key], assumed)
+    everything = Actions.from_alphabet(system, alphabet.inputs, alphabet.drives)
     firing = firings(spec, representatives.values(), everything, assumed)
     return Exploration(
         system.name,
@@ -299,7 +299,7 @@ def explore(  # noqa: PLR0913 - every one has a default
         tally.transitions,
         found.depth,
         tally.sorted,
-        _counterexample(spec, labels, found, quotient, *broken) if broken else None,
+        _counterexample(spec, actions, found, quotient, *broken) if broken else None,
         unmet,
         tuple(rule for rule, (fires, _) in firing.items() if not fires),
         tuple(rule for rule, (_, rests) in firing.items() if not rests),
@@ -324,8 +324,8 @@ class _Tally:
         """Operation to code to times, by their names."""
         return {name: dict(sorted(codes.items())) for name, codes in sorted(self.by_operation.items())}
 
-    def add(self, here: State, labels: Labels, times: int, assumed: int) -> None:
-        for one in steps(self.spec, here, labels):
+    def add(self, here: State, actions: Actions, times: int, assumed: int) -> None:
+        for one in steps(self.spec, here, actions):
             if not meet(assumed, one.step.assumes):
                 continue
             self.transitions += times
@@ -336,7 +336,7 @@ class _Tally:
 
 
 def firings(
-    spec: Spec, states: Iterable[State], labels: Labels, assumed: int = UNCONSTRAINED, settled: Collection[str] = ()
+    spec: Spec, states: Iterable[State], actions: Actions, assumed: int = UNCONSTRAINED, settled: Collection[str] = ()
 ) -> dict[str, tuple[bool, bool]]:
     """For every refusal that is not settled: whether some call in some state meets it, and whether some call does not.
 
@@ -350,7 +350,7 @@ def firings(
         if rule.id not in settled
     }
     for here in states:
-        for request, free in labels.requests:
+        for request, free in actions.requests:
             operation = spec.operations[spec.request_operation(request)]
             if all(all(found.get(rule.id, ())) for rule in operation.refusals):
                 continue  # no call of it can add anything
@@ -371,7 +371,7 @@ def bindings(spec: Spec, here: State, free: Free) -> Iterable[Refs]:
 
 def _counterexample(  # noqa: PLR0913 - what a way through the graph is made of
     spec: Spec,
-    labels: Labels,
+    actions: Actions,
     found: Reached,
     quotient: Callable[[State], State],
     invariant: Invariant,
@@ -380,7 +380,7 @@ def _counterexample(  # noqa: PLR0913 - what a way through the graph is made of
     path: list[str] = []
     here = state
     while (before := found.before(here)) is not None:
-        taken = next(one for one in steps(spec, before, labels) if quotient(one.step.after) == here)
+        taken = next(one for one in steps(spec, before, actions) if quotient(one.step.after) == here)
         path.append(taken.words(spec))
         here = before
     return Counterexample(invariant.name, invariant.says, tuple(reversed(path)), spec.describe(state))

@@ -20,7 +20,7 @@ from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Request
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 from missionfsm.tools.reference.model import Reference, Reply, Snapshot
 
 ONCE = "it had no effect, so the retry is the first call"
@@ -113,17 +113,17 @@ def hazards(system: System, bounds: Bounds | None = None, choice: Mapping[str, s
     bounds = bounds or Bounds()
     world = system.alphabet({}, bounds).worlds[0]
     alphabet = system.alphabet(world, bounds)
-    labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
+    actions = Actions.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
     model = Reference(system, choice)
-    search = _Search(system, model, labels, bounds)
+    search = _Search(system, model, actions, bounds)
     return Hazards(system.name, bounds, search.run(world))
 
 
 class _Search:
-    def __init__(self, system: System, model: Reference, labels: Labels, bounds: Bounds) -> None:
+    def __init__(self, system: System, model: Reference, actions: Actions, bounds: Bounds) -> None:
         self._system = system
         self._model = model
-        self._labels = labels
+        self._actions = actions
         self._most = bounds.size
         self._found: dict[tuple[str, str, str], Hazard] = {}
 
@@ -151,7 +151,7 @@ class _Search:
     def _calls(self, here: Snapshot) -> Iterator[tuple[Any, tuple[Name, ...], Snapshot, Reply]]:
         """Every call that succeeds and opens no stream."""
         spec = self._system.spec
-        for request, free in self._labels.requests:
+        for request, free in self._actions.requests:
             if spec.operations[spec.request_operation(request)].streaming:
                 continue
             for refs in bindings(spec, here.state, free):
@@ -163,7 +163,7 @@ class _Search:
 
     def _events(self, here: Snapshot) -> Iterator[tuple[str, Snapshot]]:
         """Everything that the surroundings may do and that names nobody."""
-        for event, free in self._labels.events:
+        for event, free in self._actions.events:
             if not free:
                 after, reply = self._model.drive(here, event)
                 if reply.happened and after.state != here.state:

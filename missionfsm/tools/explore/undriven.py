@@ -18,7 +18,7 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Refs, Request, State
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 
 BOUNDS, NEAR = Bounds(2, goals=2, batch=2), Bounds(1, goals=2, batch=1)
 """Within what refusals are looked for, and other rules."""
@@ -26,7 +26,7 @@ SITUATIONS, MORE_SITUATIONS = 12, 100
 """How many different situations are looked at for them, the nearest to the start."""
 NOTHING_NEW = 10
 """After how many situations in a row that show no other rule no more are looked at."""
-MOST_UNSEEN = 200
+MAX_UNSEEN = 200
 """How many states the system may come to unseen from each of them, at most."""
 
 
@@ -80,7 +80,7 @@ class _Look:
         self._assumed = choose(self.spec.ambiguities)
         usual = system.alphabet({}, bounds).worlds[0]
         alphabet = system.alphabet(usual, bounds)
-        self._labels = Labels.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
+        self._actions = Actions.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
         self._start = self.spec.initial(system.codec.read_world(usual))
         self._succeeds: dict[Any, bool] = {}
 
@@ -106,10 +106,10 @@ class _Look:
 
     def _onward(self, here: State, missing: Collection[str]) -> Iterator[Step]:
         spec = self.spec
-        for request, free in self._labels.requests:
+        for request, free in self._actions.requests:
             for refs in bindings(spec, here, free):
                 yield from spec.outcomes(here, request, refs)
-        for event, free in self._labels.events:
+        for event, free in self._actions.events:
             if event.name in missing:
                 continue
             for refs in bindings(spec, here, free):
@@ -126,7 +126,7 @@ class _Look:
                 for event in drive.by_itself:
                     steps += drive.steps(here, event, ())
             for step in self._possible(steps):
-                if step.after not in found and len(found) < MOST_UNSEEN:
+                if step.after not in found and len(found) < MAX_UNSEEN:
                     found.add(step.after)
                     todo.append(step.after)
         return todo
@@ -138,7 +138,7 @@ class _Look:
             if all_there_are and tested.issuperset(all_there_are):
                 break
             became = self._unseen(here, sorted(missing))
-            for request, free in self._labels.requests:
+            for request, free in self._actions.requests:
                 for refs in bindings(self.spec, here, free):
                     steps = self._possible(self.spec.outcomes(here, request, refs))
                     rules = {rule for step in steps if step.answer and step.answer.code != OK for rule in step.rules}

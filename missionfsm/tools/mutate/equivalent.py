@@ -19,7 +19,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.step import Emission, Match, Mismatch, Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Refs, Request, State
-from missionfsm.tools.explore.explore import Labels, bindings
+from missionfsm.tools.explore.explore import Actions, bindings
 from missionfsm.tools.reference.model import Reference, recognised
 
 
@@ -199,8 +199,8 @@ class _Explorer:
 
     def _walk(self, world: JSON) -> int:
         alphabet = self.system.alphabet(world, self.scope.bounds)
-        plain = Labels.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
-        own = Labels.from_alphabet(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
+        plain = Actions.from_alphabet(self.system, alphabet.core_inputs, alphabet.core_drives)
+        own = Actions.from_alphabet(self.system, (one for one in alphabet.inputs if one.method == self.operation), ())
         # The world stays as it is: the others are explored from their own start.
         start = self.spec.initial(self.system.codec.read_world(world))
         extent, abstraction = self.spec.explore_size, self.spec.abstraction
@@ -228,7 +228,7 @@ class _Explorer:
         if not self.alternatives:
             raise _NotAllowedError
 
-    def _taken(self, here: State, labels: Labels) -> Iterator[Step]:
+    def _taken(self, here: State, actions: Actions) -> Iterator[Step]:
         """Every step that the model takes in a state, each explained; urgent ones come first."""
         allowed, own = self.reference.urgent(here)
         taken = self.model.mutate_step(here, own)
@@ -238,8 +238,8 @@ class _Explorer:
             return
         if own is not None:
             raise _NotAllowedError
-        yield from self._asked_all(here, labels)
-        for event, free in labels.events:
+        yield from self._asked_all(here, actions)
+        for event, free in actions.events:
             for refs in bindings(self.spec, here, free):
                 allowed = self.spec.drives[event.name].steps(here, event, refs)
                 own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
@@ -249,8 +249,8 @@ class _Explorer:
                     self._require(self._explained(here, happened, allowed))
                     yield happened
 
-    def _asked_all(self, here: State, labels: Labels) -> Iterator[Step]:
-        for request, free in labels.requests:
+    def _asked_all(self, here: State, actions: Actions) -> Iterator[Step]:
+        for request, free in actions.requests:
             for refs in bindings(self.spec, here, free):
                 step, options = self._asked(here, request, refs)
                 self._require(options)

@@ -165,7 +165,7 @@ class Automaton:
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
         if retired:
             left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
-            explanations = tuple(one.but(gone=left[id(one)]) for one in explanations)
+            explanations = tuple(one.replace(gone=left[id(one)]) for one in explanations)
         numbered = tuple(rename(one, new) for one in explanations)
         next_node = self._intern(numbered, len(new))
         keep = tuple(new)

@@ -289,13 +289,13 @@ class CallSearch:
                 here = self._after(here, by, names, step)
                 rules += step.rules
             if kind is Called and what[2]:
-                here = here.but(lost=with_lost(here.lost, what[0], ()))
+                here = here.replace(lost=with_lost(here.lost, what[0], ()))
             elif kind is Called:
-                here = here.but(calls=(*here.calls, InFlight(what[3], what[0], ())))
+                here = here.replace(calls=(*here.calls, InFlight(what[3], what[0], ())))
             else:
                 answered = next(one for one in here.calls if one.name == what[2])
                 rules += answered.done.rules if answered.done else self._idle_rules(here, answered, what[0])
-                here = here.but(calls=tuple(one for one in here.calls if one is not answered))
+                here = here.replace(calls=tuple(one for one in here.calls if one is not answered))
             found.append((here, rules))
         return found
 
@@ -314,7 +314,7 @@ class CallSearch:
         if by < 0:
             request = self._lost[-1 - by][0]
             position = next(at for at, (known, *_) in enumerate(here.lost) if known == request)
-            here = here.but(lost=without_lost(here.lost, position))
+            here = here.replace(lost=without_lost(here.lost, position))
         late: tuple[Ready, ...] = ()
         if by >= 0:
             call = next(one for one in here.calls if one.name == names[by])
@@ -325,7 +325,7 @@ class CallSearch:
         if by < 0:
             return after
         done = Ready(step.answer, (), (), step.rules)
-        return after.but(
+        return after.replace(
             calls=tuple(
                 InFlight(one.name, one.request, (), late, done) if one.name == names[by] else one for one in after.calls
             )

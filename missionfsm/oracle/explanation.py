@@ -123,7 +123,7 @@ class Explanation:
         """The position of a name among those of the state."""
         return self.names.index(name) if name in self.names else None
 
-    def but(
+    def replace(
         self,
         *,
         assumed: int | None = None,
@@ -265,7 +265,7 @@ def _in_order(explanation: Explanation) -> Explanation:
     order = list(map(place, channels))
     if all(map(operator.le, order, order[1:])):
         return explanation
-    return explanation.but(channels=tuple(sorted(channels, key=place)))
+    return explanation.replace(channels=tuple(sorted(channels, key=place)))
 
 
 def tidy(explanation: Explanation) -> Explanation:
@@ -307,7 +307,7 @@ def unify(explanation: Explanation, pairs: Iterable[tuple[int, int]]) -> Explana
     left.update(channel.name for channel in explanation.channels)
     lapsed = [observed for own, observed in new.items() if own not in left]
     bound = rename(explanation, new)
-    return bound.but(gone=outlived(bound, lapsed)) if lapsed else bound
+    return bound.replace(gone=outlived(bound, lapsed)) if lapsed else bound
 
 
 def outlived(explanation: Explanation, names: Iterable[int]) -> Names:
@@ -375,7 +375,7 @@ def undrained(explanation: Explanation, *names: int) -> Explanation:
     """The explanation where nothing is on its way any more on channels that are gone: on any, or on those so named."""
     channels = explanation.channels
     left = tuple(one for one in channels if one.topic != DRAINED or (names and one.name not in names))
-    return explanation if len(left) == len(channels) else explanation.but(channels=left)
+    return explanation if len(left) == len(channels) else explanation.replace(channels=left)
 
 
 def take(

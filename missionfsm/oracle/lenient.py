@@ -35,7 +35,7 @@ def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[S
     for explanation in explanations:
         assumed = meet(explanation.assumed, (TR_02["b"],))
         if assumed and any(one.name == channel and one.last for one in explanation.channels):
-            yield Successor(explanation.but(assumed=assumed))
+            yield Successor(explanation.replace(assumed=assumed))
 
 
 def given_up(channel: Channel) -> Channel:
@@ -57,11 +57,11 @@ def restarted(
     for explanation in explanations:
         assumed = meet(explanation.assumed, (TR_05["b"],))
         step = spec.restarted(explanation.state) if assumed else None
-        taken = step and successors.advance(explanation.but(assumed=assumed), step)
+        taken = step and successors.advance(explanation.replace(assumed=assumed), step)
         if taken:
             after = taken[0]
             channels = tuple(Channel(one.name, one.topic, None, one.owed[-1:]) for one in after.channels)
-            yield tidy(after.but(channels=channels))
+            yield tidy(after.replace(channels=channels))
 
 
 def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:

@@ -240,7 +240,7 @@ class Lookahead:
             narrow.append(found[0])
         if all(map(operator.is_, narrow, channels)):
             return explanation
-        return explanation.but(channels=tuple(narrow), assumed=assumed)
+        return explanation.replace(channels=tuple(narrow), assumed=assumed)
 
     def state(self, explanation: Explanation) -> State:
         """The state, or the one that stands for all those that nobody can tell from it any more.

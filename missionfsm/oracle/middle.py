@@ -67,12 +67,12 @@ def answered(
 ) -> Iterator[Successor]:
     """The explanations in which a call is answered as some state allows, of which nothing more is known."""
     call = here.calls[position]
-    rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+    rest = here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
     known = {channel.name for channel in rest.channels}
     for topics in plausible(successors, here, call, answer):
         opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
         channels = (*rest.channels, *(one for one in opened if one.name not in known))
-        yield Successor(tidy(rest.but(channels=channels)))
+        yield Successor(tidy(rest.replace(channels=channels)))
 
 
 def states_shown(  # noqa: PLR0913 - a message, and what is known
@@ -108,7 +108,7 @@ def states_shown(  # noqa: PLR0913 - a message, and what is known
             if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
                 shown_as = spec.remembered(view, content)
                 after = _standing(here, state, own, channel, glimpses.topic(content), view, shown_as)
-                yield Successor(tidy(after.but(assumed=assumed)), match.rules)
+                yield Successor(tidy(after.replace(assumed=assumed)), match.rules)
 
 
 def _names(spec: Spec, here: Explanation, state: State, match: Match, names: Names) -> Names:
@@ -156,7 +156,7 @@ def joined(successors: Successors, here: Explanation, channel: int, content: Con
     glimpses = _glimpses(successors)
     if glimpses is None:
         return here, True
-    return here.but(channels=(*here.channels, Channel(channel, glimpses.topic(content), None, (_FREE,)))), False
+    return here.replace(channels=(*here.channels, Channel(channel, glimpses.topic(content), None, (_FREE,)))), False
 
 
 def unforeseen(
@@ -177,7 +177,7 @@ def unforeseen(
     acted = LOG_02["b"] if spec.others else LOG_01["b"]
     for one in explanations:
         agreed = meet(one.assumed, (acted, *assumed))
-        here = one.but(assumed=agreed)
+        here = one.replace(assumed=agreed)
         if not agreed or is_unknown(here):
             continue
         if kind is Received:
@@ -220,7 +220,7 @@ def wild(
         known = {channel.name for channel in here.channels}
         for topics in itertools.islice(plausible(successors, here, call, answer), 1):
             if all(name in known for name in names[: len(topics)]):
-                yield here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+                yield here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
 
 
 __all__ = ["answered", "is_unknown", "joined", "states_shown", "unforeseen", "wild"]

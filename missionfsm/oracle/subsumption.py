@@ -41,7 +41,7 @@ def _widened(successors: Successors, found: list[Successor], new: Successor) -> 
                 return found
             rules = tuple(dict.fromkeys(other.rules + new.rules))
             rest = [*found[:position], *found[position + 1 :]]
-            return _widened(successors, rest, Successor(new.explanation.but(assumed=union), rules))
+            return _widened(successors, rest, Successor(new.explanation.replace(assumed=union), rules))
     return [*found, new]
 
 
@@ -54,7 +54,7 @@ def _without_later(successors: Successors, found: list[Successor], focus: FocusO
         if not covered:
             yield successor
         base = reached[here] if covered else successor.explanation.assumed
-        for later in successors.silent(successor.explanation.but(assumed=base), focus=focus):
+        for later in successors.silent(successor.explanation.replace(assumed=base), focus=focus):
             key = place_with_lost(later.explanation)
             if key not in reached or covers(later.explanation.assumed, reached[key]):
                 reached[key] = later.explanation.assumed

@@ -287,7 +287,7 @@ class Successors:
                 if known != call.ready:
                     call = InFlight(call.name, call.request, call.args, known, call.done)  # noqa: PLW2901 - the same call, knowing more
             calls.append(call)
-        return explanation.but(calls=tuple(calls))
+        return explanation.replace(calls=tuple(calls))
 
     def _idle_answers(self, explanation: Explanation, call: InFlight) -> Iterator[Ready]:
         refs = self.refs(explanation, call.args)
@@ -399,7 +399,7 @@ class Successors:
             for where, refs in self.addressed(explanation, args):
                 for step in self.effects(where.state, request, refs):
                     if not step.opens:
-                        rest = where.but(lost=without_lost(explanation.lost, position))
+                        rest = where.replace(lost=without_lost(explanation.lost, position))
                         yield from self._after(rest, step, besides)
         for position in calls:
             yield from self._take_effect(explanation, position, besides)
@@ -459,7 +459,7 @@ class Successors:
                     late = () if step.opens else tuple(self.late_answers(where, where.calls[position], refs))
                     calls = list(after.calls)
                     calls[position] = InFlight(call.name, call.request, (), late, done)
-                    bound = self._foreseen(after.but(calls=tuple(calls)), calls[position], done)
+                    bound = self._foreseen(after.replace(calls=tuple(calls)), calls[position], done)
                     if bound:
                         yield Successor(tidy(bound), step.rules)
 

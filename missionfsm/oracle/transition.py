@@ -153,9 +153,9 @@ class TransitionFunction:
     ) -> Iterator[Successor]:
         for explanation in explanations:
             if lost:
-                yield Successor(explanation.but(lost=with_lost(explanation.lost, request, args)))
+                yield Successor(explanation.replace(lost=with_lost(explanation.lost, request, args)))
             else:
-                yield Successor(explanation.but(calls=(*explanation.calls, InFlight(call, request, args))))
+                yield Successor(explanation.replace(calls=(*explanation.calls, InFlight(call, request, args))))
 
     def _returned(
         self, explanations: Iterable[Explanation], answer: Answer, names: Names, call: int
@@ -206,23 +206,23 @@ class TransitionFunction:
                 calls = (*explanation.calls[:position], *explanation.calls[position + 1 :])
                 late = failure.open_ended and not one.done
                 lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
-                yield explanation.but(assumed=assumed, calls=calls, lost=lost)
+                yield explanation.replace(assumed=assumed, calls=calls, lost=lost)
 
     def _answered(
         self, here: Explanation, position: int, answer: Answer, names: Names
     ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
         call = here.calls[position]
-        rest = here.but(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        rest = here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
         if call.done:
             for match in self.successors.agreements(call.done.answer, answer):
                 assumed = self.successors.meet(rest.assumed, match.assumes)
                 for bound in self._bound(rest, answer, call.done.names, names) if assumed else ():
-                    yield bound.but(assumed=assumed), match.rules
+                    yield bound.replace(assumed=assumed), match.rules
         for ready in call.ready:
             for match in self.successors.agreements(ready.answer, answer):
                 assumed = self.successors.meet(rest.assumed, (*ready.assumes, *match.assumes))
                 for bound in self._bound(rest, answer, ready.names, names) if assumed else ():
-                    yield bound.but(assumed=assumed), ready.rules + match.rules
+                    yield bound.replace(assumed=assumed), ready.rules + match.rules
         if call.done:
             return
         for where, refs in self.successors.addressed(rest, call.args):
@@ -239,7 +239,7 @@ class TransitionFunction:
         if not assumed:
             return
         lost = where.lost if step.applied else with_lost(where.lost, call.request, call.args)
-        taken = self.successors.advance(where.but(lost=lost, assumed=assumed), step)
+        taken = self.successors.advance(where.replace(lost=lost, assumed=assumed), step)
         if taken:
             for bound in self._bound(taken[0], answer, taken[1], names):
                 yield bound, step.rules + match.rules
@@ -281,7 +281,7 @@ class TransitionFunction:
             assumed = 0 if sequence is None else self.successors.meet(explanation.assumed, sequence)
             if not assumed:
                 continue
-            start = Successor(explanation.but(assumed=assumed))
+            start = Successor(explanation.replace(assumed=assumed))
             if middle.is_unknown(explanation):
                 yield from middle.states_shown(self.successors, start.explanation, channel, content, names)
                 continue
@@ -418,7 +418,7 @@ class TransitionFunction:
                 last = Owed(owed.view, owed.names, shown_as=self.spec.remembered(owed.view, content))
                 after_it = Channel(channel.name, channel.topic, last, left)
                 channels = (*here.channels[:position], after_it, *here.channels[position + 1 :])
-                after = here.but(assumed=agreed, channels=channels)
+                after = here.replace(assumed=agreed, channels=channels)
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
                 bound = unify(after, pairs)
                 if bound:
@@ -443,7 +443,7 @@ class TransitionFunction:
             for assumed in ways:
                 passed = _offering(channel)
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
-                yield explanation.but(assumed=assumed, channels=channels), channel.topic
+                yield explanation.replace(assumed=assumed, channels=channels), channel.topic
 
     def _may_end(self, here: Explanation, name: int, code: str) -> int:
         """The readings under which the channels with a name may end so; 0 where they may not."""
@@ -473,7 +473,7 @@ class TransitionFunction:
                 bound = unify(here, [(own, name)]) if assumed else None
                 if bound:
                     rest = tuple(channel for channel in bound.channels if channel.name != name)
-                    ended = bound.but(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
+                    ended = bound.replace(assumed=assumed, channels=rest, gone=outlived(bound, (name,)))
                     yield Successor(tidy(ended), successor.rules)
 
     def _closed(self, explanations: Iterable[Explanation], name: int) -> Iterator[Successor]:
@@ -497,7 +497,7 @@ class TransitionFunction:
             rest = tuple(channel for channel in explanation.channels if channel.name != name)
             left = explanation
             if len(rest) < len(explanation.channels):
-                left = explanation.but(channels=rest, gone=outlived(explanation, (name,)))
+                left = explanation.replace(channels=rest, gone=outlived(explanation, (name,)))
             yield Successor(tidy(left))
 
     def _driven(self, explanations: Iterable[Explanation], event: Hashable, names: Names) -> Iterator[Successor]:
@@ -606,7 +606,7 @@ class TransitionFunction:
                 for position, channel in enumerate(explanation.channels)
             )
             for assumed in ways:
-                yield tidy(undrained(explanation.but(assumed=assumed, channels=channels)))
+                yield tidy(undrained(explanation.replace(assumed=assumed, channels=channels)))
 
     def _caught_up(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
         """What is assumed where the subscriber knows all that a channel owes, since it saw that last.

@@ -96,7 +96,7 @@ class Window:
             if call.name in given_up and call.done is None:
                 lost = with_lost(lost, call.request, call.args)
         calls = tuple(call for call in explanation.calls if call.name not in given_up)
-        return explanation.but(calls=calls, lost=lost)
+        return explanation.replace(calls=calls, lost=lost)
 
     def close(self, search: Search) -> None:
         """Let the belief go on behind the events, all of which the search has explained."""

@@ -53,10 +53,11 @@ def test_subjects_are_judged_as_they_deserve(command_line: CommandLine, tmp_path
 
 
 def test_a_wrong_verdict_is_named(command_line: CommandLine, tmp_path: Path) -> None:
-    """Whoever deserves another verdict, and who gives none, is named, and the status is 1."""
+    """Of every second one: whoever deserves another verdict, and who gives none, is named, and the status is 1."""
     gone = [sys.executable, "-c", "raise SystemExit('no')"]
-    folder = table(tmp_path, ("said to be right", WRONG, "conforms"), ("dies", gone, "violates"))
-    ended = command_line("teeth", "bear.status", "--subjects", folder, "--time", 30, "--jobs", 2)
+    rows = [("said to be right", WRONG, "conforms"), ("left out", gone, "violates"), ("dies", gone, "violates")]
+    folder = table(tmp_path, *rows)
+    ended = command_line("teeth", "bear.status", "--subjects", folder, "--every", 2, "--time", 30, "--jobs", 2)
     assert ended.status == 1
     first, _, *wrong = ended.out.splitlines()
     assert first == "bear.status: 0 of 1 that are right accepted, 0 of 1 that have a fault noticed"

@@ -64,6 +64,8 @@ def test_processes_find_what_one_finds() -> None:
         result.mutant: result.killed for result in one.results
     }
     assert next(progress) == len(one.results) > 1
+    sample = teeth_on(1, "isaac.robot", seed=0, only=only, every=2, progress=lambda: None)
+    assert [result.mutant for result in sample.results] == [result.mutant for result in one.results[::2]]
 
 
 def children(process: int) -> list[int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import multiprocessing
 import os
 import signal
@@ -22,17 +23,21 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[], None]) -> MutationReport:
+def teeth_on(  # noqa: PLR0913 - options of the command
+    jobs: int, name: str, *, seed: int, only: str, every: int = 1, progress: Callable[[], None]
+) -> MutationReport:
     """Judge every mutant of a system in so many processes; the same number of them finds the same.
 
     Args:
+        seed, only, every: see `teeth`.
         progress: called for every mutant that has been judged.
     """
+    judge = functools.partial(teeth, seed=seed, only=only, every=every)
     if jobs == 1:
-        return teeth(system(name), seed=seed, only=only, progress=lambda _: progress())
+        return judge(system(name), progress=lambda _: progress())
     context = multiprocessing.get_context("spawn")
     with contextlib.ExitStack() as started:
-        parts = [started.enter_context(_begun(context, name, seed, only, (which, jobs))) for which in range(jobs)]
+        parts = [started.enter_context(_begun(context, name, judge, (which, jobs))) for which in range(jobs)]
         found: dict[Connection, MutationReport] = {}
         while len(found) < jobs:
             for part in wait([part for part in parts if part not in found]):
@@ -46,10 +51,12 @@ def teeth_on(jobs: int, name: str, *, seed: int, only: str, progress: Callable[[
 
 
 @contextlib.contextmanager
-def _begun(context: SpawnContext, name: str, seed: int, only: str, part: tuple[int, int]) -> Iterator[Connection]:
+def _begun(
+    context: SpawnContext, name: str, judge: Callable[..., MutationReport], part: tuple[int, int]
+) -> Iterator[Connection]:
     """A process that judges a part, as that which it tells; it ends with this one, however this one ends."""
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=_judge, args=(name, seed, only, part, theirs), daemon=True)
+    process = context.Process(target=_judge, args=(name, judge, part, theirs), daemon=True)
     process.start()
     theirs.close()
     try:
@@ -60,6 +67,6 @@ def _begun(context: SpawnContext, name: str, seed: int, only: str, part: tuple[i
         ours.close()
 
 
-def _judge(name: str, seed: int, only: str, part: tuple[int, int], results: Connection) -> None:
+def _judge(name: str, judge: Callable[..., MutationReport], part: tuple[int, int], results: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
-    results.send(teeth(system(name), seed=seed, only=only, part=part, progress=lambda _: results.send(_MORE)))
+    results.send(judge(system(name), part=part, progress=lambda _: results.send(_MORE)))

@@ -25,6 +25,7 @@ def teeth(  # noqa: PLR0913 - options of the command
         typer.Option(metavar="FOLDER", help="Judge instead what others made, as its subjects.toml names it."),
     ] = None,
     only: Annotated[str, typer.Option(help="Judge only implementations with this in their name.")] = "",
+    every: Annotated[int, typer.Option(min=1, help="Of those only every so many-th, from the first on.")] = 1,
     seed: Annotated[int, typer.Option(help="The same seed asks the same, in as many processes.")] = 0,
     time: Annotated[float, typer.Option(min=0.1, help="Seconds for each of --subjects, at most.")] = SECONDS,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")] = 0,
@@ -33,22 +34,22 @@ def teeth(  # noqa: PLR0913 - options of the command
 ) -> None:
     """Break every rule, one at a time, and see whether the oracle notices."""
     from missionfsm.app.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415
+    from missionfsm.tools.mutate.teeth import sampled  # noqa: PLC0415
 
     judged = the_system(system)
     refuse_outputs({"--json": json, "--html": html})
     if subjects is not None:
         if html is not None:
             stop("--html has no effect with --subjects", BAD_INPUT)
-        _foreign(system, Path(subjects), only, seed, time, jobs or cores(), json)
+        _foreign(system, Path(subjects), only, every, seed, time, jobs or cores(), json)
         return
     if time != SECONDS:
         stop("--time has no effect without --subjects", BAD_INPUT)
-    total = sum(only in mutant.name for mutant in mutants(judged))
+    total = len(sampled(judged, only, every))
     if not total:
         stop(f"--only {only}: no implementation has {only!r} in its name", BAD_INPUT)
     with Bar("implementations", total) as bar:
-        found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, progress=bar.one_more)
+        found = teeth_on(min(jobs or cores(), total), system, seed=seed, only=only, every=every, progress=bar.one_more)
     troubles = print_result(found, json)
     with troubles.kept():
         write_teeth(html, judged, found)
@@ -56,13 +57,13 @@ def teeth(  # noqa: PLR0913 - options of the command
 
 
 def _foreign(  # noqa: PLR0913 - options of the command
-    system: str, folder: Path, only: str, seed: int, seconds: float, jobs: int, json: str | None
+    system: str, folder: Path, only: str, every: int, seed: int, seconds: float, jobs: int, json: str | None
 ) -> None:
     """Judge the implementations of others in a folder, and end the command."""
     from missionfsm.app.foreign import judge_all, subjects  # noqa: PLC0415 - commands load what they need
 
     try:
-        given = [one for one in subjects(folder) if only in one.name]
+        given = [one for one in subjects(folder) if only in one.name][::every]
     except UnreadableError as error:
         stop(str(error), BAD_INPUT)
     if not given:

@@ -147,11 +147,12 @@ class MutationReport:
         return "\n".join(lines)
 
 
-def teeth(
+def teeth(  # noqa: PLR0913 - all but the system have a default
     system: System,
     *,
     seed: int = 0,
     only: str = "",
+    every: int = 1,
     part: tuple[int, int] = (0, 1),
     progress: Callable[[MutantResult], None] = lambda _: None,
 ) -> MutationReport:
@@ -159,20 +160,26 @@ def teeth(
 
     Args:
         only: part of the names of the mutants to judge; all by default.
+        every: of those only every so many-th, from the first on.
         part: which part of them, of how many that go side by side; `joined` puts them together again.
         progress: told of every mutant when it has been judged.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
     guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS)
-    results, tested = [], set()
+    results = []
     which, parts = part
-    for number, mutant in enumerate(mutants(system)):
-        tested.add(mutant.rule)
-        if only in mutant.name and number // BLOCK % parts == which:
+    for number, mutant in enumerate(sampled(system, only, every)):
+        if number // BLOCK % parts == which:
             results.append(_result(system, mutant, automaton, guide, seed))
             progress(results[-1])
+    tested = {mutant.rule for mutant in mutants(system)}
     untested = tuple(rule.id for rule in system.spec.all_rules if rule.id not in tested)
     return MutationReport(system.name, tuple(results), untested)
+
+
+def sampled(system: System, only: str, every: int) -> list[Mutant]:
+    """Every so many-th of the mutants with this in their names, from the first on."""
+    return [mutant for mutant in mutants(system) if only in mutant.name][::every]
 
 
 def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:

@@ -319,7 +319,7 @@ class Robot:
     @property
     def status(self) -> MissionStates:
         """What a subscriber would be shown now: all listed missions, and which of them is active."""
-        return self._message(listing(self._here.state), self._here.names)
+        return self._message(listing(self._here.state), self._here.state.listed(self._here.names))
 
     def mission(self, mission_id: str) -> MissionState:
         """One listed mission as a subscriber would be shown it. Raises KeyError if it is not listed."""

@@ -54,7 +54,7 @@ def lives(random: Random, length: int) -> Iterator[tuple[Named, list[Named], fro
         names = names if step.names is None else tuple(pool[ref] for ref in step.names)
         robot = step.after
         seen = [(one.view, names if one.refs is None else tuple(pool[ref] for ref in one.refs)) for one in step.emits]
-        yield (robot, names), [*seen, (listing(robot), names)], called
+        yield (robot, names), [*seen, (listing(robot), robot.listed(names))], called
 
 
 def successes(robot: Robot, names: tuple[int, ...]) -> Iterator[tuple[Any, tuple[int, ...], tuple[int, ...]]]:

@@ -23,6 +23,7 @@ def message(number: int, *missions: Any, index: int = 0, **more: Any) -> Any:
 
 ENDED = mission(state="STATE_SUCCEEDED")
 WAITS = mission("B", "STATE_DEFAULT")
+OVER = {"state": "STATE_SUCCEEDED"}
 WRONG: dict[str, tuple[list[Any], str]] = {
     "a number that goes back": ([message(2, mission()), message(1, ENDED, index=-1)], "sequence-numbers-grow"),
     "a number twice": ([message(2, mission()), message(2, ENDED, index=-1)], "sequence-numbers-grow"),
@@ -36,7 +37,10 @@ WRONG: dict[str, tuple[list[Any], str]] = {
         "the-current-mission-index-is-the-active-mission",
     ),
     "two that run": ([message(1, mission(), mission("B"))], "the-state-is-reported"),
-    "one that waits before one that runs": ([message(1, WAITS, mission(), index=1)], "the-state-is-reported"),
+    "one that waits before one that runs": (
+        [message(1, WAITS, mission(missionType={"baseType": "BASE_TYPE_NAVIGATE"}), index=1)],
+        "the-state-is-reported",
+    ),
     "a state that does not exist": ([message(1, mission(state=77), index=-1)], "the-state-is-reported"),
     "one that ended and runs": ([message(1, ENDED, index=-1), message(2, mission())], "the-state-is-reported"),
     "one that ran and waits": (
@@ -67,6 +71,16 @@ def test_what_no_robot_shows_is_told(case: str) -> None:
     monitor = MissionMonitor()
     found = [[problem.rule.rpartition("/")[2] for problem in monitor.feed(one)] for one in messages]
     assert found == [[]] * (len(messages) - 1) + [[rule]]
+
+
+@pytest.mark.parametrize("types", [{}, {"serviType": "SERVI_TYPE_BUSSING"}], ids=["a charge", "a workflow"])
+@pytest.mark.parametrize("state", ["STATE_RUNNING", "STATE_PAUSED"])
+def test_what_was_assigned_last_may_have_its_turn_first(types: Any, state: str) -> None:
+    """AM-07, AM-37: before the missions of a halted queue, and listed behind them."""
+    monitor = MissionMonitor()
+    first = mission("C", state, missionType=types)
+    shown = [message(1, ENDED, WAITS, first, index=2), message(2, ENDED, mission("B"), {**first, **OVER}, index=1)]
+    assert [monitor.feed(one) for one in shown] == [(), ()]
 
 
 def test_every_rule_that_is_said_to_be_checked_can_be_broken() -> None:

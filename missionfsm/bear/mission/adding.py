@@ -62,7 +62,7 @@ def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) 
             yield evolve(mission, goal=NOT_CHOSEN), assumes
         else:
             when = AM_45_WHEN[part_of(wanted.kind)]
-            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, when["i", "j"])
+            yield evolve(mission, goal=NOT_CHOSEN), (*assumes, when.besides("h"))
             yield evolve(mission, goal=chosen), (*assumes, when["h"])
 
 
@@ -126,20 +126,24 @@ def create_workflow(robot: Situation, call: Call) -> Iterator[Outcome]:
     (wanted,) = call.request.wanted
     for parts, how in _workflow_missions(wanted):
         for missions, assumes in _all_accepted(robot, "CreateMissionWorkflow", parts):
-            for edit, anew in _listed_anew(robot, "CreateMissionWorkflow", ((Op.ADD, missions),)):
-                yield from _joining(robot, edit, (*how, *assumes, *anew))
+            for edit, joined in _joining(robot, missions):
+                for whole, anew in _listed_anew(robot, "CreateMissionWorkflow", edit):
+                    yield Outcome(OK, whole, ADDED, (*how, *assumes, *joined, *anew))
 
 
-def _joining(robot: Situation, edit: Edit, assumes: Assumed) -> Iterator[Outcome]:
-    """AM-07: a workflow joins the missions that wait, or replaces them; a halted queue may go on with it."""
+def _joining(robot: Situation, missions: tuple[Mission, ...]) -> Iterator[Way]:
+    """AM-07: a workflow joins the missions that wait, or replaces them; a halted queue may go on with it, or after."""
+    add: Edit = ((Op.ADD, missions),)
     if not robot.queued:
-        yield Outcome(OK, edit, ADDED, assumes)
+        yield add, ()
         return
     how = AM_07[waiting(robot)]
-    yield Outcome(OK, edit, ADDED, (*assumes, how["b"]))
-    yield Outcome(OK, ((Op.DROP_QUEUE, None), *edit, (Op.HALT, False)), ADDED, (*assumes, how["r"]))
+    yield add, (how["b"],)
+    yield ((Op.DROP_QUEUE, None), *add, (Op.HALT, False)), (how["r"],)
+    rest: Edit = ((Op.ADD, missions[1:]),) if missions[1:] else ()
+    yield ((Op.OVERTAKE, missions[:1]), *rest, (Op.HALT, False)), (how["o"],)
     if robot.halted:
-        yield Outcome(OK, (*edit, (Op.HALT, False)), ADDED, (*assumes, how["b"]))
+        yield (*add, (Op.HALT, False)), (how["b"],)
 
 
 @functools.lru_cache(maxsize=1_000)
@@ -208,6 +212,7 @@ def charge(robot: Situation, _: Call) -> Iterator[Outcome]:
         ways = [
             (((Op.ADD, charge), (Op.HALT, False)), (how["b"],)),
             (((Op.PUT_FIRST, charge), (Op.HALT, False)), (how["c"],)),
+            (((Op.OVERTAKE, charge), (Op.HALT, False)), (how["o"],)),
         ]
     for edit, assumes in ways:
         for whole, anew in _listed_anew(robot, "ChargeRobot", edit):

@@ -1,6 +1,7 @@
 """The steps of a robot for the explorer: what a situation allows is found once, as edits, and then only applied.
 
-Most steps of a robot depend on its situation alone, and there are few of those; robots are told apart as numbers.
+Most steps of a robot depend on its situation alone, and there are few of those; robots are told apart as numbers. How
+missions are listed that did not have their turns in the order in which they were assigned decides nothing that comes.
 ``tests/bear/test_mission_explore.py`` holds this to what `missionfsm.bear.mission.spec` says step by step.
 """
 
@@ -12,7 +13,7 @@ from missionfsm.bear.mission.effects import outcomes
 from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
 from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import OPERATIONS
-from missionfsm.bear.mission.state import Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
+from missionfsm.bear.mission.state import ADDING, Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.readings import meet
 
@@ -118,7 +119,7 @@ class Shortcut:
                 done, pending = (*done, *self._numbers_ended(self._mission[one].moved(move) for one in pending)), ()
             elif op is Op.HOLD:
                 pending = what + pending[1:]
-            elif op is Op.PUT_FIRST:
+            elif op in (Op.PUT_FIRST, Op.OVERTAKE):
                 pending = what + pending
             elif op is Op.DROP_QUEUE:
                 pending = ()
@@ -168,7 +169,7 @@ class Shortcut:
         ops: list[tuple[Op, tuple[int, ...]]] = []
         added = 0
         for op, what in edit:
-            if op in (Op.ADD, Op.PUT_FIRST):
+            if op in ADDING:
                 ops.append((op, self._numbers(what)))
                 added += len(what)
                 fresh = False
@@ -203,8 +204,8 @@ _COUNTED = Mission(Kind.RETURN, state=State.STATE_SUCCEEDED)
 
 
 def forget_ended(robot: Robot) -> Robot:
-    """The robot with its ended missions only counted: what they were decides nothing that comes."""
-    if not robot.done:
+    """The robot with its ended missions only counted: what they were, and how all are listed, decides nothing more."""
+    if not (robot.done or robot.assigned):
         return robot
     done = (_COUNTED,) * len(robot.done)
     return Robot(robot.world, done, robot.active, robot.pending, robot.halted, robot.fresh, robot.fault)

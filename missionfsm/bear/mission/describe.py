@@ -14,7 +14,7 @@ def describe(value: object) -> str:
     if isinstance(value, Request):
         return _request(value)
     if isinstance(value, Robot):
-        shown = _missions(value.listed) if value.listed else "[no mission]"
+        shown = _missions(value.listed(value.turns)) if value.turns else "[no mission]"
         return shown + (", halted" if value.halted else "")
     if isinstance(value, Listing):
         active = "none active" if value.active is None else f"{value.active} active"

@@ -292,11 +292,21 @@ def reselected(world: World, mission: Mission, *, resumed: bool = False) -> Iter
         yield become(mission), ()
         return
     when = AM_45_WHEN[part_of(mission.kind)]
-    yield become(mission), (when["h", "i"], AM_64_AUTOMATIC["a"]) if resumed else (when["h", "i"],)
+    turned = tuple(turned_away(world, mission))
+    stays = when["h", "i"] if turned and not resumed else when["h", "i", "o"]
+    yield become(mission), (stays, AM_64_AUTOMATIC["a"]) if resumed else (stays,)
+    yield from turned
     for edit, assumes in _selected_anew(mission, best):
         yield edit, (when["j"], *assumes)
         if resumed:
-            yield edit, (when["h", "i"], AM_64_AUTOMATIC["c"], *assumes)
+            yield edit, (when["h", "i", "o"], AM_64_AUTOMATIC["c"], *assumes)
+
+
+def turned_away(world: World, mission: Mission) -> Iterator[Way]:
+    """AM-45 read as o: where another robot takes its goal, a NavigateAuto mission goes to the best that is free."""
+    best = free_goal(mission.goals, world)
+    if NOT_CHOSEN not in (best, mission.goal) and mission.goals[mission.goal].destination_id in world.occupied:
+        yield become(evolve(mission, goal=best)), (AM_45_WHEN[part_of(mission.kind)]["o"],)
 
 
 def _selected_anew(mission: Mission, best: int) -> Iterator[Way]:

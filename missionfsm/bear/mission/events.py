@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterable, Iterator
 
 from attrs import evolve
 
-from missionfsm.bear.mission.effects import become, end, failed, failed_to_start, reselected
+from missionfsm.bear.mission.effects import become, end, failed, failed_to_start, reselected, turned_away
 from missionfsm.bear.mission.outcome import Way
 from missionfsm.bear.mission.readings import AM_43_LEFT, AM_45_NONE, AM_53_THEN, QUEUE, part_of
 from missionfsm.bear.mission.state import (
@@ -185,11 +185,14 @@ def world_changes(robot: Situation, changed: tuple[tuple[str, Hashable], ...]) -
     world = evolve(robot.world, **dict(changed))  # type: ignore[arg-type]  # fields of a world
     edit: Edit = ((Op.WORLD, world),)
     active = robot.active
-    if active is not None and active.kind in AUTOMATIC and active.state is State.STATE_RUNNING:
+    if active is None or active.kind not in AUTOMATIC:
+        yield edit, ()
+    elif active.state is State.STATE_RUNNING:
         for more, assumes in reselected(world, active):
             yield (edit if more == become(active) else edit + more), assumes
-    else:
+    else:  # a paused one may turn to another goal at once, or when it is resumed
         yield edit, ()
+        yield from ((edit + more, assumes) for more, assumes in turned_away(world, active))
 
 
 def fault_armed(_: Situation, fault: Fault) -> Iterable[Way]:

@@ -29,7 +29,7 @@ def foresees(
     robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: frozenset[str]
 ) -> bool:
     """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
-    if isinstance(content, Malformed) or not all(content.named):
+    if isinstance(content, Malformed) or not all(content.named) or robot.assigned:
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
     return later.all_kept() or (not calls.isdisjoint(_FORGETS) and later.some_forgotten())

@@ -151,12 +151,11 @@ def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tu
 
     Missions keep their order, and one that has ended stays as it ended.
     """
-    places = {name: place for place, name in enumerate(names_after)}
-    kept = [places[name] for name in names if name in places]
+    places = {name: place for place, name in enumerate(after.listed(names_after))}
+    kept = [places[name] for name in before.listed(names) if name in places]
     ended = zip(names, before.done, strict=False)
-    return kept == sorted(kept) and all(
-        after.listed[places[name]].state is one.state for name, one in ended if name in places
-    )
+    now = dict(zip(names_after, after.turns, strict=False))
+    return kept == sorted(kept) and all(now[name].state is one.state for name, one in ended if name in now)
 
 
 MIDDLE = Middle(

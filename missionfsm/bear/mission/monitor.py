@@ -43,6 +43,15 @@ _AUTOMATIC = (
 """The types of missions that select their goal themselves, some time after they have started."""
 
 
+_BY_THEMSELVES = (
+    *_AUTOMATIC,
+    MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),
+    MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE),
+    MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE),
+)
+"""The types of missions that are neither charges nor made by workflows."""
+
+
 def _reached() -> dict[State, frozenset[State]]:
     """For each state of a mission those in which it may be seen next, whatever was not seen in between."""
     found: dict[State, frozenset[State]] = {}
@@ -156,17 +165,30 @@ def _listed(seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
 def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
     """Whether the ended come first, then a running one, then the others, and whether the index says which is active.
 
-    One that is shown as paused is the active one, or (AM-08) one that waits.
+    One that is shown as paused is the active one, or (AM-08) one that waits. A charge or the missions of a workflow may
+    have had their turns before others that were assigned earlier (AM-07, AM-37).
     """
     stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
-    if any(before > after for before, after in pairwise(stages)) or stages.count(1) > 1:
+    in_turn = [stage for stage, one in zip(stages, missions, strict=True) if not _may_overtake(one)]
+    if any(before > after for before, after in pairwise(in_turn)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return
-    ended = stages.count(0)
-    allowed = {ended} if 1 in stages else {-1, ended - 1, ended} if ended < len(missions) else {-1, max(ended - 1, 0)}
+    if 1 in stages:
+        allowed = {stages.index(1)}
+    else:
+        last = max((place for place, stage in enumerate(stages) if stage == 0), default=-1)
+        allowed = {-1, last, stages.index(2)} if 2 in stages else {-1, max(last, 0)}
+        allowed |= {
+            place for place, one in enumerate(missions) if one.state is State.STATE_PAUSED and _may_overtake(one)
+        }
     if index not in allowed:
         values = " or ".join(str(value) for value in sorted(allowed))
         yield CURRENT, f"current_mission_index is {index}, expected {values}"
+
+
+def _may_overtake(mission: MissionState) -> bool:
+    """Whether a mission may be a charge or one of a workflow, and have had its turn."""
+    return mission.state not in _WAITING and mission.mission_type not in _BY_THEMSELVES
 
 
 def _one(index: int, mission: MissionState) -> Iterator[Found]:

@@ -121,7 +121,9 @@ def _last_added_left_out(_: Robot, step: Step) -> Step:
     robot: Robot = step.after
     if len(step.refs) < 2 or not robot.pending:
         return step
-    return evolve(step, after=evolve(robot, pending=robot.pending[:-1]), names=(step.names or ())[:-1], emits=())
+    return evolve(
+        step, after=evolve(robot, pending=robot.pending[:-1], assigned=()), names=(step.names or ())[:-1], emits=()
+    )
 
 
 def _put_first(before: Robot, step: Step) -> Step:
@@ -130,7 +132,7 @@ def _put_first(before: Robot, step: Step) -> Step:
     kept = len(before.pending)
     if not kept or len(robot.pending) <= kept:
         return step
-    fixed = len(robot.listed) - len(robot.pending)
+    fixed = len(robot.turns) - len(robot.pending)
     names = step.names or ()
     return evolve(
         step,
@@ -192,7 +194,9 @@ def _showing_it(mutate_step: Callable[[Robot, Step], Step]) -> Callable[[Robot, 
         if twisted is step or not step.emits:
             return twisted
         view = status.listing(twisted.after)
-        return evolve(twisted, emits=(evolve(step.emits[-1], view=view, refs=twisted.names),))
+        return evolve(
+            twisted, emits=(evolve(step.emits[-1], view=view, refs=twisted.after.listed(twisted.names or ())),)
+        )
 
     return twisted_openly
 

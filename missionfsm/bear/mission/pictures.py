@@ -83,7 +83,7 @@ SKETCHES = (
         "a robot's missions",
         node=_node,
         label=_label,
-        within=lambda robot: len(robot.listed) <= _MAX_LISTED,
+        within=lambda robot: len(robot.turns) <= _MAX_LISTED,
         simple=lambda robot, _: forget_ended(robot),
         inputs=_PROMPTS,
         drives=_DRIVES,

@@ -14,7 +14,7 @@ def _has_state(mission: Mission, *states: State) -> bool:
 INVARIANTS = (
     Invariant(
         "ended-missions-come-first",
-        "Listed missions stand in the order ended, active, waiting.",
+        "Missions have their turns in the order ended, active, waiting.",
         lambda robot: (
             all(_has_state(one, *ENDED) for one in robot.done)
             and (robot.active is None or _has_state(robot.active, State.STATE_RUNNING, State.STATE_PAUSED))
@@ -38,14 +38,14 @@ INVARIANTS = (
     Invariant(
         "a-used-robot-is-not-fresh",
         "A robot that lists a mission was used.",
-        lambda robot: not (robot.fresh and robot.listed),
+        lambda robot: not (robot.fresh and robot.turns),
     ),
 )
 POSSIBILITIES = (
     *(
         Invariant(f"a-mission-is-{state.name.lower()}", f"Some mission is in {state.name}.", holds)
         for state, holds in (
-            (state, lambda robot, state=state: any(one.state is state for one in robot.listed))
+            (state, lambda robot, state=state: any(one.state is state for one in robot.turns))
             for state in LIFECYCLE.states
         )
     ),
@@ -55,5 +55,5 @@ POSSIBILITIES = (
         "A mission is past its first goal.",
         lambda robot: bool(robot.active and robot.active.goal > 0),
     ),
-    Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.listed),
+    Invariant("a-robot-is-cleared", "A used robot lists nothing.", lambda robot: not robot.fresh and not robot.turns),
 )

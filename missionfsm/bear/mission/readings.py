@@ -180,6 +180,7 @@ AM_07 = _each(
     {
         "a": "yes, as for CreateMission",
         "b": "no, the workflow joins the queue",
+        "o": "no, it is begun first, though it is listed behind them",
         "r": "no, the workflow replaces the queue",
     },
     "a",
@@ -424,7 +425,12 @@ AM_37_PAUSED = Ambiguity(
 AM_37_QUEUED = _each(
     "AM-37.queued",
     "Do waiting missions alone forbid ChargeRobot where {}?",
-    {"a": "yes", "b": "no, charging joins the queue", "c": "no, charging comes first"},
+    {
+        "a": "yes",
+        "b": "no, charging joins the queue",
+        "c": "no, charging comes first",
+        "o": "no, charging comes first, though it is listed behind them",
+    },
     "a",
     WAITING,
 )
@@ -523,7 +529,12 @@ AM_45_REFUSED = _each(
 AM_45_WHEN = _each(
     "AM-45.when",
     "When does {} select its goal?",
-    {"h": "when it is created", "i": "when it starts", "j": "when it starts, and again on the way"},
+    {
+        "h": "when it is created",
+        "i": "when it starts",
+        "j": "when it starts, and again on the way",
+        "o": "when it starts, and again where another robot takes its goal",
+    },
     "i",
     _kinds(kind for kind in Kind if kind in AUTOMATIC),
 )
@@ -573,9 +584,15 @@ AM_53 = {
     **_each(
         "AM-53",
         _UNABLE,
-        {"a": "FAILED_PRECONDITION", "b": "OK", "t": "OK, or DEADLINE_EXCEEDED"},
+        {
+            "a": "FAILED_PRECONDITION",
+            "b": "OK",
+            "i": "INTERNAL: that it cannot be started is a failure of the mission system",
+            "t": "OK, or DEADLINE_EXCEEDED",
+        },
         "a",
         ("CreateMission", "CreateMissionWorkflow", "ChargeRobot"),
+        flagged="i",
         alike=False,
     ),
     **_each("AM-53", _UNABLE, {"b": "OK", "t": "OK, or DEADLINE_EXCEEDED"}, "b", APPENDING, alike=False),

@@ -218,6 +218,12 @@ def the_robot_is_unable_to_start_charging(robot: Situation, _: Call) -> bool:
     return robot.world.blocked
 
 
+@refusal(INTERNAL, cite=MISSION["CreateMissionBatch", "Errors"], sort=ABILITY)
+def the_mission_system_cannot_start_a_mission(robot: Situation, _: Call) -> bool:
+    """The robot is unable to start a mission, which is taken for a failure of the mission system (AM-53)."""
+    return robot.world.blocked
+
+
 @refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], sort=STATE)
 def another_mission_is_active(robot: Situation, _: Call) -> bool:
     """A mission is running or paused, so a workflow cannot be created."""

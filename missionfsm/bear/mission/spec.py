@@ -91,7 +91,8 @@ def _edited(
     emits: tuple[Emission, ...] = ()
     if not shown.looks_like(before):
         # Where a goal was selected that the index may have shown already, nobody can tell.
-        emits = (*_ending(robot, edit), Emission(TOPIC, shown, names, optional=shown.may_look_like(before)))
+        may_look_like = shown.may_look_like(before)
+        emits = (*_ending(robot, edit), Emission(TOPIC, shown, after.listed(names), optional=may_look_like))
     return after, names, emits, gone
 
 
@@ -99,7 +100,12 @@ def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
     """AM-09, AM-10: a mission may be seen to have ended before those that wait end or vanish with it."""
     kept = tuple((op, what) for op, what in edit if op not in (Op.END_QUEUE, Op.DROP_QUEUE))
     if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
-        yield Emission(TOPIC, listing(apply(kept, robot)), renumber(kept, robot)[0], optional=True)
+        yield _shown(apply(kept, robot), renumber(kept, robot)[0], optional=True)
+
+
+def _shown(robot: Robot, names: tuple[int, ...], *, only: Assumption | None = None, optional: bool = False) -> Emission:
+    """What a subscriber is shown of a robot, whose missions have these names in the order of their turns."""
+    return Emission(TOPIC, listing(robot), robot.listed(names), only, optional)
 
 
 def _step(robot: Robot, edit: Edit, assumes: tuple[Assumption, ...] = (), rules: tuple[str, ...] = ()) -> Step:
@@ -139,7 +145,7 @@ _answer = functools.cache(Answer)
 def _answered(robot: Robot, request: Request, outcome: Outcome) -> Step:
     after, names, emits, refs = _edited(robot, outcome.edit, request.operation)
     if outcome.whose == ADDED:
-        before = len(robot.listed)
+        before = len(robot.turns)
         refs = tuple(sorted(name for name in names or () if name >= before))
         if request.operation in AM_54:
             emits = (*_growing(robot, outcome.edit, AM_54[request.operation]["b"]), *emits)
@@ -167,22 +173,24 @@ makes a message more to be imagined."""
 
 def _growing(robot: Robot, edit: Edit, only: Assumption) -> Iterator[Emission]:
     """AM-54: what a subscriber may see of several new missions before they are complete: the first may run already."""
-    added = next(what for op, what in edit if op is Op.ADD)
-    for size in range(1, len(added)):
+    added = next((what for op, what in edit if op is Op.ADD), ())
+    # What overtakes the others is there before the rest.
+    fewest = 0 if any(op is Op.OVERTAKE for op, _ in edit) else 1
+    for size in range(fewest, len(added)):
         part = tuple((op, what[:size]) if op is Op.ADD else (op, what) for op, what in edit)
         grown = apply(part, robot)
         names = renumber(part, robot)[0]
-        yield Emission(TOPIC, listing(grown), names, only=only)
+        yield _shown(grown, names, only=only)
         if grown.active is None and len(added) <= LARGEST_SEEN_STARTING:
             for start, _ in due(grown.world, None, grown.pending[0], halted=grown.halted, queued=True):
                 if any(op is Op.START for op, _ in start):
-                    yield Emission(TOPIC, listing(apply(start, grown)), names, only=only)
+                    yield _shown(apply(start, grown), names, only=only)
 
 
 def _opened(robot: Robot, outcome: Outcome) -> Iterator[Step]:
     """A subscription: the latest state is owed at once, unless (AM-36) there never was one."""
-    stream = len(robot.listed)
-    first = Emission(TOPIC, listing(robot), tuple(range(stream)))
+    stream = len(robot.turns)
+    first = _shown(robot, tuple(range(stream)))
     ways: list[tuple[tuple[Emission, ...], tuple[Assumption, ...]]] = [((first,), ())]
     if robot.fresh:
         ways = [((first,), (AM_36["a", "b"],)), ((), (AM_36["c"],))]
@@ -229,7 +237,7 @@ def _spontaneous(robot: Robot) -> tuple[Step, ...]:
 def _restarted(robot: Robot) -> Step:
     """The robot with nothing in its list."""
     after = Robot(robot.world, fault=robot.fault)
-    return Step(after, names=(), emits=(Emission(TOPIC, listing(after), ()),))
+    return Step(after, names=(), emits=(_shown(after, ()),))
 
 
 _JUSTIFIED = {
@@ -325,7 +333,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         waived=WAIVERS,
         delivery=_delivery,
         sequence=_sequence,
-        names=lambda robot: len(robot.listed),
+        names=lambda robot: len(robot.turns),
         request_operation=lambda request: request.operation,
         ambiguities=AMBIGUITIES,
         describe=describe,

@@ -1,7 +1,9 @@
 """The robot of the Mission page as a state: its world, its listed missions, and the edits that steps make to them.
 
-The missions of a robot stand in one order: those that have ended, then the active one, then those that wait. Nothing
-that the documents allow ever breaks that order, so it is the shape of the state rather than an invariant over it.
+The missions of a robot stand in the order of their turns: those that have ended, then the active one, then those that
+wait. Nothing that the documents allow ever breaks that order, so it is the shape of the state rather than an invariant
+over it. Where a mission had its turn before others that were assigned earlier, `Robot.assigned` says how they are
+listed.
 """
 
 from __future__ import annotations
@@ -90,6 +92,7 @@ LIFECYCLE: Chart[State] = Chart(
 """The lifecycle of one mission; waiting is reported as STATE_DEFAULT (AM-08)."""
 
 ENDED = frozenset(LIFECYCLE.final)
+T = TypeVar("T")
 NOT_CHOSEN = -1
 """The goal of a NavigateAuto mission that has not selected one."""
 
@@ -189,6 +192,8 @@ class Robot:
         halted: the waiting missions are not going to start by themselves (AM-09, AM-10 read as b).
         fresh: no mission was ever assigned.
         fault: an armed fault.
+        assigned: how many of `turns` were assigned before each, where that is not their order (AM-07, AM-37); () where
+            it is.
     """
 
     world: World
@@ -198,11 +203,18 @@ class Robot:
     halted: bool = False
     fresh: bool = True
     fault: Fault | None = None
+    assigned: tuple[int, ...] = ()
 
     @property
-    def listed(self) -> tuple[Mission, ...]:
-        """All listed missions, first to last assigned."""
+    def turns(self) -> tuple[Mission, ...]:
+        """All listed missions in the order of their turns; names and references stand in it as well."""
         return (*self.done, *((self.active,) if self.active else ()), *self.pending)
+
+    def listed(self, turns: tuple[T, ...]) -> tuple[T, ...]:
+        """What there is for each mission in the order of their turns, first to last assigned."""
+        if not self.assigned:
+            return turns
+        return tuple(one for _, one in sorted(zip(self.assigned, turns, strict=True), key=lambda pair: pair[0]))
 
 
 @value(cache_hash=True)
@@ -233,6 +245,7 @@ class Op(enum.Enum):
     START = "the first waiting mission becomes active as this one"
     ADD = "these missions are appended"
     PUT_FIRST = "these missions are put before those that wait"
+    OVERTAKE = "these missions have their turn before those that wait, and are listed behind them"
     HOLD = "the first waiting mission becomes this one"
     END_QUEUE = "all waiting missions end by this move"
     DROP_QUEUE = "all waiting missions vanish"
@@ -248,9 +261,6 @@ class Op(enum.Enum):
 Edit = tuple[tuple[Op, Any], ...]
 """A change of a robot, said without the missions that it leaves alone."""
 
-T = TypeVar("T")
-
-
 Listed = tuple[tuple[Mission, ...], Mission | None, tuple[Mission, ...]]
 """The ended missions, the active one, and those that wait."""
 
@@ -260,6 +270,7 @@ _REARRANGED: Mapping[Op, Callable[[Listed, Any], Listed]] = {
     Op.START: lambda listed, first: (listed[0], first, listed[2][1:]),
     Op.ADD: lambda listed, more: (listed[0], listed[1], listed[2] + more),
     Op.PUT_FIRST: lambda listed, more: (listed[0], listed[1], more + listed[2]),
+    Op.OVERTAKE: lambda listed, more: (listed[0], listed[1], more + listed[2]),
     Op.HOLD: lambda listed, first: (listed[0], listed[1], (first, *listed[2][1:])),
     Op.END_QUEUE: lambda listed, move: ((*listed[0], *(one.moved(move) for one in listed[2])), listed[1], ()),
     Op.DROP_QUEUE: lambda listed, _: (listed[0], listed[1], ()),
@@ -282,15 +293,30 @@ def apply(edit: Edit, robot: Robot) -> Robot:
             settings[op] = what
         else:
             listed = rearranged(listed, what)
-            fresh = fresh and op is not Op.ADD and op is not Op.PUT_FIRST
+            fresh = fresh and op not in ADDING
     done, active, pending = listed
     halted = settings.get(Op.HALT, robot.halted) and bool(pending)
     fault, world = settings.get(Op.ARM, robot.fault), settings.get(Op.WORLD, robot.world)
-    return Robot(world, done, active, pending, halted, fresh, fault)
+    return Robot(world, done, active, pending, halted, fresh, fault, _assigned(edit, robot))
+
+
+ADDING = (Op.ADD, Op.PUT_FIRST, Op.OVERTAKE)
+
+
+def _assigned(edit: Edit, robot: Robot) -> tuple[int, ...]:
+    """How the missions are listed after an edit; see `Robot.assigned`."""
+    if not robot.assigned and all(op is not Op.OVERTAKE for op, _ in edit):
+        return ()
+    names, _ = renumber(edit, robot)
+    before = robot.assigned or tuple(range(len(robot.turns)))
+    places = [before[name] if name < len(before) else name for name in names]
+    ranks = {place: rank for rank, place in enumerate(sorted(places))}
+    after = tuple(ranks[place] for place in places)
+    return () if after == tuple(range(len(after))) else after
 
 
 def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Which names an edit keeps, in the order of the missions after it, and which belong to missions that vanish.
+    """Which names an edit keeps, in the order of their turns after it, and which belong to missions that vanish.
 
     Names are referred to as in `missionfsm.kernel.step.Step`: 0… are those before, the added ones follow.
     """
@@ -304,7 +330,7 @@ def renumber(edit: Edit, robot: Robot) -> tuple[tuple[int, ...], tuple[int, ...]
             done, active = done + active, []
         elif op is Op.START:
             active, pending = pending[:1], pending[1:]
-        elif op in (Op.ADD, Op.PUT_FIRST):
+        elif op in ADDING:
             added = list(range(new, new + len(what)))
             new += len(what)
             pending = pending + added if op is Op.ADD else added + pending

@@ -92,8 +92,8 @@ def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
 def listing(robot: Robot) -> Listing:
     """What a subscriber of the robot is shown."""
     return Listing(
-        tuple(mission.visible for mission in robot.listed),
-        len(robot.done) if robot.active else None,
+        robot.listed(tuple(mission.visible for mission in robot.turns)),
+        (robot.assigned[len(robot.done)] if robot.assigned else len(robot.done)) if robot.active else None,
         robot.world.family,
         robot.fresh,
         robot.active is None and bool(robot.pending) and (robot.halted or robot.pending[0].held),
@@ -278,13 +278,14 @@ def current_index(view: Listing) -> Mapping[int, Assumed]:
     """The values that current_mission_index may have, and what each assumes (AM-14)."""
     if view.active is not None:
         return {view.active: ()}
-    ended = sum(mission.state in ENDED for mission in view.missions)
-    if ended == len(view.missions):
-        return {-1: (AM_14_ENDED["a"],), ended - 1: (AM_14_ENDED["b"],)} if ended else {-1: ()}
+    ended = [place for place, mission in enumerate(view.missions) if mission.state in ENDED]
+    if len(ended) == len(view.missions):
+        return {-1: (AM_14_ENDED["a"],), ended[-1]: (AM_14_ENDED["b"],)} if ended else {-1: ()}
     how = AM_14_HALTED if view.held else AM_14_GAP
+    following = next(place for place in range(len(view.missions)) if place not in ended)
     if not ended:
         return {-1: (how["c", "d"],), 0: (how["e"],)}
-    return {-1: (how["c"],), ended - 1: (how["d"],), ended: (how["e"],)}
+    return {-1: (how["c"],), ended[-1]: (how["d"],), following: (how["e"],)}
 
 
 def _current(view: Listing, index: int) -> Assumed:

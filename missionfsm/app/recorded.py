@@ -113,7 +113,7 @@ LOOK = 16
 def _judged(
     path: str, asked: Asked, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
 ) -> list[tuple[str | None, Verdict]]:
-    """See `check_file`.
+    """The verdicts on one file, read once; see `check_file`.
 
     Args:
         lost: which calls are never answered; None: hope that all are, or raise.
@@ -326,7 +326,7 @@ class _Judges:
         return [(robot, verdict) for robot, _, verdict in self.judgements(path)]
 
     def judgements(self, path: str) -> list[tuple[str | None, Judge, Verdict]]:
-        """The same with the judges."""
+        """What each judge says of its robot, with the judge, in the order of their first lines; see `verdicts`."""
         judges = self._judges or {None: self._nobody}
         if self._lost is None and any(judge.transcript.pending or judge.exhausted for judge in judges.values()):
             raise _UndecidedError(by_params=self.addresses.by_call)

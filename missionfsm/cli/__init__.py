@@ -23,13 +23,19 @@ from missionfsm.cli.helping import Command, Program
 from missionfsm.cli.signals import ended_like_ctrl_c
 from missionfsm.kernel.codec import UnreadableError
 
+HELP = """An executable model of robot-mission interfaces, and an oracle made from it.
+
+`missionfsm COMMAND --help` says more of a command.
+
+Exit status: 0 conforms (or done), 1 violates or inconclusive, 2 bad usage or bad input, 3 the adapter failed.
+"""
 app = typer.Typer(
     cls=Program,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
-    help=__doc__,
+    help=HELP,
 )
 for _command in (
     conform.conform,
@@ -59,7 +65,7 @@ def _version(*, wanted: bool) -> None:
         raise typer.Exit(DONE)
 
 
-@app.callback(help=__doc__)
+@app.callback(help=HELP)
 def options(
     version: Annotated[
         bool, typer.Option("--version", is_eager=True, callback=lambda wanted: _version(wanted=wanted), help="Show it.")

@@ -31,9 +31,6 @@ NEXT = 64
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
 
-"""An event with numbers for names, as the belief automaton knows it: its class and its fields."""
-
-
 Message = tuple[Hashable, Names]
 """What a message shows: its content, and the names in it."""
 

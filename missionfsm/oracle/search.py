@@ -94,7 +94,7 @@ class Search:
     """Looks for explanations of a window of events.
 
     Args:
-        oracle: the transition function.
+        transitions: the transition function.
         start: all explanations of what was before.
         symbols: the events of the window.
         latest: what each channel showed last before the window.
@@ -231,7 +231,7 @@ class Search:
                 return
 
     def _spending_on_calls(self, horizon: int) -> bool:
-        """The same for a window of calls alone. Raises OtherwiseError where something else can happen."""
+        """Whether a window of calls alone is explained up to a horizon. Raises OtherwiseError if it is not one."""
         successors = self.successors
         budget = successors.budget
         successors.budget = successors.limit = min(self.budget, self._memory // ENTRY)

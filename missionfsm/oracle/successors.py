@@ -70,7 +70,8 @@ FocusOf = Callable[[Explanation], Focus]
 class Successors:
     """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
 
-    It holds caches and nothing that could change an answer. While it is `live`, nobody can be asked what comes later.
+    But for `live` and `ahead` it holds caches and nothing that could change an answer. While it is `live`, nobody can
+    be asked what comes later; it is said before the first question, since it decides which steps are told apart.
 
     Args:
         spec: the system.
@@ -322,7 +323,7 @@ class Successors:
         return failure
 
     def failures(self, call: InFlight, code: str) -> Iterator[Failure]:
-        """The same, and that a client or a gateway has made the code up: nobody can tell how often they do."""
+        """What `may_fail` says of a code, and that a client or a gateway made it up: nobody knows how often they do."""
         failure = self.may_fail(call, code)
         if failure is not None:
             yield failure

@@ -85,7 +85,7 @@ class TransitionFunction:
         kind: type,
         *what: Part,
     ) -> Iterator[Successor]:
-        """What explains an event that the system does not explain, one by one; see `step`."""
+        """Explanations of an event that the system itself does not explain, one by one; see `step`."""
         return itertools.chain.from_iterable(self._beyond(tuple(explanations), kind, *what))
 
     def _beyond(
@@ -139,7 +139,10 @@ class TransitionFunction:
             yield one
 
     def explained(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> Iterator[Successor]:
-        """The same, one by one: the nearest first, some of them in several ways; without what only a transport does."""
+        """Explanations of an event, one by one, the nearest first, some of them more than once; see `step`.
+
+        What only a transport does is left out.
+        """
         observe: Observer[Iterator[Successor]] = _OBSERVERS[kind]
         return observe(self, explanations, *what)
 

@@ -168,7 +168,7 @@ def test_others_explain_nothing_but_the_choice_of_a_goal(case: str) -> None:
 
 def test_what_is_watched_is_no_field_of_the_protocol() -> None:
     """A world that nobody watches is written as it is, and nobody can ask for one by a field."""
-    world = MISSION.codec.world({"occupied": ["table-1"]})
+    world = MISSION.codec.read_world({"occupied": ["table-1"]})
     drive = MISSION.spec.drives["world"]
     assert drive.unwatched is not None
     assert MISSION.codec.write_world(drive.unwatched.world(world)) == MISSION.codec.write_world(world)

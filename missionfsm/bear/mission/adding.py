@@ -48,7 +48,7 @@ def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) 
     """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
 
     Args:
-        call: the operation.
+        operation: the name of the call's operation.
         waits: whether it does not start at once.
     """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure

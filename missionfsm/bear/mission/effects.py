@@ -148,9 +148,6 @@ def _effects(robot: Situation, call: Call) -> Iterator[Outcome]:
     return _EFFECTS[call.request.operation](robot, call)
 
 
-# Missions that come.
-
-
 # Missions that end.
 
 

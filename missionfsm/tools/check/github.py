@@ -18,7 +18,7 @@ def workflow_commands(verdicts: Iterable[tuple[str | None, str, Verdict]]) -> It
         verdicts: each with the file that it is about, if it is about one, and what it is about in words.
     """
     for path, about, verdict in verdicts:
-        line = verdict.violation.at if verdict.violation and verdict.violation.where else 1
+        line = (verdict.violation and verdict.violation.line) or 1
         title = f"{verdict.headline}: {about}"
         if verdict.outcome is not Outcome.CONFORMS:
             text = verdict.violation.explanation if verdict.violation else f"because {verdict.because}"

@@ -81,7 +81,7 @@ class Nearest:
         return (successor.explanation for successor in self.ways(besides))
 
     def ways(self, besides: int | None = None) -> Iterator[Successor]:
-        """The same with the rules of what has silently happened on the way."""
+        """What the explanations can silently become, the nearest first, with the rules of what happened on the way."""
         found = self.successors.closure(self.belief.node.explanations, besides)
         try:
             yield from itertools.islice(found, MAX_LOOKED_AT)

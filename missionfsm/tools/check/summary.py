@@ -57,7 +57,7 @@ def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
         events += verdict.events
         where = path if robot is None else f"{path}, {robot}"
         if verdict.violation is not None:
-            at = f"{where}, line {verdict.violation.at}" if verdict.violation.where else where
+            at = where if verdict.violation.line is None else f"{where}, line {verdict.violation.line}"
             for rule in dict.fromkeys(rule.id for rule in verdict.violation.rules):
                 broken[rule] += 1
                 first.setdefault(rule, at)

@@ -75,7 +75,8 @@ class Violation:
         expected: what would have been right.
         notes: why explanations died, one line each.
         history: the shortest history known that shows it, as lines of the history format.
-        at: where it is: the number of the event, or of the line in a file, from 1.
+        at: the number of the line of a file where it is (see `line`), else of the event, from 1.
+        where: what stands before `observed`: the line of the file; empty where there is no file.
         sides: the conversations that contradict one another, where no single one of them is wrong.
         listed: ids of the rules by which a list of known violations knows it, if those are not its own: a search meets
             it in a conversation that is longer than the one that is shown, and that may break other rules as well.
@@ -90,6 +91,11 @@ class Violation:
     where: str = ""
     sides: tuple[Side, ...] = ()
     listed: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> int | None:
+        """The number of the line of the file where it is, from 1; None where there is no file."""
+        return self.at if self.where else None
 
     @property
     def known_by(self) -> tuple[str, ...]:

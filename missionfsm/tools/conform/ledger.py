@@ -23,7 +23,7 @@ class Ledger:
         answers: operation to status name to how often it was answered so.
         oddities: what is explained, and yet belongs to no reading: a line each.
         readings: the readings that every conversation so far can be explained by.
-        settled_by: ambiguity and letter to the first conversation that ruled it out.
+        ruled_out_by: ambiguity and letter to the first conversation that ruled it out.
         rulings: ambiguity and letter to the event in that conversation.
         contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
         aside: ambiguities of which it is known that no single reading is followed.
@@ -39,7 +39,7 @@ class Ledger:
     answers: dict[str, Counter[str]] = field(factory=dict)
     oddities: dict[str, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
-    settled_by: dict[tuple[str, str], Conversation] = field(factory=dict)
+    ruled_out_by: dict[tuple[str, str], Conversation] = field(factory=dict)
     rulings: dict[tuple[str, str], Elimination] = field(factory=dict)
     contradiction: str | None = None
     aside: set[str] = field(factory=set)
@@ -74,14 +74,14 @@ class Ledger:
             possible = self.readings.get(ambiguity.id) or tuple(ambiguity.readings)
             for letter in possible:
                 if letter not in letters:
-                    self._settle(ambiguity.id, letter, done)
+                    self._rule_out(ambiguity.id, letter, done)
             self.readings[ambiguity.id] = tuple(letter for letter in possible if letter in letters)
             if not self.readings[ambiguity.id]:
                 contradicted.append(ambiguity.id)
         return contradicted
 
-    def _settle(self, name: str, letter: str, done: Conversation) -> None:
-        self.settled_by.setdefault((name, letter), done)
+    def _rule_out(self, name: str, letter: str, done: Conversation) -> None:
+        self.ruled_out_by.setdefault((name, letter), done)
         if (name, letter) in done.judge.rulings.found:
             self.rulings.setdefault((name, letter), done.judge.rulings.found[name, letter])
 
@@ -94,5 +94,5 @@ class Ledger:
         """What is wrong with an implementation that follows no single reading of the contradiction's ambiguity."""
         spec = self.system.spec
         ambiguity = next(one for one in spec.ambiguities if one.id == self.contradiction)
-        evidence = {letter: done.judge for (name, letter), done in self.settled_by.items() if name == ambiguity.id}
+        evidence = {letter: done.judge for (name, letter), done in self.ruled_out_by.items() if name == ambiguity.id}
         return inconsistent(spec, ambiguity, evidence)

@@ -115,7 +115,7 @@ def _shorten(
 def shorten_evidence(run: Run) -> None:
     """Make the conversations that ruled out the readings of a contradiction as short as can be."""
     if run.ledger.contradiction is not None:
-        _shorten_those(run, [key for key in run.ledger.settled_by if key[0] == run.ledger.contradiction])
+        _shorten_those(run, [key for key in run.ledger.ruled_out_by if key[0] == run.ledger.contradiction])
 
 
 def beside_others(run: Run, violation: Violation, *, asks_again: bool) -> Violation:
@@ -125,10 +125,10 @@ def beside_others(run: Run, violation: Violation, *, asks_again: bool) -> Violat
     if not run.found.under(run.narrowing.wide).right:
         return violation
     needed = essential(run.system, judge, ledger.readings)
-    keys = [key for key in ledger.settled_by if key[0] in needed and key[1] not in needed[key[0]]]
+    keys = [key for key in ledger.ruled_out_by if key[0] in needed and key[1] not in needed[key[0]]]
     if asks_again:
         _shorten_those(run, keys)
-    return beside(violation, needed, {key: ledger.settled_by[key].judge for key in keys})
+    return beside(violation, needed, {key: ledger.ruled_out_by[key].judge for key in keys})
 
 
 def _shorten_those(run: Run, keys: Iterable[tuple[str, str]]) -> None:
@@ -137,13 +137,13 @@ def _shorten_those(run: Run, keys: Iterable[tuple[str, str]]) -> None:
     for name, letter in keys:
         if run.enough():
             return
-        conversation = ledger.settled_by[name, letter]
+        conversation = ledger.ruled_out_by[name, letter]
 
         def shows(tried: Conversation, name: str = name, letter: str = letter) -> bool:
             return tried.right and letter not in tried.judge.belief.readings.get(name, (letter,))
 
         def keep(shorter: Conversation, key: tuple[str, str] = (name, letter)) -> None:
-            ledger.settled_by[key] = shorter
+            ledger.ruled_out_by[key] = shorter
 
         try:
             shrink(conversation, run.replay, run.simpler, run.guide.worlds[0], shows, keep=keep, enough=run.enough)

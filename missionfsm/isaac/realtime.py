@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from attrs import evolve
 
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
-from missionfsm.isaac.server.scripts import header
+from missionfsm.isaac.server.samples import header
 from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
 from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, pick
 from missionfsm.kernel.codec import JSON

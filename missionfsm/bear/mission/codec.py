@@ -9,7 +9,7 @@ from typing import Any
 
 import attrs
 
-from missionfsm.bear.mission.events import Event
+from missionfsm.bear.mission.events import PLAIN_EVENTS, Event
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import rendered, with_bare_feedback
 from missionfsm.bear.mission.request_codec import REQUESTS, read_request, split_request, write_request
@@ -313,7 +313,7 @@ def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
             message = f"drive: a fault has {wanted}, not {brief(fields)}"
             raise UnreadableError(message)
         return Event("fault", Fault(status, applied)), ()
-    if name not in ("goalReached", "missionSucceeded", "missionFailed"):
+    if name not in PLAIN_EVENTS:
         message = f"drive.event: {brief(name)} is not a drive of bear.mission"
         raise UnreadableError(message)
     return Event(name), ()

@@ -14,7 +14,7 @@ from attrs import evolve
 
 from missionfsm.bear.mission.adding import append, charge, create, create_workflow
 from missionfsm.bear.mission.inputs import Call, Request, Target
-from missionfsm.bear.mission.operations import OPERATIONS, decisions
+from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS, decisions
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings import (
     AM_09,
@@ -256,7 +256,7 @@ def _update(robot: Situation, call: Call) -> Iterator[Outcome]:
     mission, command = robot.active, call.request.command
     if mission is None or call.target is not Target.ACTIVE or command is None:
         return
-    promised = (f"bear.mission/UpdateMission/{command.name.removeprefix('COMMAND_').lower()}",)
+    promised = (COMMANDED[command],)
     for edit, assumes in _COMMAND_EFFECTS[command](robot, mission):
         yield Outcome(OK, edit, NOBODY, assumes, promised)
 

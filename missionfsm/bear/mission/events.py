@@ -139,6 +139,10 @@ class Event:
     what: Hashable = None
 
 
+PLAIN_EVENTS = ("goalReached", "missionSucceeded", "missionFailed")
+"""The drives that say nothing but that they happen; they bring missions on."""
+
+
 def goal_reached(robot: Situation) -> Iterable[Way]:
     """The running mission is done with its current goal."""
     mission = robot.active

@@ -87,6 +87,7 @@ from missionfsm.bear.mission.rules import (
     there_never_was_anything_to_clear,
 )
 from missionfsm.bear.mission.state import MISSION, SYSTEM_NAME, Situation
+from missionfsm.bear.wire.messages import Command
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
@@ -173,15 +174,15 @@ _SKIPPED = promise(
     "The active mission goes on to its next goal, and the answer has its id.",
     cite=MISSION["SkipGoal"],
 )
-_COMMAND_PROMISES = tuple(
-    promise(name, says, cite=MISSION["UpdateMission", "Command enum"])
-    for name, says in (
-        ("cancel", "COMMAND_CANCEL ends the mission as cancelled."),
-        ("pause", "COMMAND_PAUSE pauses a running mission."),
-        ("resume", "COMMAND_RESUME lets a paused mission run on."),
-        ("finish", "COMMAND_FINISH ends the mission as completed."),
+_COMMAND_PROMISES = {
+    command: promise(name, says, cite=MISSION["UpdateMission", "Command enum"])
+    for command, name, says in (
+        (Command.COMMAND_CANCEL, "cancel", "COMMAND_CANCEL ends the mission as cancelled."),
+        (Command.COMMAND_PAUSE, "pause", "COMMAND_PAUSE pauses a running mission."),
+        (Command.COMMAND_RESUME, "resume", "COMMAND_RESUME lets a paused mission run on."),
+        (Command.COMMAND_FINISH, "finish", "COMMAND_FINISH ends the mission as completed."),
     )
-)
+}
 _SNAPSHOT = promise(
     "the-latest-state-comes-first",
     "The first message of a stream shows the latest known state.",
@@ -219,6 +220,11 @@ def _operation(
         name, SYSTEM_NAME, MISSION[name], refusals=own, promises=promises, failures=failures, streaming=streaming
     )
 
+
+COMMANDED: Mapping[Command, str] = {
+    command: one.registered(SYSTEM_NAME, "UpdateMission").id for command, one in _COMMAND_PROMISES.items()
+}
+"""What a command does, as the id of the rule that promises it."""
 
 OPERATIONS: Mapping[str, Operation] = {
     one.name: one
@@ -310,7 +316,7 @@ OPERATIONS: Mapping[str, Operation] = {
                 *_COMMAND_REFUSALS,
                 charging_cannot_be_paused,
             ),
-            *_COMMAND_PROMISES,
+            *_COMMAND_PROMISES.values(),
         ),
         _operation(
             "SubscribeMissionStatus",

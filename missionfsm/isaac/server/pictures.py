@@ -6,6 +6,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Passes, Statuses, Submission
 from missionfsm.isaac.server.readings import AMBIGUITIES
+from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, robot_line
 from missionfsm.isaac.server.state import (
     ENDED,
     NOBODYS,
@@ -17,30 +18,22 @@ from missionfsm.isaac.server.state import (
     mission_of_uuid,
     uuid_ref,
 )
-from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Input, as_text, pick
+from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
+from missionfsm.kernel.alphabet import Input, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Sketch
 from missionfsm.kernel.terms import Refs
 
-_ROBOTS = ("carter-01", "carter-02")
-_STATUSES = ("running", "success", "failure")
 _TIMES = {"start_timeout": 5, "timeout": 15}
 
 
-def _line(kind: type[TextProto | MissionStatusProto], channel: str, payload: JSON) -> JSON:
-    header = {"channel": channel, "pubtime": "0", "acqtime": "0", "proto": str(signed(TYPE_IDS[kind]))}
-    line = as_text({"header": header, "payload": payload})
-    return {"event": "line", "connection": pick("connection", 0), "line": line}
-
-
 def _names(*robots: str) -> tuple[JSON, ...]:
-    return tuple(_line(TextProto, "name", {"text": robot}) for robot in robots)
+    return tuple(robot_line(header(TextProto, "name"), {"text": robot}) for robot in robots)
 
 
 _REPORTS = tuple(
-    _line(MissionStatusProto, "mission_status", {"uuid": pick("uuid", 1), "missionStatus": status})
-    for status in _STATUSES
+    robot_line(header(MissionStatusProto, "mission_status"), {"uuid": pick("uuid", 1), "missionStatus": status})
+    for status in STATUSES
 )
 _CONNECT: JSON = {"event": "connect"}
 _DROP: JSON = {"event": "disconnect", "connection": pick("connection", 0)}
@@ -53,7 +46,7 @@ def _status(mission: Mission) -> str:
 
 
 def _dispatch_node(server: Server) -> str:
-    there = server.serving(_ROBOTS[0]) is not None
+    there = server.serving(ROBOTS[0]) is not None
     if server.missions and server.missions[0].status in ENDED:
         return _status(server.missions[0])
     mission = _status(server.missions[0]) if server.missions else "no mission"
@@ -85,7 +78,7 @@ def _shows(_: Sends) -> str:
 
 
 def _depend_node(server: Server) -> str | None:
-    if len(server.missions) < len(_ROBOTS) or not all(map(server.serving, _ROBOTS)):
+    if len(server.missions) < len(ROBOTS) or not all(map(server.serving, ROBOTS)):
         return None
     first, second = map(_status, server.missions)
     return f"first {first}, second {second}"
@@ -95,10 +88,10 @@ def _depend_within(server: Server) -> bool:
     """Both robots come and stay, then both missions are submitted, the second while the first is not reported of."""
     robots = tuple(one.robot for one in server.missions)
     names = tuple(one.name for one in server.links)
-    coming = all(name in (None, robot) for name, robot in zip(names, _ROBOTS, strict=False))
-    both = all(map(server.serving, _ROBOTS))
-    early = len(robots) == len(_ROBOTS) or all(one.status in (Status.QUEUED, Status.STARTED) for one in server.missions)
-    known = robots == _ROBOTS[: len(robots)] and len(names) <= len(_ROBOTS)
+    coming = all(name in (None, robot) for name, robot in zip(names, ROBOTS, strict=False))
+    both = all(map(server.serving, ROBOTS))
+    early = len(robots) == len(ROBOTS) or all(one.status in (Status.QUEUED, Status.STARTED) for one in server.missions)
+    known = robots == ROBOTS[: len(robots)] and len(names) <= len(ROBOTS)
     return known and coming and early and (both or not robots)
 
 
@@ -129,8 +122,8 @@ SKETCHES = (
         within=lambda server: len(server.missions) <= 1 and len(server.links) <= 1,
         simple=_simple,
         shows=_shows,
-        inputs=(Input("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),),
-        drives=(_CONNECT, *_names(_ROBOTS[0]), *_REPORTS, _DROP, _PASS),
+        inputs=(Input("submit", {"mission": {"robot": ROBOTS[0], **_TIMES}}),),
+        drives=(_CONNECT, *_names(ROBOTS[0]), *_REPORTS, _DROP, _PASS),
         contrasts=("AI-15.sent=a", "AI-15.sent=b", "AI-05=b"),
     ),
     Sketch(
@@ -142,10 +135,10 @@ SKETCHES = (
         simple=_simple,
         shows=_shows,
         inputs=(
-            Input("submit", {"mission": {"robot": _ROBOTS[0], **_TIMES}}),
-            Input("submit", {"mission": {"robot": _ROBOTS[1], **_TIMES, "upstream": [pick("mission", 0)]}}),
+            Input("submit", {"mission": {"robot": ROBOTS[0], **_TIMES}}),
+            Input("submit", {"mission": {"robot": ROBOTS[1], **_TIMES, "upstream": [pick("mission", 0)]}}),
         ),
-        drives=(_CONNECT, *_names(*_ROBOTS), *_REPORTS, _PASS),
+        drives=(_CONNECT, *_names(*ROBOTS), *_REPORTS, _PASS),
         contrasts=("AI-03=b",),
     ),
 )

@@ -6,27 +6,17 @@ second (AI-39 b), and the statuses are asked for.
 
 from __future__ import annotations
 
-from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import ScriptStep, as_text, pick, upcoming
+from missionfsm.isaac.server.samples import ROBOTS, header, robot_line
+from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
+from missionfsm.kernel.alphabet import ScriptStep, pick, upcoming
 from missionfsm.kernel.codec import JSON
 
-A, B = "carter-01", "carter-02"
+A, B = ROBOTS
 PAUSE = 1.3
 """Seconds: more than a server takes that looks about once a second, and no part of any timeout."""
 
 MISSION, OTHER, LINK, UUID = 0, 1, 2, 3
 """The slots: two missions that are named as upstreams, a connection, and the mission that a status is about."""
-
-
-def header(kind: type[TextProto | MissionStatusProto], channel: str, **more: JSON) -> JSON:
-    """A header as robots send it."""
-    times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
-    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
-
-
-def _line(head: JSON, payload: JSON) -> JSON:
-    text = as_text({"header": head, "payload": payload})
-    return {"event": "line", "connection": pick("connection", LINK), "line": text}
 
 
 class Script:
@@ -69,7 +59,7 @@ class Script:
     def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> Script:
         """A name is said on a connection; then a look."""
         self.lines.append(
-            ScriptStep("drive", _line(header(TextProto, channel, **more), {"text": robot}), ((LINK, link),))
+            ScriptStep("drive", robot_line(header(TextProto, channel, **more), {"text": robot}, LINK), ((LINK, link),))
         )
         return self.look()
 
@@ -90,7 +80,7 @@ class Script:
         uuid = {"uuid": pick("uuid", UUID)}
         head = header(MissionStatusProto, channel, **(uuid if "header" in by else {}))
         payload = {"missionStatus": status, **(uuid if "payload" in by else {})}
-        self.lines.append(ScriptStep("drive", _line(head, payload), ((LINK, link), (UUID, mission))))
+        self.lines.append(ScriptStep("drive", robot_line(head, payload, LINK), ((LINK, link), (UUID, mission))))
         return self
 
     def raw(self, link: int, text: str) -> Script:

@@ -116,7 +116,6 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
     *,
     examples: int | None = None,
     steps: int | None = None,
-    tours: int | None = None,
     seed: int = 0,
     seconds: float | None = None,
     timeout: float = 10.0,
@@ -131,11 +130,9 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         system: the system that it implements, or its name.
         implementation: the command that starts its adapter, which is stopped at the end; or an object that has the
             two methods of `missionfsm.kernel.subject.Subject`, which is left alone; by default the built-in reference.
-        examples: how many conversations are drawn; by default as many as the command line has.
+        examples: how many conversations there are in all, of every kind (written down for the system, led where the
+            run has been least, drawn); by default as many as the command line has.
         steps: calls and drives in a conversation, at most; by default as many as the command line has.
-        tours: conversations before those that are drawn, which walk systematically where the run has been least; by
-            default as many as the command line has. Before both come those that are written down for the system, as
-            many as both together at most.
         seed: the same seed asks the same of the same implementation.
         seconds: how long it may take altogether; by default as long as it takes.
         timeout: seconds that an answer may take.
@@ -179,9 +176,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         return tester.conform(
             judged,
             subject,
-            examples=tester.EXAMPLES if examples is None else examples,
-            steps=tester.STEPS if steps is None else steps,
-            tours=tester.TOURS if tours is None else tours,
+            plan=tester.Plan.of(examples, tester.STEPS if steps is None else steps),
             seed=seed,
             readings=readings,
             no_flagged=no_flagged,

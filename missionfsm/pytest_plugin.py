@@ -29,7 +29,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type=int,
         default=None,
         metavar="N",
-        help="conversations that each suite of missionfsm.testing has; the suites say how many otherwise",
+        help="conversations that each suite of missionfsm.testing has in all; the suites say how many otherwise",
     )
 
 

@@ -28,8 +28,7 @@ class Suite:
     Attributes:
         system: which system it implements.
         command: the adapter to start; where `subject` is overridden it is not looked at.
-        examples: conversations of the search; ``--missionfsm-examples`` goes before it. At most as many are had
-            besides, of those that are written down for the system.
+        examples: conversations of the search in all; ``--missionfsm-examples`` goes before it.
         steps: calls and drives in a conversation, at most.
         seed: the same seed asks the same.
         timeout: seconds that an answer may take.
@@ -40,7 +39,7 @@ class Suite:
 
     system: ClassVar[str]
     command: ClassVar[Sequence[str]] = ()
-    examples: ClassVar[int] = 60
+    examples: ClassVar[int] = 120
     steps: ClassVar[int] = 30
     seed: ClassVar[int] = 0
     timeout: ClassVar[float] = 10.0
@@ -83,18 +82,16 @@ class Suite:
         """What a search comes to, or what is wrong with the adapter."""
         from missionfsm.kernel.subject import SubjectError  # noqa: PLC0415
         from missionfsm.systems import system  # noqa: PLC0415
+        from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415
         from missionfsm.tools.conform.survey import survey  # noqa: PLC0415
 
-        tours = examples // 2
         try:
             subject = self.subject()
             try:
                 return survey(
                     system(self.system),
                     subject,
-                    examples=examples - tours,
-                    tours=tours,
-                    steps=self.steps,
+                    plan=Plan.sharing(examples, self.steps),
                     seed=self.seed,
                     readings=self.readings,
                 )

@@ -111,7 +111,7 @@ def test_what_cannot_be_read_is_said_with_its_line(lines: list[Any], says: str) 
 
 def test_an_implementation_is_judged_in_process_or_behind_a_command() -> None:
     """An object, nothing at all, and the command that starts the reference are asked the same and do as well."""
-    few: dict[str, Any] = {"examples": 2, "tours": 1, "steps": 10, "seed": 3}
+    few: dict[str, Any] = {"examples": 6, "steps": 10, "seed": 3}
     robot = missionfsm.systems.system("isaac.robot")
     inside = conform(robot, ReferenceSubject(robot), **few)
     assert inside.conforms

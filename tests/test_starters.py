@@ -67,7 +67,7 @@ def test_a_starter_conforms(language: str, tmp_path: Path) -> None:
     if shutil.which(program) is None or (library is not None and not library.exists()):
         pytest.skip(f"{program} or its JSON library is not installed")
     starts = command(tmp_path)
-    verdict = conform("bear.mission", starts, examples=2, tours=3, seed=1)
+    verdict = conform("bear.mission", starts, examples=12, seed=1)
     assert (verdict.conforms, verdict.flagged) == (True, ())
     assert verdict.events > 50
 

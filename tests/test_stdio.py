@@ -245,7 +245,7 @@ def test_a_robot_that_connects_has_a_connection() -> None:
             return evolve(done, result={"happened": True}) if method == "drive" else done
 
     with pytest.raises(SubjectError, match=r"^the adapter .*connection: None is not the number of a connection$"):
-        conform(system("isaac.server"), Forgetful(system("isaac.server")), examples=1, tours=1, seed=1)
+        conform(system("isaac.server"), Forgetful(system("isaac.server")), drawn=1, tours=1, seed=1)
 
 
 def test_a_program_that_cannot_be_started_ends_with_3(command_line: CommandLine, tmp_path: Path) -> None:

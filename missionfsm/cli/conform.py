@@ -269,7 +269,7 @@ class _Reached:
         """How many conversations of which kind are had."""
         from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415 - commands load what they need
 
-        return Plan(steps=steps) if self.examples is None else Plan.sharing(self.examples, steps)
+        return Plan.of(self.examples, steps)
 
     def conversations(self, plan: Plan) -> int:
         """How many there will be, for the progress bar."""

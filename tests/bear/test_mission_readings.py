@@ -97,9 +97,9 @@ def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None
 def test_the_reference_conforms_under_its_own_readings() -> None:
     """The reference conforms where its own readings are demanded, and does not where another one is."""
     demanded = {one.id: one.default for one in MISSION.spec.ambiguities}
-    conforming = conform(MISSION, ReferenceSubject(MISSION), examples=5, tours=3, steps=25, seed=1, readings=demanded)
+    conforming = conform(MISSION, ReferenceSubject(MISSION), drawn=5, tours=3, steps=25, seed=1, readings=demanded)
     assert conforming.conforms, str(conforming)
-    violating = conform(MISSION, ReferenceSubject(MISSION), examples=20, steps=25, seed=1, readings={"AM-16": "b"})
+    violating = conform(MISSION, ReferenceSubject(MISSION), drawn=20, steps=25, seed=1, readings={"AM-16": "b"})
     assert violating.outcome.value == "violates"
 
 
@@ -110,7 +110,7 @@ def test_the_same_seed_gives_the_same_verdict() -> None:
         conform(
             MISSION,
             ReferenceSubject(MISSION, {"AM-09": "b"}),
-            examples=3,
+            drawn=3,
             tours=3,
             steps=15,
             seed=seed,

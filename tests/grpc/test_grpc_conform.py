@@ -43,7 +43,7 @@ def subject(name: str, address: str, **options: Any) -> Iterator[GrpcSubject]:
 def judged(name: str, address: str, seed: int, **options: Any) -> Verdict:
     """The verdict of a short run."""
     with subject(name, address, **options) as server:
-        return conform(system(name), server, examples=2, tours=1, steps=15, seed=seed, advice=False)
+        return conform(system(name), server, drawn=2, tours=1, steps=15, seed=seed, advice=False)
 
 
 @pytest.mark.parametrize("name", ["bear.mission", "bear.status"])
@@ -72,7 +72,7 @@ def test_a_server_without_the_control_service_is_reset_softly() -> None:
     """Without the control service what the tester began is ended and cleared between conversations."""
     with serve("bear.mission", control=False) as robot:
         with subject("bear.mission", robot.target, world={}, settle=0.2) as server:
-            verdict = conform(system("bear.mission"), server, examples=1, tours=1, steps=8, seed=1, advice=False)
+            verdict = conform(system("bear.mission"), server, drawn=1, tours=1, steps=8, seed=1, advice=False)
         assert verdict.violation is None, str(verdict)
         called = [line.get("method") for line in robot.history()]
     assert called.count("ClearMissionStatus") >= 2
@@ -189,7 +189,7 @@ def test_what_is_lost_on_the_way_is_flagged_or_with_a_strict_transport_wrong() -
     strict = system("bear.mission")
     for name, of in (("strict", strict), ("imperfect", evolve(strict, spec=over_transport(strict.spec)))):
         with serve("bear.mission", faults=["lost:0.4"], seed=1) as robot, subject(of.name, robot.target) as server:
-            verdict = conform(of, server, examples=2, tours=1, steps=15, seed=3, advice=False)
+            verdict = conform(of, server, drawn=2, tours=1, steps=15, seed=3, advice=False)
         found[name] = (verdict.conforms, any(one.startswith("TR-03=b") for one in verdict.flagged))
     assert found == {"imperfect": (True, True), "strict": (False, False)}
 
@@ -200,7 +200,7 @@ def test_a_network_that_is_slower_than_the_silence_is_no_violation(late: float) 
     """Updates that take many times as long as a silence are waited for, and silences become as long as they take."""
     slow = serve("bear.mission", control=False, faults=[f"late:{late}"])
     with slow as robot, subject("bear.mission", robot.target, settle=0.1) as server:
-        verdict = conform(system("bear.mission"), server, examples=1, tours=1, steps=4, seed=1, advice=False)
+        verdict = conform(system("bear.mission"), server, drawn=1, tours=1, steps=4, seed=1, advice=False)
         assert verdict.violation is None, str(verdict)
         assert late < server.target.settle <= 5
 

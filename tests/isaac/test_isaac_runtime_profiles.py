@@ -241,7 +241,7 @@ def test_both_profiles_take_their_letters_from_the_same_list() -> None:
 def judged() -> dict[str, Verdict]:
     return {
         name: conform(
-            SERVER, ServerSubject(AS_SHIPPED), examples=6, steps=15, tours=4, seed=1, advice=False, readings=readings
+            SERVER, ServerSubject(AS_SHIPPED), drawn=6, steps=15, tours=4, seed=1, advice=False, readings=readings
         )
         for name, readings in SERVER.profiles.items()
     }

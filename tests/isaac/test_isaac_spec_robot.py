@@ -147,7 +147,7 @@ def test_nobody_has_to_drive_the_tree() -> None:
 
 def test_the_robot_that_ships_conforms() -> None:
     """The codelet that runs under the sockets follows one set of readings, and every rule is exercised on it."""
-    verdict = conform(ROBOT, RobotSubject(), examples=10, steps=30, seed=1, tours=20)
+    verdict = conform(ROBOT, RobotSubject(), drawn=10, steps=30, seed=1, tours=20)
     assert verdict.conforms
     assert verdict.uncovered == ()
     assert {name: letters for name, letters in verdict.readings.items() if name.startswith("AI-33")} == {

@@ -82,7 +82,7 @@ def test_time_bounds_what_is_broken(name: str, which: int) -> None:
 
 def test_time_bounds_advice() -> None:
     """What is thought about at the end ends with the time as well, and is then said not to have been come to."""
-    robot, plan = system("isaac.robot"), Plan(examples=1, tours=2, scripts=1, steps=5, fills=0)
+    robot, plan = system("isaac.robot"), Plan(drawn=1, tours=2, scripts=1, steps=5, fills=0)
     asked = itertools.count()
 
     def run(limit: int) -> Verdict:
@@ -190,7 +190,7 @@ def test_a_run_may_be_stopped_at_any_time() -> None:
             LAMP,
             ReferenceSubject(LAMP),
             seed=1,
-            examples=200,
+            drawn=200,
             tours=0,
             enough=lambda: next(asked) > steps,  # noqa: B023
         )

@@ -61,7 +61,7 @@ def test_every_reading_that_is_gone_has_an_event(name: str) -> None:
         if run.last is not None and run.last.judge not in seen:
             seen.append(run.last.judge)
 
-    conform(judged, ReferenceSubject(judged, {}), examples=1, tours=4, steps=15, seed=3, advice=False, progress=keep)
+    conform(judged, ReferenceSubject(judged, {}), drawn=1, tours=4, steps=15, seed=3, advice=False, progress=keep)
     for judge in seen:
         first, *lines = judge.history
         again = Judge(judged, head(first), judge.automaton)
@@ -77,7 +77,7 @@ def test_every_reading_that_is_gone_has_an_event(name: str) -> None:
 
 def test_a_run_names_events_for_what_all_its_conversations_ruled_out() -> None:
     """What is not left of an ambiguity has an event, whichever conversation it was in."""
-    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), examples=2, tours=6, steps=15, seed=1, advice=False)
+    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), drawn=2, tours=6, steps=15, seed=1, advice=False)
     letters = {one.id: set(one.readings) for one in MISSION.spec.ambiguities}
     gone = {name: letters[name] - set(left) for name, left in verdict.readings.items() if letters[name] - set(left)}
     assert {name: set(events) for name, events in verdict.ruled_out.items()} == gone
@@ -90,9 +90,7 @@ def test_a_run_names_events_for_what_all_its_conversations_ruled_out() -> None:
 def test_a_run_says_which_rules_came_up_seldom_and_why() -> None:
     """Those and no others; each with a reason that the model gives."""
     runs: list[Run] = []
-    verdict = conform(
-        MISSION, ReferenceSubject(MISSION, {}), examples=2, tours=10, steps=20, seed=1, progress=runs.append
-    )
+    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), drawn=2, tours=10, steps=20, seed=1, progress=runs.append)
     steps = runs[-1].ledger.steps
     seldom = {rule.id for rule in MISSION.spec.all_rules if verdict.exercised.get(rule.id, 0) * PER < RATE * steps}
     assert set(verdict.rare) == seldom
@@ -137,7 +135,7 @@ def test_a_run_ends_once_it_is_enough() -> None:
         verdict = conform(
             MISSION,
             ReferenceSubject(MISSION, {}),
-            examples=20,
+            drawn=20,
             tours=3,
             steps=10,
             seed=1,

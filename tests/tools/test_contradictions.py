@@ -24,7 +24,7 @@ CLEARED = {"call": 1, "method": "ClearMissionStatus", "params": {}}
 @functools.cache
 def found() -> Verdict:
     """A robot that answers one question in one way and, after the next reset, in another."""
-    return conform(MISSION, Fickle("AM-33.fresh", "ab"), examples=2, tours=18, steps=20, seed=2, advice=False)
+    return conform(MISSION, Fickle("AM-33.fresh", "ab"), drawn=2, tours=18, steps=20, seed=2, advice=False)
 
 
 def violation(verdict: Verdict) -> Violation:

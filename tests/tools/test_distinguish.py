@@ -68,7 +68,7 @@ def test_nothing_can_be_left_out_of_an_experiment() -> None:
 @pytest.mark.long
 def test_a_verdict_tells_the_experiments_for_what_is_open() -> None:
     """With few conversations much is open; what would tell it apart is in the verdict, as text and as JSON."""
-    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), examples=1, tours=2, steps=10, seed=1)
+    verdict = conform(MISSION, ReferenceSubject(MISSION, {}), drawn=1, tours=2, steps=10, seed=1)
     left = {name for name, letters in verdict.readings.items() if len(letters) > 1}
     names = {one.ambiguity for one in verdict.experiments}
     assert (len(names) > 0, names - left) == (True, set())
@@ -102,7 +102,7 @@ def test_what_can_be_told_apart_is_decided(name: str, letter: str) -> None:
 def test_a_run_decides_what_it_can(name: str, letter: str) -> None:
     """After a whole run with experiments nothing is open that one for the reading really followed would decide."""
     verdict = conform(
-        MISSION, ReferenceSubject(MISSION, {name: letter}), examples=1, tours=10, steps=14, seed=1, distinguish=True
+        MISSION, ReferenceSubject(MISSION, {name: letter}), drawn=1, tours=10, steps=14, seed=1, distinguish=True
     )
     assert verdict.conforms, str(verdict)
     followed = {one.id: one.default for one in MISSION.spec.ambiguities} | {name: letter}

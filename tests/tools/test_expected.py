@@ -26,7 +26,7 @@ HISTORY = (
 
 
 def judged(subject: Subject, *expected: str) -> Verdict:
-    return conform(MISSION, subject, examples=2, tours=18, steps=20, seed=2, expected=expected, advice=False)
+    return conform(MISSION, subject, drawn=2, tours=18, steps=20, seed=2, expected=expected, advice=False)
 
 
 @pytest.mark.long

@@ -119,7 +119,7 @@ class Without:
 def test_a_robot_without_four_of_ten_calls_conforms_in_part() -> None:
     """The calls that it answers UNIMPLEMENTED are named."""
     absent = ("AppendMissionBatch", "ChargeRobot", "SkipGoal", "UpdateMission")
-    verdict = conform(MISSION, Without(*absent), examples=5, tours=40, steps=20, seed=1, advice=False)
+    verdict = conform(MISSION, Without(*absent), drawn=5, tours=40, steps=20, seed=1, advice=False)
     assert verdict.headline == "conforms in part, flagged"
     assert verdict.rests_on()[0] == f"calls: 6 of 10 succeeded; not there: {', '.join(absent)}"
     assert verdict.rests_on()[2] == "drives: all 5 commanded"
@@ -129,14 +129,14 @@ def test_a_drive_that_is_left_out_was_not_commanded() -> None:
     """The headline counts what this run left out as missing; the robot does none of it by itself."""
     robot = system("isaac.robot")
     subject = ReferenceSubject(robot)
-    verdict = conform(robot, subject, examples=2, tours=3, steps=10, seed=1, advice=False, without=["connect"])
+    verdict = conform(robot, subject, drawn=2, tours=3, steps=10, seed=1, advice=False, without=["connect"])
     assert verdict.rests_on()[-1] == "drives: 1 of 6 missing (connect)"
 
 
 def test_what_has_no_gap_conforms() -> None:
     """A robot whose every drive was commanded, and which departs from nothing, simply conforms."""
     robot = system("isaac.robot")
-    verdict = conform(robot, ReferenceSubject(robot), examples=3, tours=5, steps=20, seed=1, advice=False)
+    verdict = conform(robot, ReferenceSubject(robot), drawn=3, tours=5, steps=20, seed=1, advice=False)
     assert verdict.headline == "conforms"
     assert verdict.rests_on()[-1] == "drives: all 6 commanded"
 

@@ -62,7 +62,7 @@ def forged(text: str) -> list[str]:
 @pytest.mark.parametrize("broken", ["SkipGoal", "ChargeRobot", "AppendMission"])
 def test_a_verdict_has_no_line_of_an_implementation(broken: str) -> None:
     """Names, versions, drives, worlds, ids, codes and messages are text that is shown, whatever is in them."""
-    verdict = conform(MISSION, Hostile(broken), examples=2, tours=8, steps=20, seed=1, advice=False)
+    verdict = conform(MISSION, Hostile(broken), drawn=2, tours=8, steps=20, seed=1, advice=False)
     assert not verdict.conforms
     assert "forged" in verdict.text(verbose=True)
     assert forged(verdict.text(verbose=True)) == []

@@ -64,7 +64,7 @@ SUBSETS = [
 def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
     """Whatever drives an adapter has: none other is sent, and no second fault while one waits, to a right one."""
     adapter = Strict(ReferenceSubject(MISSION, {}), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=3, tours=4, steps=15, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, drawn=3, tours=4, steps=15, seed=2, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
 
 
@@ -73,7 +73,7 @@ def test_only_what_is_declared_is_driven(drives: tuple[str, ...]) -> None:
 def test_a_story_is_made_short_with_what_is_declared(drives: tuple[str, ...]) -> None:
     """A violation is found and made short without a drive that the adapter has not."""
     adapter = Strict(answering("NOT_FOUND", BUSY), {"drives": list(drives)})
-    verdict = conform(MISSION, adapter, examples=5, tours=20, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, drawn=5, tours=20, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
 
 
@@ -81,7 +81,7 @@ def test_calls_that_are_not_declared_are_not_made() -> None:
     """An adapter that says which calls it has is asked for those alone."""
     methods = ["CreateMission", "SubscribeMissionStatus"]
     adapter = Strict(ReferenceSubject(MISSION, {}), {"drives": list(DRIVES), "methods": methods})
-    verdict = conform(MISSION, adapter, examples=2, tours=4, steps=15, seed=1, advice=False)
+    verdict = conform(MISSION, adapter, drawn=2, tours=4, steps=15, seed=1, advice=False)
     assert verdict.outcome is Outcome.CONFORMS
     assert set(adapter.sent) <= {*OWN, *methods}
 
@@ -90,7 +90,7 @@ def test_no_world_but_the_fixed_one_is_asked_for() -> None:
     """An adapter whose world is fixed is reset to that one every time."""
     declared = {"drives": list(DRIVES), "worlds": "fixed", "world": {"family": "base"}}
     verdict = conform(
-        MISSION, Strict(ReferenceSubject(MISSION, {}), declared), examples=2, tours=4, steps=15, seed=1, advice=False
+        MISSION, Strict(ReferenceSubject(MISSION, {}), declared), drawn=2, tours=4, steps=15, seed=1, advice=False
     )
     assert verdict.outcome is Outcome.CONFORMS
 
@@ -101,7 +101,7 @@ def test_what_only_json_can_carry_is_told_with_the_way_round_it(requests: str) -
     malformed = "bear.mission/CreateMission/INVALID_ARGUMENT/the-request-is-malformed"
     declared = {"drives": [], "methods": ["CreateMission"], **({"requests": "binary"} if requests == "binary" else {})}
     adapter = Strict(answering("NOT_FOUND", malformed), declared)
-    verdict = conform(MISSION, adapter, examples=20, tours=5, steps=10, seed=1, advice=False)
+    verdict = conform(MISSION, adapter, drawn=20, tours=5, steps=10, seed=1, advice=False)
     is_json = requests == "json"
     assert (verdict.outcome is Outcome.VIOLATES, NOT_CARRIED in verdict.notes) == (is_json, is_json)
 
@@ -124,7 +124,7 @@ def test_an_adapter_that_fails_later_loses_no_violation() -> None:
 
     adapter = Strict(subject, {"drives": list(DRIVES)})
     adapter.subject = type("Dying", (), {"exchange": staticmethod(exchange)})()
-    verdict = conform(MISSION, adapter, examples=5, tours=6, steps=20, seed=2, advice=False)
+    verdict = conform(MISSION, adapter, drawn=5, tours=6, steps=20, seed=2, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
     assert any("the adapter is gone" in note for note in verdict.notes)
 
@@ -142,5 +142,5 @@ def test_what_is_wrong_before_anything_is_asked_ends() -> None:
 
     adapter = Strict(reference, {"drives": list(DRIVES)})
     adapter.subject = type("Early", (), {"exchange": staticmethod(exchange)})()
-    verdict = conform(MISSION, adapter, examples=1, tours=2, steps=10, seed=1, advice=False)
+    verdict = conform(MISSION, adapter, drawn=1, tours=2, steps=10, seed=1, advice=False)
     assert verdict.outcome is Outcome.VIOLATES

@@ -34,7 +34,7 @@ HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
 @functools.cache
 def found(code: str, *rules: str) -> Verdict:
-    return conform(MISSION, answering(code, *rules), examples=5, tours=20, steps=20, seed=4, advice=False)
+    return conform(MISSION, answering(code, *rules), drawn=5, tours=20, steps=20, seed=4, advice=False)
 
 
 def history(verdict: Verdict) -> tuple[JSON, ...]:
@@ -225,7 +225,7 @@ def test_the_sequence_diagram_has_a_line_for_every_event() -> None:
 
 def test_an_implementation_without_a_single_reading_has_both_events_told() -> None:
     """Every reading of the question is ruled out by an event, and each conversation says once by which."""
-    verdict = conform(MISSION, Fickle("AM-36", "ab"), examples=2, tours=12, steps=20, seed=1, advice=False)
+    verdict = conform(MISSION, Fickle("AM-36", "ab"), drawn=2, tours=12, steps=20, seed=1, advice=False)
     assert verdict.violation is not None
     assert verdict.violation.notes == ()
     says = [side.says.partition(": ") for side in verdict.violation.sides]

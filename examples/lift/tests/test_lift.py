@@ -31,7 +31,7 @@ def test_every_state_is_as_it_should_be():
 
 def test_the_building_conforms():
     """The building makes a second ride to a floor, and refuses to give up the one under way: both are readings."""
-    verdict = conform(SYSTEM, [sys.executable, str(HERE / "building.py")], examples=10, tours=10, seed=1)
+    verdict = conform(SYSTEM, [sys.executable, str(HERE / "building.py")], examples=40, seed=1)
     assert verdict.conforms, str(verdict)
 
 
@@ -39,7 +39,7 @@ def test_the_building_conforms():
 def test_a_bug_is_found(bug):
     """Every bug is found, and a rule that it breaks is named."""
     command = [sys.executable, str(HERE / "building.py"), "--bug", bug]
-    verdict = conform(SYSTEM, command, examples=30, tours=10, seed=1)
+    verdict = conform(SYSTEM, command, examples=80, seed=1)
     assert verdict.violation is not None, str(verdict)
     assert {rule.id for rule in verdict.violation.rules} & {f"{NAME}/{rule}" for rule in BUGS[bug]}
 

@@ -26,7 +26,7 @@ from missionfsm.tools.conform.shortening import beside_others, shorten, shorten_
 from missionfsm.tools.conform.tour import fill, play, some, tour
 from missionfsm.tools.explore.undriven import Missed, missed_without
 
-EXAMPLES, TOURS, STEPS = 100, 60, 40
+DRAWN, TOURS, STEPS = 100, 60, 40
 """Conversations that are drawn, conversations before those that walk where the run has been least, and the calls and
 drives in each, at most, unless a run is told otherwise."""
 
@@ -52,33 +52,38 @@ class Plan:
     """How many conversations a run has, of each kind.
 
     Attributes:
-        examples: that are drawn.
+        drawn: that Hypothesis draws.
         tours: that walk where the run has been least.
         scripts: of those that the system's alphabet has written down, at most.
         steps: calls and drives in each, at most.
         fills: those that go where it was asked too seldom, at most, in a system that says what its situations are.
     """
 
-    examples: int = EXAMPLES
+    drawn: int = DRAWN
     tours: int = TOURS
-    scripts: int = EXAMPLES + TOURS
+    scripts: int = DRAWN + TOURS
     steps: int = STEPS
     fills: int = FILLS
 
     @classmethod
-    def beside(cls, examples: int, tours: int, steps: int) -> Plan:
+    def beside(cls, drawn: int, tours: int, steps: int) -> Plan:
         """So many that are drawn and so many tours; of the other kinds no more than fits them."""
         fills = FILLS if tours >= TOURS else tours - round(LED * tours)
-        return cls(examples, tours, examples + tours, steps, fills)
+        return cls(drawn, tours, drawn + tours, steps, fills)
+
+    @classmethod
+    def of(cls, conversations: int | None, steps: int = STEPS) -> Plan:
+        """So many conversations in all; where nobody says how many, as many as usual."""
+        return cls(steps=steps) if conversations is None else cls.sharing(conversations, steps)
 
     @classmethod
     def sharing(cls, conversations: int, steps: int = STEPS) -> Plan:
         """So many conversations in all, shared among the kinds as by default."""
         whole = cls()
-        total = whole.scripts + whole.tours + whole.examples
-        scripts, examples = (conversations * part // total for part in (whole.scripts, whole.examples))
-        tours = conversations - scripts - examples
-        return cls(examples, tours, scripts, steps, tours - round(LED * tours))
+        total = whole.scripts + whole.tours + whole.drawn
+        scripts, drawn = (conversations * part // total for part in (whole.scripts, whole.drawn))
+        tours = conversations - scripts - drawn
+        return cls(drawn, tours, scripts, steps, tours - round(LED * tours))
 
     def led(self, system: System) -> tuple[int, int]:
         """How many tours there are of a system, and how many conversations go where it was asked too seldom."""
@@ -86,14 +91,14 @@ class Plan:
 
     def conversations(self, system: System) -> int:
         """How many there are of a system at most, where nothing is found."""
-        return len(some(system.alphabet({}, BOUNDS).scripts, self.scripts)) + sum(self.led(system)) + self.examples
+        return len(some(system.alphabet({}, BOUNDS).scripts, self.scripts)) + sum(self.led(system)) + self.drawn
 
 
 def conform(  # noqa: PLR0913 - every one has a default
     system: System,
     subject: Subject,
     *,
-    examples: int = EXAMPLES,
+    drawn: int = DRAWN,
     steps: int = STEPS,
     tours: int = TOURS,
     plan: Plan | None = None,
@@ -112,7 +117,7 @@ def conform(  # noqa: PLR0913 - every one has a default
     """Judge an implementation.
 
     Args:
-        examples, steps, tours: how many conversations to have, see `Plan`; of those that are written down no more
+        drawn, steps, tours: how many conversations to have, see `Plan`; of those that are written down no more
             than of both others together.
         plan: the same, said whole.
         seed: the same seed asks the same of the same implementation.
@@ -132,7 +137,7 @@ def conform(  # noqa: PLR0913 - every one has a default
         ValueError: `readings` names something that does not exist.
     """
     known = Baseline(expected)
-    plan = plan or Plan.beside(examples, tours, steps)
+    plan = plan or Plan.beside(drawn, tours, steps)
     run = Run.against(
         system,
         subject,
@@ -172,9 +177,9 @@ def search(run: Run, plan: Plan, seed: int) -> None:
         play(run, plan.scripts)
         and tour(run, chance, tours, plan.steps, repeats=AGAIN)
         and fill(run, chance, fills, plan.steps)
-        and plan.examples
+        and plan.drawn
     ):
-        draw(run, plan.examples, plan.steps, seed)
+        draw(run, plan.drawn, plan.steps, seed)
 
 
 def _has_found(run: Run) -> bool:

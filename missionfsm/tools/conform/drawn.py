@@ -50,11 +50,11 @@ class _Broke(_Over):
         self.error = error
 
 
-def draw(run: Run, examples: int, steps: int, seed: int) -> None:
+def draw(run: Run, conversations: int, steps: int, seed: int) -> None:
     """Have conversations that are drawn, until something is found or no more should be done."""
     machine = with_seed(seed)(_machine(run))
     options = settings(
-        max_examples=examples,
+        max_examples=conversations,
         stateful_step_count=steps,
         deadline=None,
         database=None,

@@ -58,20 +58,18 @@ def places(spec: Spec) -> tuple[str, ...]:
     return tuple(dict.fromkeys(place_of(rule.id) for rule in spec.all_rules))
 
 
-def survey(  # noqa: PLR0913 - every one but the first two has a default
+def survey(
     system: System,
     subject: Subject,
     *,
-    examples: int = 30,
-    steps: int = 30,
-    tours: int = 30,
+    plan: Plan = Plan.sharing(120, 30),  # noqa: B008 - a value
     seed: int = 0,
     readings: Mapping[str, str] | None = None,
 ) -> Survey:
     """Have all conversations, whatever is found; of each kind of violation the first is made short and kept.
 
     Args:
-        examples: conversations that are drawn; `tours` those that walk where the run has been least; `steps` of each.
+        plan: how many conversations to have, of which kind.
         seed, readings: as for `missionfsm.tools.conform.conform.conform`.
 
     Raises:
@@ -88,7 +86,7 @@ def survey(  # noqa: PLR0913 - every one but the first two has a default
         return True
 
     run.expects = keep
-    search(run, Plan.beside(examples, tours, steps), seed)
+    search(run, plan, seed)
     return Survey(verdict_of(run, seed, advice=False), tuple(findings.values()))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from attrs import define, field
 
@@ -39,6 +39,11 @@ class Node:
         self.bytes = memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
 
 
+def _forgetting(explanation: Explanation, kept: Mapping[int, int]) -> Explanation:
+    """The explanation without the names that are gone in all of them: nobody has to know any more that they were."""
+    return explanation.replace(gone=tuple(number for number in explanation.gone if number in kept))
+
+
 @define(eq=False, slots=True)
 class Edge:
     """Where an event leads: the next node and what becomes of the names.
@@ -47,7 +52,7 @@ class Edge:
         keep: for every name of the next node its number before (new names count on from the width); None: unchanged.
         retired: numbers of names that are gone for good.
         exercises: which rules it exercises, as the automaton numbers such sets.
-        touched: the bits of the ambiguities on which this event's explanations depend.
+        touched: the bits of the ambiguities of which other readings are possible after the event than before it.
         appends: whether nothing becomes of the names before but that others follow them.
         cuts: whether nothing becomes of the names but that the last ones are left out.
     """
@@ -164,21 +169,18 @@ class Automaton:
         new = surviving_names(explanations)
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
         if retired:
-            left = {id(one): tuple(number for number in one.gone if number in new) for one in explanations}
-            explanations = tuple(one.replace(gone=left[id(one)]) for one in explanations)
-        numbered = tuple(rename(one, new) for one in explanations)
-        next_node = self._intern(numbered, len(new))
+            explanations = tuple(_forgetting(one, new) for one in explanations)
+        next_node = self._intern(tuple(rename(one, new) for one in explanations), len(new))
         keep = tuple(new)
-        in_order = keep == tuple(range(len(keep)))
-        rules = tuple(dict.fromkeys(rule for successor in found for rule in successor.rules))
+        rests = not retired and keep == tuple(range(len(keep)))
         return Edge(
             next_node,
-            None if in_order and len(keep) == node.width and not retired else keep,
-            retired,
-            self.numbered(rules),
-            self.touched(node.explanations, explanations),
-            len(keep) > node.width and in_order and not retired,
-            len(keep) < node.width and in_order and not retired,
+            keep=None if rests and len(keep) == node.width else keep,
+            retired=retired,
+            exercises=self.numbered(tuple(dict.fromkeys(rule for successor in found for rule in successor.rules))),
+            touched=self.touched(node.explanations, explanations),
+            appends=rests and len(keep) > node.width,
+            cuts=rests and len(keep) < node.width,
         )
 
     def numbered(self, rules: tuple[str, ...]) -> int:
@@ -191,15 +193,12 @@ class Automaton:
         return tuple(self._rules)
 
     def touched(self, before: Iterable[Explanation], after: Iterable[Explanation]) -> int:
-        """The bits of the ambiguities on which it depends what explains an event."""
-        return self._touched({one.assumed for one in before}, {one.assumed for one in after})
-
-    def _touched(self, before: set[int], after: set[int]) -> int:
-        """The bits of the ambiguities of which other readings are possible now."""
+        """The bits of the ambiguities of which other readings are possible after an event than before it."""
+        assumed, assumed_after = {one.assumed for one in before}, {one.assumed for one in after}
         touched = 0
-        if before != after:
+        if assumed != assumed_after:
             for ambiguity in self.spec.ambiguities:
-                if {one & ambiguity.group for one in before} != {one & ambiguity.group for one in after}:
+                if {one & ambiguity.group for one in assumed} != {one & ambiguity.group for one in assumed_after}:
                     touched |= ambiguity.group
         return touched
 

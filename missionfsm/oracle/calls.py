@@ -86,6 +86,11 @@ def is_of_calls_alone(start: Explanation) -> bool:
     return not any(ready.assumes or ready.names for call in start.calls for ready in call.ready)
 
 
+def _does_more_than_answer(step: Step) -> bool:
+    """Whether a step of a call assumes something, names something or shows something on a channel."""
+    return bool(step.assumes or step.names or step.refs or step.emits or step.opens or step.closes)
+
+
 class CallSearch:
     """Looks for an order in which the calls of a window took effect.
 
@@ -154,15 +159,7 @@ class CallSearch:
             raise OtherwiseError
         idle, steps = False, []
         for step in successors.outcomes(state, request, ()):
-            if (
-                step.answer is None
-                or step.assumes
-                or step.names
-                or step.refs
-                or step.emits
-                or step.opens
-                or step.closes
-            ):
+            if step.answer is None or _does_more_than_answer(step):
                 raise OtherwiseError
             agreements = () if answer is None else successors.agreements(step.answer, answer)
             if any(match.assumes for match in agreements) or (agreements and not step.applied):
@@ -197,19 +194,9 @@ class CallSearch:
         Raises:
             ExhaustedError: it costs more than the budget.
         """
-        start = self._start
-        place = self._place
-        done = sum(1 << place[call.name] for call in start.calls if call.done)
-        for call in start.calls:
-            answer = self._kinds[place[call.name]][1]
-            if call.done and self._is_ready(call):
-                raise OtherwiseError
-            if call.done and answer is not None and not self._successors.agreements(call.done.answer, answer):
-                return None
-        ready = sum(1 << place[call.name] for call in start.calls if self._is_ready(call))
-        lost = {request: times for request, _, times in start.lost}
-        first = Node(0, start.state, done, ready, tuple(lost.get(request, 0) for request, _ in self._lost))
-        stack = [self._noticing(first)]
+        if not all(map(self._may_be_answered, self._start.calls)):
+            return None
+        stack = [self._noticing(self._first())]
         tried: dict[Hashable, list[tuple[int, Lost]]] = {}
         while stack:
             here = self._walked(stack.pop())
@@ -223,7 +210,29 @@ class CallSearch:
             stack += self._forks(here)
         return None
 
+    def _may_be_answered(self, call: InFlight) -> bool:
+        """Whether a call of the start that has taken effect may be answered as it is.
+
+        Raises:
+            OtherwiseError: it may be answered without effect as well.
+        """
+        if call.done is None:
+            return True
+        if self._is_ready(call):
+            raise OtherwiseError
+        answer = self._kinds[self._place[call.name]][1]
+        return answer is None or bool(self._successors.agreements(call.done.answer, answer))
+
+    def _first(self) -> Node:
+        """Where the search stands before all events."""
+        start, place = self._start, self._place
+        done = sum(1 << place[call.name] for call in start.calls if call.done)
+        ready = sum(1 << place[call.name] for call in start.calls if self._is_ready(call))
+        lost = {request: times for request, _, times in start.lost}
+        return Node(0, start.state, done, ready, tuple(lost.get(request, 0) for request, _ in self._lost))
+
     def _is_ready(self, call: InFlight) -> bool:
+        """Whether a call of the start could have been answered as it is, without effect, before the start."""
         answer = self._kinds[self._place[call.name]][1]
         return answer is not None and any(self._successors.agreements(one.answer, answer) for one in call.ready)
 

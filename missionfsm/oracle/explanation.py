@@ -158,8 +158,7 @@ def _lowest(explanation: Explanation) -> int:
     for _, args, _ in explanation.lost:
         found = min((found, *args))
     for call in explanation.calls:
-        done = call.done.names if call.done else ()
-        found = min((found, call.name, *call.args, *done, *[name for ready in call.ready for name in ready.names]))
+        found = min((found, *_names_of_call(call)))
     return found
 
 
@@ -176,37 +175,42 @@ def mentioned(explanation: Explanation) -> Iterator[int]:
         yield from args
     # Calls come and go most often: with the highest numbers they leave those of the others alone.
     for call in explanation.calls:
-        yield call.name
-        yield from call.args
-        if call.done:
-            yield from call.done.names
-        for ready in call.ready:
-            yield from ready.names
+        yield from _names_of_call(call)
 
 
 def _unseen(explanation: Explanation) -> list[int]:
     """The names that nobody has seen, in the order of `mentioned`."""
     found: list[int] = []
     if explanation.names and min(explanation.names) < GONE:
-        found += (name for name in explanation.names if name < GONE)
+        found += [name for name in explanation.names if name < GONE]
     for channel in explanation.channels:
         if channel.lowest < GONE:
-            if channel.name < GONE:
-                found.append(channel.name)
-            for owed in (channel.last, *channel.owed):
-                if owed and owed.lowest < GONE:
-                    found += (name for name in owed.names if name < GONE)
+            found += _unseen_on(channel)
     for _, args, _ in explanation.lost:
         if args:
-            found += (name for name in args if name < GONE)
+            found += [name for name in args if name < GONE]
     for call in explanation.calls:
-        names = (call.name, *call.args)
-        if call.done:
-            names += call.done.names
-        for ready in call.ready:
-            names += ready.names
-        found += (name for name in names if name < GONE)
+        found += [name for name in _names_of_call(call) if name < GONE]
     return found
+
+
+def _unseen_on(channel: Channel) -> Iterator[int]:
+    """The names on a channel that nobody has seen: its own, and those in what it showed last and owes."""
+    if channel.name < GONE:
+        yield channel.name
+    for owed in (channel.last, *channel.owed):
+        if owed and owed.lowest < GONE:
+            yield from [name for name in owed.names if name < GONE]
+
+
+def _names_of_call(call: InFlight) -> Names:
+    """The name of a call in flight, and those that it asks with and may be answered with."""
+    names = (call.name, *call.args)
+    if call.done:
+        names += call.done.names
+    for ready in call.ready:
+        names += ready.names
+    return names
 
 
 def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
@@ -227,10 +231,16 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         done = ready(one.done) if one.done else None
         return InFlight(new.get(one.name, one.name), one.request, each(one.args), tuple(map(ready, one.ready)), done)
 
+    renamed: dict[int, Owed] = {}
+
     def owed(one: Owed) -> Owed:
         if stays(one.names):
             return one
-        return Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.shown_as)
+        known = renamed.get(id(one))
+        if known is None:  # channels owe the same messages, and go on to
+            known = Owed(one.view, each(one.names), one.passing, one.only, one.optional, one.stays, one.shown_as)
+            renamed[id(one)] = known
+        return known
 
     def channel(one: Channel) -> Channel:
         if unseen_only and one.lowest == GONE:
@@ -396,56 +406,73 @@ def take(
     assumed = meet(explanation.assumed, step.assumes)
     if not assumed:
         return None
+    pool = _pool(explanation, step, given)
+    names, gone = _carried(explanation, step, pool)
+    channels = _channels_after(explanation.channels, step, pool, names, passing=passing, concerns=concerns)
+    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
+    return after, tuple([pool[ref] for ref in step.refs])
+
+
+def _pool(explanation: Explanation, step: Step, given: Names) -> Names:
+    """The names to which a step refers by position: those of the state, new ones, and those that were given."""
     pool = explanation.names
     referred = (*(step.names or ()), *step.refs, *[one.ref for one in step.opens])
     added = max(referred) + 1 - len(pool) if referred else 0
     if added > 0:
         pool = (*pool, *itertools.islice(fresh(explanation), added))
-    if given:
-        # References below zero count from the front of what was given: -1 is the first.
-        pool = (*pool, *reversed(given))
+    # References below zero count from the front of what was given: -1 is the first.
+    return (*pool, *reversed(given)) if given else pool
+
+
+def _carried(explanation: Explanation, step: Step, pool: Names) -> tuple[Names, Names]:
+    """The names of the state after a step, and those that are gone then."""
     names, gone = explanation.names, explanation.gone
     if step.names is not None:
         names = tuple([pool[ref] for ref in step.names])
         lapsed = [name for name in explanation.names if name > GONE and name not in names]
         if lapsed:
             gone = outlived(explanation, lapsed)
-    channels = explanation.channels
     if step.ends:
-        gone = tuple(sorted({*gone, *(one.name for one in channels if one.topic in step.ends and one.name > GONE)}))
+        ended = [one.name for one in explanation.channels if one.topic in step.ends and one.name > GONE]
+        gone = tuple(sorted({*gone, *ended}))
+    return names, gone
+
+
+def _channels_after(  # noqa: PLR0913 - as `take`
+    channels: tuple[Channel, ...],
+    step: Step,
+    pool: Names,
+    names: Names,
+    *,
+    passing: bool,
+    concerns: Callable[[Hashable, Hashable], bool],
+) -> tuple[Channel, ...]:
+    """The channels after a step, with what it shows; `names` are those of the state after it."""
+    if step.closes:
         channels = tuple(one for one in channels if one.topic not in step.closes)
     if step.clears or step.withdraws:
         channels = tuple(_relieved(channel, step) for channel in channels)
-    if step.emits:
+    if step.emits and channels:
+        shown = [(emission.topic, owes(emission, pool, names, passing=passing)) for emission in step.emits]
         channels = tuple(
-            _owing(
-                channel,
-                (
-                    owes(emission, pool, names, passing=passing)
-                    for emission in step.emits
-                    if concerns(channel.topic, emission.topic)
-                ),
-            )
-            for channel in channels
+            [_owing(one, [owed for topic, owed in shown if concerns(one.topic, topic)]) for one in channels]
         )
-    if step.drains:  # with what the very step has sent
-        channels = tuple(_drained(one) if one.topic in step.drains else one for one in channels)
-        channels = tuple(one for one in channels if one.topic != DRAINED or one.owed)
-    if step.opens:
-        channels = (
-            *channels,
-            *(
-                Channel(
-                    pool[one.ref],
-                    one.topic,
-                    None,
-                    tuple(owes(emission, pool, names, passing=passing) for emission in one.owed),
-                )
-                for one in step.opens
-            ),
-        )
-    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
-    return after, tuple([pool[ref] for ref in step.refs])
+    if step.drains:
+        channels = _without_drained(channels, step)
+    return (*channels, *_opened(step, pool, names, passing=passing)) if step.opens else channels
+
+
+def _without_drained(channels: tuple[Channel, ...], step: Step) -> tuple[Channel, ...]:
+    """The channels, where some are gone and only what was on its way may still be seen, the step's own messages too."""
+    left = tuple(_drained(one) if one.topic in step.drains else one for one in channels)
+    return tuple(one for one in left if one.topic != DRAINED or one.owed)
+
+
+def _opened(step: Step, pool: Names, names: Names, *, passing: bool) -> Iterator[Channel]:
+    """The channels that a step opens."""
+    for one in step.opens:
+        owed = tuple(owes(emission, pool, names, passing=passing) for emission in one.owed)
+        yield Channel(pool[one.ref], one.topic, None, owed)
 
 
 def changes(state: State, step: Step) -> bool:

@@ -17,11 +17,12 @@ from attrs import define, field
 from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
-from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.step import Mismatch
+from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
-from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed
+from missionfsm.oracle.alignment import Alignment, Message, Showings, may_go_unsaid
+from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names
+from missionfsm.oracle.foresight import Foresight
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
 from missionfsm.oracle.symbols import Symbol
 
@@ -31,13 +32,9 @@ NEXT = 64
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
 
-Message = tuple[Hashable, Names]
-"""What a message shows: its content, and the names in it."""
-
 Narrowed = tuple[Channel, Assumption | None, bool]
 """A channel without what is known never to be shown, what that assumes, and whether it is done: whatever becomes of
 the state now, the channel does not show it."""
-
 
 _Led = tuple[Narrowed | None, tuple[Message, int] | None]
 """A channel that was narrowed, and the message that the state has to come to show, if there is one, with the position
@@ -116,10 +113,8 @@ class Lookahead:
         self._led: dict[Hashable, bool] = {}
         self._known: dict[tuple[int, int, int, int], _Stretch] = {}
         self._stretches: dict[int, tuple[int, int, _Stretch]] = {}
-        self._gone: tuple[Names, frozenset[int]] = ((), frozenset())
         self._at_cut, self._found_cut = -1, horizon
-        self._foreseen: dict[Hashable, bool] = {}
-        self._showable: dict[Owed, dict[int, bool]] = {}
+        self._showings = Showings(spec)
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
         called = self._read(symbols[:horizon], beyond)
@@ -134,11 +129,9 @@ class Lookahead:
             if call in self.answers and self.answers[call][0].code == OK
         ]
         self._sent = [at for at, *_ in self._successes]
-        # What calls ask for, as they are sent.
         asked = [(at, what[0]) for at, (kind, *what) in enumerate(symbols[:horizon]) if kind is Called]
-        self._call_positions = [at for at, _ in asked]
-        self._call_operations = [spec.request_operation(request) for _, request in asked]
-        self._sent_between: dict[tuple[int, int], frozenset[str]] = {}
+        sent = [(at, spec.request_operation(request)) for at, request in asked]
+        self._foresight = Foresight(spec, sent, self._make_room)
 
     def _read(self, symbols: Sequence[Symbol], beyond: Collection[int]) -> dict[int, tuple[int, Hashable, Names]]:
         """Note what comes; the calls that are sent: each with its position, what it asks for and its names."""
@@ -218,23 +211,25 @@ class Lookahead:
             return None
         if self.spec.succeeds is not None and not self._leads_to_successes(explanation):
             return None
-        channels = explanation.channels
-        known = [one.name for one in channels if one.name > GONE]
+        known = [one.name for one in explanation.channels if one.name > GONE]
         if len(known) > 1 and len(set(known)) < len(known):
             return explanation  # which of the channels that share a name a message is about, nobody knows beforehand
+        return self._with_channels_narrowed(explanation)
+
+    def _with_channels_narrowed(self, explanation: Explanation) -> Explanation | None:
+        """The explanation with each channel narrowed; None where one cannot show what it is known to show."""
+        channels, assumed = explanation.channels, explanation.assumed
         narrow: list[Channel] = []
-        assumed = explanation.assumed
         for channel in channels:
-            found: Narrowed | None = (channel, None, False)
-            if channel.name > GONE:
-                found = self._narrowed(explanation, channel)
+            found = self._narrowed(explanation, channel) if channel.name > GONE else (channel, None, False)
             if found is None:
                 return None
-            if found[1] is not None:
-                assumed = meet(assumed, (found[1],))
+            left, assumption, _ = found
+            if assumption is not None:
+                assumed = meet(assumed, (assumption,))
                 if not assumed or self.withholds(assumed):
                     return None
-            narrow.append(found[0])
+            narrow.append(left)
         if all(map(operator.is_, narrow, channels)):
             return explanation
         return explanation.replace(channels=tuple(narrow), assumed=assumed)
@@ -350,171 +345,92 @@ class Lookahead:
         found = stretch.led.get(key)
         if found is None:
             self._make_room(explanation)
-            found = stretch.led[key] = self._leading(channel, stretch, skips=skips, repeats=repeats)
+            found = stretch.led[key] = self._leading(channel, stretch, delivery, skips=skips, repeats=repeats)
         narrowed, shows = found
         return narrowed if shows is None or self._foresees(explanation, *shows) else None
 
-    def _leading(self, channel: Channel, stretch: _Stretch, *, skips: bool, repeats: bool) -> _Led:
+    def _leading(self, channel: Channel, stretch: _Stretch, delivery: Delivery, *, skips: bool, repeats: bool) -> _Led:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
 
         Args:
             skips: whether the channel may pass over what it owes.
             repeats: whether it may show again what it has shown.
         """
-        trimmed, assumes, _ = self._without_unshown(channel, stretch, repeats=repeats)
-        if trimmed is not channel:
-            led, shows = self._leading(trimmed, stretch, skips=skips, repeats=repeats)
-            return (led and (led[0], led[1] or assumes, led[2])), shows
-        owed, last, before = channel.owed, channel.last, stretch.before
-        shown = [self._showable_as(one) for one in owed]
-        can_repeat = repeats or self.spec.delivery(channel.topic).echoes is not None
-        repeatable = [*zip(shown, owed, strict=True)] if can_repeat else []
-        if can_repeat and last is not None:
-            repeatable.append((self._showable_as(last), last))
-        known: dict[int, bool] = {}
-
-        def passable(index: int) -> bool:
-            found = known.get(index)
-            if found is None:
-                found = known[index] = skips or self._may_go_unsaid(channel, index)
-            return found
-
-        places = {0}
+        trimmed, assumes = self._without_unshown(channel, stretch, delivery, repeats=repeats)
+        alignment = Alignment(trimmed, delivery, self._showings, skips, repeats)
         for position, message in enumerate(stretch.due):
-            following: set[int] = set()
-            looked = -1
-            for place in sorted(places):
-                for index in range(max(place, looked + 1), len(owed)):
-                    if self._shows(shown[index], owed[index], message):
-                        following.add(index if owed[index].stays else index + 1)
-                    looked = index
-                    if not passable(index):
-                        break
-            if any(self._shows(row, one, message) for row, one in repeatable):
-                following |= places
-            if not following:
-                # What is owed before it has to go unsaid then, and the message to show what is to come.
-                if not all(map(passable, range(max(places), len(owed)))):
-                    return None, None
-                narrowed: Narrowed | None = (channel, None, False)
-                if owed and not position:
-                    narrowed = self._passed_over(channel, len(owed))
-                return narrowed, (message, stretch.positions[position])
-            places, before = following, message
-        shown_by = max(places)
-        if (
-            stretch.over
-            and shown_by
-            and not owed[shown_by - 1].stays
-            and not self._may_go_unsaid(channel, shown_by - 1)
-        ):
+            if not alignment.goes_on(message):
+                led, shows = self._until_shown(alignment, stretch, position)
+                break
+        else:
+            led, shows = self._after_shown(alignment, stretch)
+        if led is not None and assumes is not None:
+            led = led[0], led[1] or assumes, led[2]
+        return led, shows
+
+    def _until_shown(self, alignment: Alignment, stretch: _Stretch, position: int) -> _Led:
+        """The same where so many of the messages are what the channel owes, and the next one is not.
+
+        It has to show what is to come then, and what is owed before it goes unsaid.
+        """
+        if not alignment.may_show_what_is_to_come:
+            return None, None
+        channel = alignment.channel
+        narrowed: Narrowed | None = (channel, None, False)
+        if channel.owed and not position:
+            passed = self._passed_over(channel, len(channel.owed), alignment.delivery)
+            narrowed = passed and (*passed, False)
+        return narrowed, (stretch.due[position], stretch.positions[position])
+
+    def _after_shown(self, alignment: Alignment, stretch: _Stretch) -> _Led:
+        """The same where all of the messages are what the channel owes."""
+        channel, place = alignment.channel, alignment.place
+        owed, last = channel.owed, place - 1
+        if stretch.over and place and not owed[last].stays and not may_go_unsaid(channel, last, alignment.delivery):
             # The last message shows this one, or one before it. One that comes later would be shown only where this one
             # is skipped, and whoever may skip it may skip those that are dropped as well.
-            return (Channel(channel.name, channel.topic, last, owed[:shown_by]), None, True), None
-        left = [one for one in owed[shown_by:] if not one.passing]
-        settles = stretch.rests and before is not None and left and not self._may_show(left[-1], before)
+            return (Channel(channel.name, channel.topic, channel.last, owed[:place]), None, True), None
+        before = stretch.due[-1] if stretch.due else stretch.before
+        left = [one for one in owed[place:] if not one.passing]
+        settles = stretch.rests and before is not None and left and not self._showings.may_be(left[-1], before)
         return (channel, None, False), (before, stretch.rest) if settles and before is not None else None
 
-    def _without_unshown(self, channel: Channel, stretch: _Stretch, *, repeats: bool) -> Narrowed:
-        """The channel without what it owes before the first that can be what it shows next: that is passed over."""
-        echoes = repeats or self.spec.delivery(channel.topic).echoes is not None
+    def _without_unshown(
+        self, channel: Channel, stretch: _Stretch, delivery: Delivery, *, repeats: bool
+    ) -> tuple[Channel, Assumption | None]:
+        """The channel without what it owes before the first that can be what it shows next, and what that assumes."""
+        echoes = repeats or delivery.echoes is not None
         if not stretch.due or (echoes and channel.last is not None):
-            return channel, None, False
-        message = stretch.due[0]
-        first = next((at for at, one in enumerate(channel.owed) if self._may_show(one, message)), 0)
-        return (first and self._passed_over(channel, first)) or (channel, None, False)
+            return channel, None
+        message, may_be = stretch.due[0], self._showings.may_be
+        first = next((at for at, one in enumerate(channel.owed) if may_be(one, message)), 0)
+        return (self._passed_over(channel, first, delivery) if first else None) or (channel, None)
 
-    def _may_go_unsaid(self, channel: Channel, index: int) -> bool:
-        """Whether a channel may pass over a message that it owes, though it has to show all that can be told."""
-        one = channel.owed[index]
-        if one.passing or not one.names:
-            return True  # without names, it may look like what was shown before it
-        if self.spec.delivery(channel.topic).every_time:
-            return False
-        return any(
-            len(other.names) == len(one.names)
-            and hash(other.view) == hash(one.view)
-            and other.view == one.view
-            and all(map(_may_be_one, other.names, one.names))
-            for other in (channel.last, *channel.owed[:index])
-            if other is not None
-        )
+    def _passed_over(self, channel: Channel, many: int, delivery: Delivery) -> tuple[Channel, Assumption | None] | None:
+        """The channel once so many of those that it owes are passed over, and what that assumes; None if it cannot be.
 
-    def _passed_over(self, channel: Channel, many: int) -> Narrowed | None:
-        """The channel once so many of those that it owes are passed over."""
+        It stays as it is where it cannot be told whether they are due.
+        """
         passed, over = Channel(channel.name, channel.topic, channel.last, channel.owed[many:]), channel.owed[:many]
         if all(one.passing for one in over):
-            return passed, None, False
+            return passed, None
         last = channel.last
         if last and any(one.view == last.view or last.shown_as is not None for one in over if not one.passing):
-            return channel, None, False  # what looks like what was shown last is not due
-        skips = self.spec.delivery(channel.topic).skips
-        return (passed, skips, False) if skips else None
+            return channel, None  # what looks like what was shown last is not due
+        return (passed, delivery.skips) if delivery.skips else None
 
     def _make_room(self, explanation: Explanation) -> None:
         """Count what is going to be remembered of an explanation; forget the rest where that becomes too much."""
         if self._room.overflows(explanation_bytes(explanation)):
             self._led.clear()
-            self._foreseen.clear()
-            self._showable.clear()
+            self._foresight.forget()
+            self._showings.forget()
             for stretch in self._known.values():
                 stretch.led.clear()
 
-    def _calls_before(self, explanation: Explanation, position: int) -> frozenset[str]:
-        """The operations of the calls that may take effect before an event."""
-        key = bisect.bisect_left(self._call_positions, self.at), bisect.bisect_left(self._call_positions, position)
-        found = self._sent_between.get(key)
-        if found is None:
-            found = self._sent_between[key] = frozenset(self._call_operations[slice(*key)])
-        operation = self.spec.request_operation
-        waiting = {operation(call.request) for call in explanation.calls if call.done is None}
-        waiting.update([operation(request) for request, *_ in explanation.lost])
-        return found if waiting <= found else found | waiting
-
     def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
         """Whether the state may come to be shown so before an event."""
-        content, names = message
-        if explanation.gone is not self._gone[0]:
-            self._gone = explanation.gone, frozenset(explanation.gone)
-        if not self._gone[1].isdisjoint(names):
-            return False
-        foresees = self.spec.foresees
-        if foresees is None:
-            return True
-        calls = self._calls_before(explanation, position)
-        key = (explanation.state, explanation.names, id(message), calls)
-        found = self._foreseen.get(key)
-        if found is None:
-            self._make_room(explanation)
-            found = self._foreseen[key] = foresees(explanation.state, explanation.names, content, names, calls)
-        return found
-
-    def _may_show(self, owed: Owed, message: Message) -> bool:
-        return self._shows(self._showable_as(owed), owed, message)
-
-    def _showable_as(self, owed: Owed) -> dict[int, bool]:
-        """Which of the messages may be one that is owed, as far as that was looked at."""
-        found = self._showable.get(owed)
-        if found is None:
-            found = self._showable[owed] = {}
-        return found
-
-    def _shows(self, known: dict[int, bool], owed: Owed, message: Message) -> bool:
-        """Whether a message may be one that is owed, which is remembered."""
-        found = known.get(id(message))
-        if found is None:
-            content, names = message
-            matches = self.spec.matches(owed.view, content)
-            found = known[id(message)] = not isinstance(matches, Mismatch) and any(
-                all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
-                for match in matches
-            )
-        return found
-
-
-def _may_be_one(name: int, other: int) -> bool:
-    """Whether two names may be found to be the same."""
-    return name == other or name < GONE or other < GONE
+        return self._foresight.may_show(explanation, message, self.at, position)
 
 
 _NO_MESSAGES: tuple[list[int], list[Message]] = ([], [])

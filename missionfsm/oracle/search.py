@@ -18,9 +18,10 @@ from attrs import define, field
 from missionfsm.kernel.history import Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED
+from missionfsm.oracle.alignment import Message
 from missionfsm.oracle.calls import CallSearch, Node, OtherwiseError, are_calls_alone
 from missionfsm.oracle.explanation import Explanation, Lost, within
-from missionfsm.oracle.lookahead import Lookahead, Message
+from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, explanation_bytes
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight

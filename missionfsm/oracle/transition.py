@@ -269,37 +269,57 @@ class TransitionFunction:
         relations: tuple[str, ...],
         channel: int,
     ) -> Iterator[Successor]:
-        redelivered = REDELIVERED in relations
-        relations = tuple(relation for relation in relations if relation != REDELIVERED)
-        if redelivered:
-            # One that may send a message again under its number has said it twice.
-            once = (one for one in explanations if not self._echoed(one, channel))
-            yield from lenient.redelivered(explanations if self._lenient else once, channel)
+        if REDELIVERED in relations:
+            relations = tuple(relation for relation in relations if relation != REDELIVERED)
+            yield from self._redelivered(explanations, channel)
         if self._lenient > 1:
             explanations = (*explanations, *lenient.restarted(self.successors, self.spec, explanations, relations))
-        todo: list[tuple[Successor, Hashable]] = []
+        to_show: list[Successor] = []
         for explanation in explanations:
             echoes = self._echoed(explanation, channel)
-            sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
-            assumed = 0 if sequence is None else self.successors.meet(explanation.assumed, sequence)
-            if not assumed:
+            start = self._numbered(explanation, relations, echoes=echoes)
+            if start is None:
                 continue
-            start = Successor(explanation.replace(assumed=assumed))
-            if middle.is_unknown(explanation):
-                yield from middle.states_shown(self.successors, start.explanation, channel, content, names)
+            if middle.is_unknown(start):
+                yield from middle.states_shown(self.successors, start, channel, content, names)
                 continue
             if self.spec.anywhere:
-                joined, unjudged = middle.joined(self.successors, start.explanation, channel, content)
-                start = Successor(joined)
+                start, unjudged = middle.joined(self.successors, start, channel, content)
                 if unjudged:
-                    yield start
+                    yield Successor(start)
             if echoes and not {"equal", "zero", "renumbered"}.isdisjoint(relations):
-                yield from self._showings(start, channel, None, content, names, echo=True)
+                yield from self._showings(Successor(start), channel, None, content, names, echo=True)
             if not ("equal" in relations and echoes):
-                todo.append((start, None))
+                to_show.append(Successor(start))
+        yield from self._shown_at_last(to_show, channel, content, names)
+
+    def _redelivered(self, explanations: Iterable[Explanation], channel: int) -> Iterator[Successor]:
+        """The explanations in which a message came twice that was sent once."""
+        # One that may send a message again under its number has said it twice.
+        once = (one for one in explanations if not self._echoed(one, channel))
+        return lenient.redelivered(explanations if self._lenient else once, channel)
+
+    def _numbered(self, explanation: Explanation, relations: tuple[str, ...], *, echoes: bool) -> Explanation | None:
+        """The explanation where a message has a number that compares so with those before; None where it cannot.
+
+        Args:
+            echoes: whether the number may be that of the message before.
+        """
+        sequence = self._sequence([one for one in relations if one != "equal" or not echoes])
+        assumed = 0 if sequence is None else self.successors.meet(explanation.assumed, sequence)
+        return explanation.replace(assumed=assumed) if assumed else None
+
+    def _shown_at_last(
+        self, starts: Iterable[Successor], channel: int, content: Hashable, names: Names
+    ) -> Iterator[Successor]:
+        """The explanations in which a channel shows a message: what it owes, or what it owes after silent steps.
+
+        All that it owed before such a step is passed over then. Where several channels share the name, what one of them
+        owes is passed over only for what it shows itself.
+        """
         about = self._before(RECEIVED, channel)
-        # Where several channels share the name, what one of them owes is passed over only for what it shows itself.
         seen: dict[Hashable, Seen] = {}
+        todo: list[tuple[Successor, Hashable]] = [(start, None) for start in starts]
         while todo:
             later: list[tuple[Successor, Hashable]] = []
             for successor, topic in todo:
@@ -590,26 +610,24 @@ class TransitionFunction:
     def _nothing_owed(self, explanation: Explanation, *, loses: bool) -> Iterator[Explanation]:
         """The explanations in which every channel has shown where things stand; none if one has not."""
         ways: tuple[int, ...] = (explanation.assumed,)
-        lost: set[int] = set()
-        for position, channel in enumerate(explanation.channels):
+        channels = []
+        for channel in explanation.channels:
             due = [owed for owed in channel.owed if not owed.passing]
-            if due:
-                after_it = tuple(
-                    dict.fromkeys(after for before in ways for after in self._caught_up(channel, due, before))
-                )
-                if loses and not after_it and channel.last:
-                    after_it = tuple(
-                        after for before in ways if (after := self.successors.meet(before, (lenient.LOSES,)))
-                    )
-                    lost.add(position)
-                ways = after_it
-        if ways:
-            channels = tuple(
-                lenient.given_up(channel) if position in lost else _offering(channel) if channel.owed else channel
-                for position, channel in enumerate(explanation.channels)
-            )
-            for assumed in ways:
-                yield tidy(undrained(explanation.replace(assumed=assumed, channels=channels)))
+            after_it = self._each_caught_up(channel, due, ways) if due else ways
+            if loses and not after_it and channel.last:
+                after_it = tuple(after for before in ways if (after := self.successors.meet(before, (lenient.LOSES,))))
+                channels.append(lenient.given_up(channel))
+            else:
+                channels.append(_offering(channel) if channel.owed else channel)
+            if not after_it:
+                return
+            ways = after_it
+        for assumed in ways:
+            yield tidy(undrained(explanation.replace(assumed=assumed, channels=tuple(channels))))
+
+    def _each_caught_up(self, channel: Channel, due: list[Owed], ways: tuple[int, ...]) -> tuple[int, ...]:
+        """The same as `_caught_up`, for everything that may be assumed before."""
+        return tuple(dict.fromkeys(after for before in ways for after in self._caught_up(channel, due, before)))
 
     def _caught_up(self, channel: Channel, due: list[Owed], assumed: int) -> tuple[int, ...]:
         """What is assumed where the subscriber knows all that a channel owes, since it saw that last.

@@ -56,7 +56,10 @@ FORM, SHAPE, GOALS, EITHER, STATE, ABILITY = "form", "shape", "goals", "either",
 """What a rule looks at; AM-01 read as c ranks them, and EITHER may be checked with the shape or with the goals.
 
 A request of the wrong FORM cannot be decoded: whoever looks at something else first cannot do so without a request.
-STATE is about the missions, ABILITY about whether the robot can start one.
+STATE is about the missions, ABILITY about whether the robot can start one. What is wrong with the request is ranked
+against the state by its code, INVALID_ARGUMENT: a refusal of SHAPE or GOALS with another code is not.
+
+A refusal that several calls share cites the table of the first; `operations.py` has it cite the table of each.
 """
 
 

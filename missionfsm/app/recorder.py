@@ -282,23 +282,16 @@ class _File:
 
 def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Said) -> None:
     """Judges lines until their end; says what breaks at once, and the verdict at the end."""
-    from missionfsm.app.asked import judged_system  # noqa: PLC0415 - only this process needs it
-    from missionfsm.oracle.transcript import head as read_head  # noqa: PLC0415
-    from missionfsm.tools.check.judge import Judge  # noqa: PLC0415
+    from missionfsm.app.conversations import Conversations  # noqa: PLC0415 - only this process needs it
 
-    first = read_head(work.head)
-    judge = Judge(
-        judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others),
-        first,
-        readings=work.readings,
-    )
+    judge = Conversations(work.readings)
     page = _Page(work.html, say)
     wrong = False
     while (batch := batches.get()) is not None:
         for text in batch:
-            line = orjson.loads(text)
-            if wrong or "missionfsm" in line:
+            if wrong:
                 continue
+            line = orjson.loads(text)
             try:
                 wrong = not judge.feed(line)
             except UnreadableError as error:
@@ -310,7 +303,7 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
                 said = [line.strip() for line in str(verdict).splitlines() if line.strip()]
                 say(Judged("; ".join(said[:2]), conforms=False))  # a line; all of it comes at the end
         if not wrong:
-            page.so_far(first.system, judge.read)
+            page.so_far(work.head["system"], judge.read)
         if batches.qsize() > MAX_WAITING_BATCHES:
             say("the judge lags too far behind and gives up; what is recorded can be judged by `missionfsm check`")
             return

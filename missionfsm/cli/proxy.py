@@ -95,7 +95,7 @@ def proxy(  # noqa: PLR0913 - options of the command
         refuse_json_only(seen_as, choice(reading))
         recorder: Recorder[Chunk] = Recorder(
             head,
-            partial(Overheard, system),
+            partial(Overheard, system, others=others),
             file=record or "",
             readings=choice(reading),
             html=html or "",

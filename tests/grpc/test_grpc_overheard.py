@@ -13,12 +13,14 @@ from hpack import Encoder
 from hyperframe.frame import ContinuationFrame, DataFrame, Frame, GoAwayFrame, HeadersFrame, RstStreamFrame
 from relay import METHODS, WAIT, Relay
 
+from missionfsm.adapters.grpc import control
 from missionfsm.adapters.grpc.authority import Renamed
 from missionfsm.adapters.grpc.descriptors import encode, path
+from missionfsm.adapters.grpc.framing import MAX_MESSAGE_BYTES
 from missionfsm.adapters.grpc.http2 import PREFACE, Direction, Headers
-from missionfsm.adapters.grpc.overheard import MAX_MESSAGE_BYTES, Chunk, Connection, End, Line, Overheard
+from missionfsm.adapters.grpc.overheard import Chunk, Connection, End, Line, Overheard
 from missionfsm.app.serve import serve
-from missionfsm.kernel.codec import UnreadableError
+from missionfsm.kernel.codec import JSON, UnreadableError
 
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
 CREATE, SUBSCRIBE = METHODS["CreateMission"], METHODS["SubscribeMissionStatus"]
@@ -277,3 +279,70 @@ def test_another_name_is_put_into_every_call_and_all_else_stays(conversation: li
     assert sum(isinstance(one, Headers) for one in before) == 4
     with pytest.raises(ValueError, match="no HTTP/2"):
         Renamed("robot:443")(PREFACE + ContinuationFrame(1, b"", flags=("END_HEADERS",)).serialize())
+
+
+SUBSCRIBED = encode(SUBSCRIBE.request, {})
+NOTHING = {"missionStates": {"currentMissionIndex": -1}}
+
+
+def steers(wire: Wire, stream: int, name: str, params: JSON) -> list[Line]:
+    """The control service is asked for something."""
+    headers = wire.headers(End.CLIENT, stream, {":method": "POST", ":path": f"/{control.SERVICE}/{name}"})
+    return wire.sent(End.CLIENT, headers, DataFrame(stream, prefixed(control.pack(params)), flags=("END_STREAM",)))
+
+
+def steered(wire: Wire, stream: int, result: JSON) -> list[Line]:
+    """The control service answers."""
+    return wire.sent(
+        End.ROBOT, wire.begins(stream), DataFrame(stream, prefixed(control.pack(result))), wire.ends(stream)
+    )
+
+
+def shows(wire: Wire, stream: int) -> list[Line]:
+    """A subscriber is shown that there is nothing."""
+    return wire.sent(End.ROBOT, DataFrame(stream, prefixed(encode(SUBSCRIBE.response, NOTHING))))
+
+
+def test_a_drive_stands_where_it_was_asked_for(wire: Wire) -> None:
+    """What it causes may come before its answer, and is a line behind it; one that did not happen is none."""
+    wire.asked(1, "SubscribeMissionStatus", SUBSCRIBED)
+    wire.sent(End.ROBOT, wire.begins(1))
+    message = {"stream": 1, "message": NOTHING}
+    assert steers(wire, 3, "Drive", {"event": "goalReached"}) == []
+    assert shows(wire, 1) == []
+    assert steered(wire, 3, {"happened": True}) == [{"drive": {"event": "goalReached"}}, message]
+    assert steers(wire, 5, "Drive", {"event": "goalReached"}) == []
+    assert shows(wire, 1) == []
+    assert steered(wire, 5, {"happened": False}) == [message]
+    assert shows(wire, 1) == [message]
+
+
+def test_a_reset_begins_another_conversation(wire: Wire) -> None:
+    """It has the world that was asked for and the drives of the service; what was under way before is forgotten."""
+    first = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "carti"}, "drives": ["world"]}
+    steers(wire, 1, "Describe", {})
+    steered(wire, 1, {"system": "bear.mission", "drives": ["world"]})
+    wire.asked(3, "SubscribeMissionStatus", SUBSCRIBED)
+    wire.sent(End.ROBOT, wire.begins(3))
+    wire.asked(5)
+    assert steers(wire, 7, "Reset", {"world": {"family": "carti"}}) == []
+    assert shows(wire, 3) == []
+    assert steered(wire, 7, {}) == [first]
+    assert shows(wire, 3) == []
+    assert wire.sent(End.ROBOT, wire.ends(5, 9)) == []
+    assert wire.asked(9) == [{**CALLED, "call": 3}]
+
+
+def test_a_reset_that_is_refused_changes_nothing(wire: Wire) -> None:
+    """The conversation goes on, with what came meanwhile."""
+    assert steers(wire, 1, "Reset", {"world": {"family": "none"}}) == []
+    assert wire.asked(3) == []
+    assert wire.sent(End.ROBOT, wire.ends(1, 3, "no such family")) == [CALLED]
+
+
+@pytest.mark.parametrize("status", [4, 14])
+def test_a_drive_of_which_nobody_knows_ends_the_record(wire: Wire, status: int) -> None:
+    """Where the service does not say whether it happened, what follows cannot be judged."""
+    steers(wire, 1, "Drive", {"event": "goalReached"})
+    with pytest.raises(UnreadableError, match="nobody knows what became of a Drive"):
+        wire.sent(End.ROBOT, wire.ends(1, status))

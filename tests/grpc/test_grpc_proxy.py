@@ -25,6 +25,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.oracle.transcript import head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
+from missionfsm.tools.conform.conform import conform
 
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
@@ -311,6 +312,30 @@ def test_a_full_disk_ends_the_file_and_nothing_else() -> None:
     assert told == ["/dev/full: No space left on device; nothing more is recorded, traffic goes on"]
     assert judged is not None
     assert judged.conforms
+
+
+@pytest.mark.parametrize("name", ["bear.mission", pytest.param("bear.status", marks=pytest.mark.long)])
+def test_a_conformance_run_through_the_proxy_is_judged_alike(name: str, tmp_path: Path) -> None:
+    """A tester who resets and drives the robot through the proxy, ``conform --grpc``, leaves a record of many
+    conversations, one for each reset and world; the proxy's verdict is that of ``check``, and both conform.
+    """
+    file, told = tmp_path / "day.jsonl", list[str]()
+    recorder: Recorder[JSON] = Recorder({**HEAD, "system": name}, as_they_are, file=str(file), tell=told.append)
+    with serve(name) as robot:
+        relay = Relay(robot.target, recorder.record, system=name)
+        tester = GrpcSubject(name, Target(f"localhost:{relay.proxy.port}", timeout=WAIT, settle=0.02, begin=0.2))
+        seen = judged_system(name, strict=False)
+        verdict = conform(seen, tester, drawn=1, tours=1, steps=10, seed=3, advice=False)
+        tester.close()
+        relay.close()
+    judged = recorder.close()
+    assert verdict.conforms, str(verdict)
+    assert judged is not None
+    ((_, again),) = check_file(str(file))
+    assert (told, judged.verdict["verdict"], again.to_json()["verdict"]) == ([], "conforms", "conforms")
+    heads = [line for line in map(json.loads, file.read_text().splitlines()) if "missionfsm" in line]
+    assert len(heads) == 1 + verdict.examples
+    assert heads[1]["drives"] == list(system(name).spec.drives)
 
 
 @pytest.mark.long

@@ -2,14 +2,14 @@
 
 Bytes are read after they were passed on, elsewhere: see `Overheard`. A call is noted where its request was whole, a
 message where it was whole, the end of a call where its trailers were: each before the other end can have seen it, so
-that what one end did because of what it saw is noted later than what it saw.
+that what one end did because of what it saw is noted later than what it saw. What a tester does through the control
+service is noted as well (`missionfsm.adapters.grpc.steering`).
 """
 
 from __future__ import annotations
 
 import enum
 import itertools
-import zlib
 from collections.abc import Iterator
 from typing import NewType
 from urllib.parse import unquote_to_bytes
@@ -18,16 +18,12 @@ import grpc
 from attrs import Factory, define, frozen
 
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, methods, path
+from missionfsm.adapters.grpc.framing import Messages
 from missionfsm.adapters.grpc.http2 import Data, Direction, Event, Headers, Reset, TableSize, UnreadableHttp2Error
+from missionfsm.adapters.grpc.steering import PATHS, REFUSED, Line, Steered, Steering, Steers, struct
 from missionfsm.bear.wire.fields import Method
 from missionfsm.kernel.codec import JSON, UnreadableError
 
-MAX_MESSAGE_BYTES = 64 * 1024 * 1024
-"""A longer message is not read; servers of gRPC take 4 MB unless told otherwise."""
-PREFIX_BYTES = 5
-"""Before every message: whether it is compressed, and its length."""
-WINDOW_BITS = {b"gzip": 16 + zlib.MAX_WBITS, b"deflate": zlib.MAX_WBITS}
-"""The encodings that gRPC has, but for ``identity``, as zlib names them."""
 STATUS_OF_RESET = {0x7: "UNAVAILABLE", 0x8: "CANCELLED", 0xB: "RESOURCE_EXHAUSTED", 0xC: "PERMISSION_DENIED"}
 """What clients make of a stream that the server resets; of any other code they make INTERNAL."""
 STATUS_OF_HTTP = {
@@ -40,7 +36,6 @@ STATUS_OF_HTTP = {
 STATUSES = {str(code.value[0]).encode(): code.name for code in grpc.StatusCode}
 LEAVE_OPEN = frozenset(("UNAVAILABLE", "CANCELLED", "RESOURCE_EXHAUSTED", "UNAUTHENTICATED", "UNKNOWN"))
 """What clients make by themselves and a history may hold; it says nothing of what became of the call."""
-Line = dict[str, JSON]
 
 
 class End(enum.Enum):
@@ -69,55 +64,6 @@ class Chunk:
 
 
 @define
-class Messages:
-    """The messages in one direction of a call, of which bytes come as they like.
-
-    Attributes:
-        encoding: how those are encoded that say that they are.
-    """
-
-    encoding: bytes = b"identity"
-    _buffer: bytearray = Factory(bytearray)
-    _passed_over: int = 0
-
-    def read(self, data: bytes) -> Iterator[bytes | str]:
-        """The messages that are whole with these bytes; of one that cannot be read a text that says why.
-
-        Raises:
-            UnreadableError: a message in an encoding that gRPC does not have by itself.
-        """
-        skipped = min(self._passed_over, len(data))
-        self._passed_over -= skipped
-        self._buffer += data[skipped:]
-        while len(self._buffer) >= PREFIX_BYTES:
-            encoded, length = self._buffer[0], int.from_bytes(self._buffer[1:PREFIX_BYTES], "big")
-            if length > MAX_MESSAGE_BYTES:
-                self._passed_over = max(0, PREFIX_BYTES + length - len(self._buffer))
-                del self._buffer[: PREFIX_BYTES + length]
-                yield f"longer than {MAX_MESSAGE_BYTES:,} bytes"
-                continue
-            if len(self._buffer) < PREFIX_BYTES + length:
-                return
-            message = bytes(self._buffer[PREFIX_BYTES : PREFIX_BYTES + length])
-            del self._buffer[: PREFIX_BYTES + length]
-            yield self._decoded(message) if encoded else message
-
-    def _decoded(self, message: bytes) -> bytes | str:
-        if self.encoding not in WINDOW_BITS:
-            raise UnreadableError(
-                f"a message is encoded as {self.encoding.decode(errors='replace')}, which is not read"
-            )
-        reader = zlib.decompressobj(WINDOW_BITS[self.encoding])
-        try:
-            data = reader.decompress(message, MAX_MESSAGE_BYTES)
-        except zlib.error:
-            return f"no {self.encoding.decode()}"
-        if reader.unconsumed_tail:
-            return f"longer than {MAX_MESSAGE_BYTES:,} bytes"
-        return data if reader.eof else f"no {self.encoding.decode()}"
-
-
-@define
 class Call:
     """A call of a method that is recorded.
 
@@ -143,14 +89,17 @@ class Overheard:
     """Reads what is said on many connections, and numbers the calls and streams of all of them.
 
     Args:
-        system: which calls are noted: those of ``bear.mission`` or ``bear.status``. Of others nothing is.
+        system: which calls are noted: those of ``bear.mission`` or ``bear.status``, and what the control service is
+            asked to do to it. Of others nothing is.
+        others: whether others use it past here.
     """
 
-    def __init__(self, system: str) -> None:
+    def __init__(self, system: str, *, others: bool = False) -> None:
         self._methods = {path(one).encode(): one for one in methods(system).values()}
         self._connections: dict[Connection, _Connection] = {}
         self._calls = itertools.count(1)
         self._streams = itertools.count(1)
+        self._steering = Steering(system, others)
 
     def __call__(self, chunk: Chunk) -> list[Line]:
         """The lines that these bytes make, in order.
@@ -160,18 +109,30 @@ class Overheard:
         """
         connection = self._connections.get(chunk.connection)
         if connection is None:
-            connection = _Connection(self._methods, self._calls, self._streams)
+            connection = _Connection(chunk.connection, self._methods, self._calls, self._streams)
             self._connections[chunk.connection] = connection
-        lines = list(connection.read(chunk.end, chunk.data) if chunk.data else connection.over(chunk.end))
+        at = round(chunk.at, 6)
+        lines: list[Line] = []
+        for one in connection.read(chunk.end, chunk.data) if chunk.data else connection.over(chunk.end):
+            if isinstance(one, Steered):
+                known, reset = self._steering.steered(one, at)
+                lines += known
+                for each in self._connections.values() if reset else ():
+                    each.forget()
+            else:
+                lines += self._steering.line({**one, "at": at})
         if connection.is_over:
             del self._connections[chunk.connection]
-        return [{**line, "at": round(chunk.at, 6)} for line in lines]
+        return lines
 
 
 class _Connection:
     """What is said on one connection."""
 
-    def __init__(self, methods: dict[bytes, Method], calls: Iterator[int], streams: Iterator[int]) -> None:
+    def __init__(
+        self, name: Connection, methods: dict[bytes, Method], calls: Iterator[int], streams: Iterator[int]
+    ) -> None:
+        self._name = name
         self._methods = methods
         self._numbers = calls
         self._streams = streams
@@ -181,6 +142,7 @@ class _Connection:
         self._asked = 0
         self._heard = False
         self._calls: dict[int, Call] = {}
+        self._steers: dict[int, Steers] = {}
         self._beginning: list[Call] = []
 
     @property
@@ -188,8 +150,13 @@ class _Connection:
         """Whether neither end sends any more."""
         return not self._there
 
-    def read(self, end: End, data: bytes) -> Iterator[Line]:
-        """The lines that these bytes from one end make."""
+    def forget(self) -> None:
+        """Pass over what is under way: the robot was reset."""
+        self._calls.clear()
+        self._beginning.clear()
+
+    def read(self, end: End, data: bytes) -> Iterator[Line | Steered]:
+        """The lines that these bytes from one end make, and what they say of the control service."""
         if end not in self._readable:
             return
         try:
@@ -204,9 +171,11 @@ class _Connection:
             yield from self._begun(call)
         self._beginning.clear()
 
-    def over(self, end: End) -> Iterator[Line]:
+    def over(self, end: End) -> Iterator[Line | Steered]:
         """One end is gone: the client from its streams, or the robot from all that was asked."""
         self._there.discard(end)
+        for stream in tuple(self._steers):
+            yield from self._has_steered(stream, lost=True)
         for stream in tuple(self._calls):
             if end is End.CLIENT:
                 yield from self._gone(stream)
@@ -215,7 +184,7 @@ class _Connection:
 
     # The client's end.
 
-    def _asks(self, event: Event) -> Iterator[Line]:
+    def _asks(self, event: Event) -> Iterator[Line | Steered]:
         match event:
             case TableSize(size):
                 self._directions[End.ROBOT].allow_table(size)
@@ -224,6 +193,10 @@ class _Connection:
                 method = self._methods.get(fields.get(b":path", b""))
                 if method is not None and stream not in self._calls:
                     self._calls[stream] = Call(method, Messages(fields.get(b"grpc-encoding", b"identity")))
+                steers = PATHS.get(fields.get(b":path", b""))
+                if steers is not None:
+                    sent = Messages(fields.get(b"grpc-encoding", b"identity"))
+                    self._steers[stream] = Steers((self._name, stream), steers, sent)
             case Data(stream, data) if stream in self._calls:
                 call = self._calls[stream]
                 for message in call.sent.read(data):
@@ -231,8 +204,21 @@ class _Connection:
                         call.number = next(self._numbers)
                         params = _json(call.method.request, message)
                         yield {"call": call.number, "method": call.method.name, "params": params}
+            case Data(stream, data) if stream in self._steers:
+                steered = self._steers[stream]
+                for message in steered.sent.read(data):
+                    steered.params = struct(message)
+                    yield Steered(steered.call, steered.name, steered.params)
             case Reset(stream):
                 yield from self._gone(stream)
+                yield from self._has_steered(stream, lost=True)
+
+    def _has_steered(self, stream: int, *, refused: bool = False, lost: bool = False) -> Iterator[Steered]:
+        """A call of the control service is over, if it is one."""
+        one = self._steers.pop(stream, None)
+        if one is not None:
+            result = None if refused else one.result
+            yield Steered(one.call, one.name, one.params, result, ended=True, lost=lost)
 
     def _gone(self, stream: int) -> Iterator[Line]:
         """The client gives up: a stream is cancelled, a call stays without an answer."""
@@ -244,7 +230,7 @@ class _Connection:
 
     # The robot's end.
 
-    def _answers(self, event: Event) -> Iterator[Line]:
+    def _answers(self, event: Event) -> Iterator[Line | Steered]:
         self._heard = True
         match event:
             case TableSize(size):
@@ -257,10 +243,24 @@ class _Connection:
                     yield from self._message(call, _json(call.method.response, message))
                 if ends:  # without trailers, which only what does not speak gRPC does
                     yield from self._ended(stream, STATUS_OF_HTTP.get(call.http, "UNKNOWN"), "", made=True)
+            case Data(stream, data) if stream in self._steers:
+                steered = self._steers[stream]
+                for message in steered.answered.read(data):
+                    steered.result = struct(message)
             case Reset(stream, code):
+                yield from self._has_steered(stream, lost=True)
                 yield from self._ended(stream, STATUS_OF_RESET.get(code, "INTERNAL"), "", made=True)
 
-    def _headers(self, stream: int, fields: dict[bytes, bytes], *, ends: bool) -> Iterator[Line]:
+    def _headers(self, stream: int, fields: dict[bytes, bytes], *, ends: bool) -> Iterator[Line | Steered]:
+        steered = self._steers.get(stream)
+        if steered is not None:
+            if ends:
+                said = fields.get(b"grpc-status", b"")
+                refused = STATUSES.get(said) in REFUSED
+                yield from self._has_steered(stream, refused=refused, lost=not refused and said != b"0")
+            else:
+                steered.answered.encoding = fields.get(b"grpc-encoding", b"identity")
+            return
         if stream > self._asked and End.CLIENT not in self._readable:
             raise UnreadableError("a call is answered that could not be read")
         call = self._calls.get(stream)

@@ -64,7 +64,7 @@ LAGGING = Habits(lost=0, late=0, ends=0)
 CLOSE = evolve(LAGGING, behind=8)
 
 
-@pytest.mark.parametrize(("habits", "clients"), [(CLOSE, 3), (CLOSE, 6), (LAGGING, 3)])
+@pytest.mark.parametrize(("habits", "clients"), [(CLOSE, 3), (CLOSE, 6), (LAGGING, 3), (LAGGING, 6)])
 def test_a_busy_log_is_decided(tmp_path: Path, habits: Habits, clients: int) -> None:
     """Three hundred lines of clients that overlap are decided, also where streams never catch up with the robot."""
     path = tmp_path / "log"
@@ -72,6 +72,22 @@ def test_a_busy_log_is_decided(tmp_path: Path, habits: Habits, clients: int) -> 
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
     ((_, verdict),) = check_file(str(path))
     assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("shown", [1, 5])
+def test_a_stream_may_show_nothing_any_more(tmp_path: Path, shown: int) -> None:
+    """Whoever has stopped to read hides what the robot does by itself; nothing else has to explain what it does."""
+    robot = Recorder(drives=False)
+    robot.call(SUBSCRIBE)
+    for _ in range(40):
+        robot.call("CreateMission", navigate("table-1"))
+        robot.drive(event="goalReached")
+    messages = [line for line in robot.history if "message" in line]
+    lines = [line for line in robot.history if line not in messages[shown:]]
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path))
+    assert (verdict.conforms, verdict.flagged) == (True, ()), str(verdict)
 
 
 @pytest.mark.parametrize("clients", [3, 4, 5])

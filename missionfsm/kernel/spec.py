@@ -62,6 +62,7 @@ class Delivery:
         unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
         malformed: ids of the rules that are broken by a message that cannot be read.
         every_time: whether a message has to come even where the one before it says the same, as lines do.
+        stands: whether what a channel owes stays owed until it is shown or passed over: no step takes it back.
     """
 
     skips: Assumption | None = None
@@ -74,6 +75,7 @@ class Delivery:
     unending: tuple[str, ...] = ()
     malformed: tuple[str, ...] = ()
     every_time: bool = False
+    stands: bool = False
 
 
 @frozen

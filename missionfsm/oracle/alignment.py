@@ -11,7 +11,7 @@ from collections.abc import Hashable
 from attrs import define, field
 
 from missionfsm.kernel.spec import Delivery, Spec
-from missionfsm.kernel.step import Mismatch
+from missionfsm.kernel.step import Match, Mismatch
 from missionfsm.oracle.explanation import GONE, Channel, Names, Owed
 
 Message = tuple[Hashable, Names]
@@ -48,13 +48,18 @@ class Showings:
         known = self.of(owed) if shown is None else shown
         found = known.get(id(message))
         if found is None:
-            content, names = message
-            matches = self._matches(owed.view, content)
-            found = known[id(message)] = not isinstance(matches, Mismatch) and any(
-                all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
-                for match in matches
-            )
+            found = known[id(message)] = bool(self.ways(owed, message))
         return found
+
+    def ways(self, owed: Owed, message: Message) -> list[Match]:
+        """The ways in which a message may be one that is owed."""
+        content, names = message
+        matches = self._matches(owed.view, content)
+        return [
+            match
+            for match in (() if isinstance(matches, Mismatch) else matches)
+            if all(owed.names[ref] == names[at] or owed.names[ref] < GONE for ref, at in match.names)
+        ]
 
 
 @define(eq=False, slots=True)
@@ -130,16 +135,17 @@ def may_go_unsaid(channel: Channel, index: int, delivery: Delivery) -> bool:
         return True  # without names, it may look like what was shown before it
     if delivery.every_time:
         return False
+    return any(other is not None and may_look_alike(one, other) for other in (channel.last, *channel.owed[:index]))
+
+
+def may_look_alike(one: Owed, other: Owed) -> bool:
+    """Whether two that are owed may be found to show the same of the same."""
     view, names = one.view, one.names
-    for other in (channel.last, *channel.owed[:index]):
-        if (
-            other is not None
-            and (other.view is view or (hash(other.view) == hash(view) and other.view == view))
-            and len(other.names) == len(names)
-            and all(map(_may_be_one, other.names, names))
-        ):
-            return True
-    return False
+    return (
+        (other.view is view or (hash(other.view) == hash(view) and other.view == view))
+        and len(other.names) == len(names)
+        and all(map(_may_be_one, other.names, names))
+    )
 
 
 def _may_be_one(name: int, other: int) -> bool:

@@ -86,6 +86,9 @@ class Owed:
 class Channel:
     """A stream or a connection: its name, its topic, what it showed last and what it owes.
 
+    Where it is known what comes, `foretold` is how many of the messages that it shows next are settled already: they
+    can be nothing but what it owed before. `last` is then what the last of these shows.
+
     `lowest` is the lowest of all names in it, `GONE` at most.
     """
 
@@ -93,7 +96,12 @@ class Channel:
     topic: Hashable
     last: Owed | None = None
     owed: tuple[Owed, ...] = ()
+    foretold: int = 0
     lowest: int = field(init=False, eq=False, repr=False, default=Factory(_lowest_of_channel, takes_self=True))
+
+    def owing(self, owed: tuple[Owed, ...] = ()) -> Channel:
+        """The channel when it owes these, and nothing else."""
+        return Channel(self.name, self.topic, self.last, owed, self.foretold)
 
 
 DRAINED = "drained"
@@ -246,7 +254,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         if unseen_only and one.lowest == GONE:
             return one
         last = owed(one.last) if one.last else None
-        return Channel(new.get(one.name, one.name), one.topic, last, tuple(map(owed, one.owed)))
+        return Channel(new.get(one.name, one.name), one.topic, last, tuple(map(owed, one.owed)), one.foretold)
 
     return Explanation(
         explanation.state,
@@ -362,16 +370,15 @@ def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
     for one in added:
         if not (one.stays and owed and owed[-1] == one):
             owed = (*owed, one)
-    return Channel(channel.name, channel.topic, channel.last, owed)
+    return channel.owing(owed)
 
 
 def _relieved(channel: Channel, step: Step) -> Channel:
     """The channel without what a step makes void."""
     if channel.topic in step.clears:
-        return Channel(channel.name, channel.topic, channel.last)
+        return channel.owing()
     if channel.topic in step.withdraws and channel.owed:
-        owed = tuple(one for one in channel.owed if not one.optional)
-        return Channel(channel.name, channel.topic, channel.last, owed)
+        return channel.owing(tuple(one for one in channel.owed if not one.optional))
     return channel
 
 

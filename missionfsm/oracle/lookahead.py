@@ -21,8 +21,9 @@ from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.alignment import Alignment, Message, Showings, may_go_unsaid
-from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names
+from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, tidy, unify
 from missionfsm.oracle.foresight import Foresight
+from missionfsm.oracle.foretold import foretold
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
 from missionfsm.oracle.symbols import Symbol
 
@@ -77,10 +78,12 @@ class Lookahead:
         latest: what each channel showed last before the window.
         last: whether nothing comes after the horizon.
         required: the bits of readings that have to stay possible; what contradicts one of them is withheld.
+        rules: by the positions of messages the rules that those exercise which are foretold; added to.
 
     Attributes:
         at: how many of them have been observed.
         withheld: whether anything was withheld since this was last set.
+        stopped: whether changes were not imagined since all who are to see them are too far behind what is known.
         consulted: the bits of the ambiguities of which something was assumed since the last event.
         depends: the bits of those on which it has depended since then what becomes of an explanation: it would have
             come to the same under other readings of all others.
@@ -96,9 +99,10 @@ class Lookahead:
         beyond: Collection[int] = (),
         last: bool = False,
         required: int = 0,
+        rules: dict[int, tuple[str, ...]] | None = None,
     ) -> None:
         self.spec = spec
-        self.required, self.withheld = required, False
+        self.required, self.withheld, self.stopped = required, False, False
         self._last = last
         self._horizon = horizon
         self._beyond = sorted(beyond)
@@ -112,7 +116,9 @@ class Lookahead:
         self._room = Room(MEMORY // STEPS)
         self._led: dict[Hashable, bool] = {}
         self._known: dict[tuple[int, int, int, int], _Stretch] = {}
-        self._stretches: dict[int, tuple[int, int, _Stretch]] = {}
+        self._stretches: dict[int, tuple[int, int, int, _Stretch]] = {}
+        self._rules = {} if rules is None else rules
+        self._irregular: dict[int, list[int]] = {}
         self._at_cut, self._found_cut = -1, horizon
         self._showings = Showings(spec)
         self._ended: dict[int, int] = {}
@@ -146,6 +152,8 @@ class Lookahead:
                     self._answered[call] = position
             elif kind is Received:
                 content, names, relations, channel = what
+                if channel > GONE and not _REGULAR.issuperset(relations):
+                    self._irregular.setdefault(channel, []).append(position)
                 if channel > GONE and channel not in self._ended and REDELIVERED not in relations:
                     positions, messages = self._messages.setdefault(channel, ([], []))
                     positions.append(position)
@@ -190,6 +198,12 @@ class Lookahead:
         met = meet(assumed, (one,)) if one else 0
         return met != 0 and not self.withholds(met)
 
+    def meet(self, assumed: int, assumptions: tuple[Assumption, ...]) -> int:
+        """What is assumed once these are assumed as well; 0 when that is contradictory, or withheld."""
+        met = meet(assumed, assumptions)
+        self.consult(assumed, assumptions)
+        return 0 if self.withholds(met) else met
+
     def rely(self) -> None:
         """Note that something was left out since something else assumes no more."""
         self.depends |= self.consulted
@@ -198,7 +212,12 @@ class Lookahead:
         """How many messages that last a channel owes besides those that it is known to show."""
         positions, _ = self._messages.get(channel.name, _NO_MESSAGES)
         due = len(positions) - bisect.bisect_left(positions, self.at)
-        return sum(not one.passing for one in channel.owed) - due
+        return sum(not one.passing for one in channel.owed) + channel.foretold - due
+
+    @property
+    def exercised(self) -> tuple[str, ...]:
+        """The rules that the next event exercises, a message that was foretold."""
+        return self._rules.get(self.at, ())
 
     def narrowed(self, explanation: Explanation) -> Explanation | None:
         """The explanation without what is known never to be shown; None where it cannot lead to what is.
@@ -214,7 +233,47 @@ class Lookahead:
         known = [one.name for one in explanation.channels if one.name > GONE]
         if len(known) > 1 and len(set(known)) < len(known):
             return explanation  # which of the channels that share a name a message is about, nobody knows beforehand
-        return self._with_channels_narrowed(explanation)
+        foretelling = self._with_messages_foretold(explanation)
+        return foretelling and self._with_channels_narrowed(foretelling)
+
+    def _with_messages_foretold(self, explanation: Explanation) -> Explanation | None:
+        """The explanation without what its channels are bound to show next; None where that is contradictory."""
+        if self.spec.anywhere or self.spec.others:
+            return explanation
+        bound = False
+        for at in range(len(explanation.channels)):
+            while (channel := explanation.channels[at]).owed and channel.name > GONE:
+                due = self._due_for_certain(channel, explanation.assumed)
+                found = foretold(self.spec, self._showings, channel, due, explanation.assumed, self.meet)
+                if found is None:
+                    break
+                channels = (*explanation.channels[:at], found.channel, *explanation.channels[at + 1 :])
+                after = explanation.replace(assumed=found.assumed, channels=channels)
+                named = unify(after, found.names) if found.assumed else None
+                if named is None:
+                    return None
+                for position, rules in found.rules:
+                    self._rules.setdefault(position, rules)
+                explanation, bound = named, bound or bool(found.names)
+        return tidy(explanation) if bound else explanation
+
+    def _due_for_certain(self, channel: Channel, assumed: int) -> Iterable[tuple[Message, int]]:
+        """The messages that a channel shows next, with their positions, if it passes over nothing that it owes.
+
+        None where it may, or may repeat itself, and none from one on whose number is something special.
+        """
+        stretch, delivery = self._stretch(channel), self.spec.delivery(channel.topic)
+        if not (stretch.due and delivery.stands):
+            return ()
+        for reading in (delivery.skips, delivery.repeats):
+            self.depends |= reading.group if reading else 0
+        if self.may_assume(assumed, delivery.skips) or self.may_assume(assumed, delivery.repeats):
+            return ()
+        irregular = self._irregular.get(channel.name, [])
+        following = bisect.bisect_left(irregular, self.at)
+        until = irregular[following] if following < len(irregular) else self._horizon
+        certain = bisect.bisect_left(stretch.positions, until)
+        return zip(stretch.due[:certain], stretch.positions[:certain], strict=True)
 
     def _with_channels_narrowed(self, explanation: Explanation) -> Explanation | None:
         """The explanation with each channel narrowed; None where one cannot show what it is known to show."""
@@ -294,48 +353,55 @@ class Lookahead:
             self._found_cut = next((position for position in self._beyond if position >= self.at), self._horizon)
         return self._found_cut
 
-    def _stretch(self, channel: int) -> _Stretch:
-        """What is known of a channel with that name from now on."""
-        known = self._stretches.get(channel)
-        if known is not None and known[0] <= self.at <= known[1]:
-            return known[2]
-        positions, messages = self._messages.get(channel, _NO_MESSAGES)
-        cut = self._cut
-        end = min(self._ended.get(channel, cut), cut)
-        first, last = bisect.bisect_left(positions, self.at), bisect.bisect_left(positions, end)
-        quiet, quieter = bisect.bisect_left(self._settled, self.at), bisect.bisect_left(self._settled, end)
+    def _stretch(self, channel: Channel) -> _Stretch:
+        """What is known of a channel from now on, but for the messages that are foretold."""
+        name, cut = channel.name, self._cut
+        known = self._stretches.get(name)
+        if known is not None and known[0] <= self.at <= known[1] and known[2] == channel.foretold:
+            return known[3]
+        positions, _ = self._messages.get(name, _NO_MESSAGES)
+        coming, quiet = bisect.bisect_left(positions, self.at), bisect.bisect_left(self._settled, self.at)
+        first, end = coming + channel.foretold, min(self._ended.get(name, cut), cut)
+        found = self._known.get((name, first, quiet, end))
+        if found is None:
+            found = self._known[name, first, quiet, end] = self._stretch_from(name, first, quiet, end)
         # Up to the next of these that is observed, no less is known.
-        until = min(
-            cut,
-            positions[first] if first < len(positions) else cut,
-            self._settled[quiet] if quiet < len(self._settled) else cut,
-        )
-        over = end < cut or (self._last and cut == self._horizon)
-        nothing = first >= last and quiet >= quieter
-        if quiet < quieter:
-            last = bisect.bisect_left(positions, self._settled[quiet], first)
-        shown = slice(first, min(last, first + NEXT))
-        found = self._known.setdefault(
-            (channel, first, quiet, end),
-            _Stretch(
-                messages[shown],
-                positions[shown],
-                messages[first - 1] if first else self._latest.get(channel),
-                self._settled[quiet] if quiet < quieter else cut,
-                nothing=nothing,
-                rests=quiet < quieter and last - first <= NEXT,
-                over=over and (nothing or (last - first <= NEXT and quiet == quieter)),
-            ),
-        )
-        self._stretches[channel] = self.at, until, found
+        until = min([cut, *positions[coming : coming + 1], *self._settled[quiet : quiet + 1]])
+        self._stretches[name] = self.at, until, channel.foretold, found
         return found
 
+    def _stretch_from(self, name: int, first: int, quiet: int, end: int) -> _Stretch:
+        """What is known of a channel from one of its messages on.
+
+        Args:
+            first: the index of that message.
+            quiet: the index of what settles next.
+            end: the position up to which anything is known.
+        """
+        positions, messages = self._messages.get(name, _NO_MESSAGES)
+        cut, last = self._cut, bisect.bisect_left(positions, end)
+        rests = quiet < bisect.bisect_left(self._settled, end)
+        nothing = first >= last and not rests
+        if rests:
+            last = bisect.bisect_left(positions, self._settled[quiet], first)
+        shown = slice(first, min(last, first + NEXT))
+        over = end < cut or (self._last and cut == self._horizon)
+        return _Stretch(
+            messages[shown],
+            positions[shown],
+            messages[first - 1] if first else self._latest.get(name),
+            self._settled[quiet] if rests else cut,
+            nothing=nothing,
+            rests=rests and last - first <= NEXT,
+            over=over and (nothing or (last - first <= NEXT and not rests)),
+        )
+
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
-        stretch = self._stretch(channel.name)
+        stretch = self._stretch(channel)
         if stretch.nothing:
             # What is owed to a stream that ends is never shown, and nobody minds.
             silent = stretch.over and channel.owed
-            return Channel(channel.name, channel.topic, channel.last) if silent else channel, None, stretch.over
+            return channel.owing() if silent else channel, None, stretch.over
         delivery = self.spec.delivery(channel.topic)
         for one in (delivery.skips, delivery.repeats):
             self.depends |= one.group if one else 0
@@ -389,7 +455,7 @@ class Lookahead:
         if stretch.over and place and not owed[last].stays and not may_go_unsaid(channel, last, alignment.delivery):
             # The last message shows this one, or one before it. One that comes later would be shown only where this one
             # is skipped, and whoever may skip it may skip those that are dropped as well.
-            return (Channel(channel.name, channel.topic, channel.last, owed[:place]), None, True), None
+            return (channel.owing(owed[:place]), None, True), None
         before = stretch.due[-1] if stretch.due else stretch.before
         left = [one for one in owed[place:] if not one.passing]
         settles = stretch.rests and before is not None and left and not self._showings.may_be(left[-1], before)
@@ -411,7 +477,7 @@ class Lookahead:
 
         It stays as it is where it cannot be told whether they are due.
         """
-        passed, over = Channel(channel.name, channel.topic, channel.last, channel.owed[many:]), channel.owed[:many]
+        passed, over = channel.owing(channel.owed[many:]), channel.owed[:many]
         if all(one.passing for one in over):
             return passed, None
         last = channel.last
@@ -432,5 +498,8 @@ class Lookahead:
         """Whether the state may come to be shown so before an event."""
         return self._foresight.may_show(explanation, message, self.at, position)
 
+
+_REGULAR = frozenset({"first", "larger"})
+"""How the numbers of messages compare with those before them where nothing is special about that."""
 
 _NO_MESSAGES: tuple[list[int], list[Message]] = ([], [])

@@ -140,6 +140,8 @@ class Search:
         self._explained: int | None = None
         self.reached = 0
         self.beyond: set[int] = set()
+        self._rules: dict[int, tuple[str, ...]] = {}
+        self._alone = self._stopped = False
         self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
 
     @property
@@ -178,8 +180,12 @@ class Search:
                 pass
             usual -= self.successors.spent
             required, self._required = self._required, 0
-            if not self._go_on(min(self._stuck + FURTHER, horizon), self.budget):
-                return False
+            try:
+                if not self._go_on(min(self._stuck + FURTHER, horizon), self.budget):
+                    return False
+            except ExhaustedError:
+                self._required = required  # nothing was learned
+                raise
             left = required
             for one in self.layers[-1].explanations:
                 left &= one.assumed
@@ -192,14 +198,15 @@ class Search:
         It goes on where it has explained those up to a nearer one: what it tried before leads nowhere still.
         """
         before, self._explained = self._explained, None
-        anew = before is None or before > horizon or self._built & ~self._required
+        anew = before is None or before > horizon or self._built & ~self._required or self._alone
         self._ahead = ahead = Lookahead(
             self.transitions.spec,
             self._symbols,
             horizon,
             self._latest,
             beyond=self.beyond,
-            last=self.whole and horizon == len(self._symbols),
+            last=self.whole and (self._alone or horizon == len(self._symbols)),
+            rules=self._rules,
         )
         self._horizon, self._built = horizon, self._required
         self.successors.reset()
@@ -216,7 +223,7 @@ class Search:
         try:
             found = self._spending(self._explain, budget)
         finally:
-            self._stuck = max(self._stuck, len(self.layers) - 1)
+            self._stuck, self._stopped = max(self._stuck, len(self.layers) - 1), ahead.stopped
             self.reached = max(self.reached, min(self._stuck, horizon))
         self._explained = horizon if found else None
         return found
@@ -276,6 +283,8 @@ class Search:
         layers = self.layers
         while len(layers) <= self._horizon:
             if not layers:
+                if self._ahead.stopped:  # what was not imagined may explain them
+                    raise ExhaustedError
                 return False
             position = len(layers) - 1
             self._ahead.at = position
@@ -410,17 +419,33 @@ class Search:
         symbols = ((at, symbol) for at, symbol in enumerate(self._symbols) if at not in self.beyond)
         hopeless = (at for at, symbol in symbols if self.transitions.is_hopeless(*symbol))
         bad, stride = next(hopeless, len(self._symbols)), 1
-        if self.explain(bad):
+        if self._explain_alone(bad):
             return None if bad == len(self._symbols) else bad
         good = self.reached
         while good + 1 < bad:
             middle = min(good + stride, (good + bad) // 2) if stride else (good + bad) // 2
-            if self.explain(middle):
+            if self._explain_alone(middle):
                 good, stride = middle, stride * 2
             else:
                 bad, stride = middle, 0
-        self.explain(good)
+        self._explain_alone(good)
         return good
+
+    def _explain_alone(self, horizon: int) -> bool:
+        """See `explain`; where everybody who sees what happens is too far behind, as if nothing came after these.
+
+        What nobody comes to see can be imagined then. Only where no events come after those of the window.
+        """
+        try:
+            return self.explain(horizon)
+        except ExhaustedError:
+            if not (self.whole and self._stopped and horizon < len(self._symbols)):
+                raise
+        self._alone, self._explained = True, None
+        try:
+            return self.explain(horizon)
+        finally:
+            self._alone, self._explained = False, None
 
     @property
     def exact(self) -> bool:

@@ -247,12 +247,7 @@ class Successors:
     def meet(self, assumed: int, assumptions: Iterable[Assumption]) -> int:
         """What is assumed once these are assumed as well; 0 when that is contradictory."""
         assumptions = tuple(assumptions)
-        met = meet(assumed, assumptions)
-        if self.ahead and assumptions:
-            self.ahead.consult(assumed, assumptions)
-            if self.ahead.withholds(met):
-                return 0
-        return met
+        return self.ahead.meet(assumed, assumptions) if self.ahead and assumptions else meet(assumed, assumptions)
 
     def rely(self) -> None:
         """Something is left out since something else assumes no more."""
@@ -426,7 +421,10 @@ class Successors:
             ExhaustedError: they are not near enough, and what they show next can be asked for.
         """
         if self.ahead:
-            return not explanation.channels or any(self.ahead.lag(channel) < LAG for channel in explanation.channels)
+            channels = explanation.channels
+            goes_on = not channels or any(self.ahead.lag(channel) < LAG for channel in channels)
+            self.ahead.stopped |= not goes_on
+            return goes_on
         near = (len(channel.owed) < LAG for channel in explanation.channels)
         if self.live:
             return all(near)

@@ -325,6 +325,9 @@ class TransitionFunction:
             for successor, topic in todo:
                 if self.successors.outdone(seen.setdefault(topic, {}), successor.explanation):
                     continue
+                if any(one.foretold and one.name == channel for one in successor.explanation.channels):
+                    yield self._as_foretold(successor, channel)
+                    continue
                 yield from self._showings(successor, channel, topic, content, names, echo=False)
                 for skipped, whose in self._passed_over(successor.explanation, channel, topic):
                     later += (
@@ -332,6 +335,16 @@ class TransitionFunction:
                         for one in self.successors.silent(skipped, focus=about)
                     )
             todo = later
+
+    def _as_foretold(self, successor: Successor, name: int) -> Successor:
+        """The explanation once a channel of that name has shown what was settled before."""
+        here, ahead = successor.explanation, self.successors.ahead
+        assert ahead is not None, "only who looks ahead knows what comes"  # noqa: S101
+        channels = tuple(
+            Channel(one.name, one.topic, one.last, one.owed, one.foretold - 1) if one.name == name else one
+            for one in here.channels
+        )
+        return Successor(here.replace(channels=channels), successor.rules + ahead.exercised)
 
     def _sequence(self, relations: Iterable[str]) -> list[Assumption] | None:
         """What is assumed where numbers compare so with those before; None where they cannot."""
@@ -439,7 +452,7 @@ class TransitionFunction:
                 if not agreed:
                     continue
                 last = Owed(owed.view, owed.names, shown_as=self.spec.remembered(owed.view, content))
-                after_it = Channel(channel.name, channel.topic, last, left)
+                after_it = Channel(channel.name, channel.topic, last, left, channel.foretold)
                 channels = (*here.channels[:position], after_it, *here.channels[position + 1 :])
                 after = here.replace(assumed=agreed, channels=channels)
                 pairs = [(channel.name, name), *((owed.names[ref], names[at]) for ref, at in match.names)]
@@ -646,7 +659,7 @@ class TransitionFunction:
 
 def _offering(channel: Channel) -> Channel:
     """The channel without what it owed, but for what it may say at any time."""
-    return Channel(channel.name, channel.topic, channel.last, _offers(channel))
+    return channel.owing(_offers(channel))
 
 
 def _offers(channel: Channel) -> tuple[Owed, ...]:

@@ -43,7 +43,7 @@ def spec(
     urgent: Callable[[Any], tuple[Step, ...]] = lambda _: (),
     spontaneous: Callable[[Any], tuple[Step, ...]] = lambda _: (),
     matches: Callable[[Any, Any], tuple[Match, ...] | Mismatch] | None = None,
-    delivery: Callable[[Hashable], Delivery] = lambda _: Delivery(),
+    delivery: Callable[[Hashable], Delivery] = lambda _: Delivery(stands=True),
     names: Callable[[Any], int] = lambda _: 0,
     ambiguities: tuple[Ambiguity, ...] = (),
     concerns: Callable[[Hashable, Hashable], bool] | None = None,
@@ -263,8 +263,8 @@ def _flaky(state: str) -> tuple[Step, ...]:
 
 
 _DELIVERIES: Mapping[Hashable, Delivery] = {
-    "lamp": Delivery(skips=SKIP["b"], repeats=REPEAT["b"], ends={UNAVAILABLE: (), OK: (SKIP["a"],)}),
-    "all": Delivery(echoes=WARMING["b"]),
+    "lamp": Delivery(skips=SKIP["b"], repeats=REPEAT["b"], ends={UNAVAILABLE: (), OK: (SKIP["a"],)}, stands=True),
+    "all": Delivery(echoes=WARMING["b"], stands=True),
 }
 
 LAMP = spec(
@@ -366,8 +366,8 @@ def _news(state: tuple[int, int], request: Request, _: Refs) -> tuple[Step, ...]
 
 
 _PAPERS: Mapping[Hashable, Delivery] = {
-    "left": Delivery(skips=SKIP["b"], ends={UNAVAILABLE: ()}),
-    "right": Delivery(repeats=REPEAT["b"], ends={UNAVAILABLE: (SKIP["a"],)}),
+    "left": Delivery(skips=SKIP["b"], ends={UNAVAILABLE: ()}, stands=True),
+    "right": Delivery(repeats=REPEAT["b"], ends={UNAVAILABLE: (SKIP["a"],)}, stands=True),
 }
 NEWS = spec("news", lambda _: HEADLINES[0, 0], _news, delivery=lambda topic: _PAPERS[topic], ambiguities=(SKIP, REPEAT))
 """``("flip", side)``, ``("hint",)`` and ``("watch",)``, which is about both sides at once."""

@@ -283,6 +283,7 @@ def _delivery(_: object) -> Delivery:
         named=(ALL_LISTED.id,),
         first=first,
         malformed=(WELL_FORMED.id,),
+        stands=True,
     )
 
 

@@ -17,7 +17,6 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.kernel.text import brief
 from missionfsm.systems import system
-from missionfsm.tools.check.basis import departing
 from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.conform.conform import conform
 
@@ -184,11 +183,10 @@ def judge(name: str, subject: Subject, seed: int, seconds: float) -> Judged:
     except SubjectError as error:
         return Judged(subject, f"no verdict ({brief(str(error))})", seconds=time.monotonic() - begin)
     violation = found.violation
-    named = departing(found.flagged)
     return Judged(
         subject,
         found.outcome.value,
-        frozenset((*named, *(line for line in found.flagged if not line.startswith(named)))),
+        frozenset(line.reading or str(line) for line in found.flagged),
         tuple(rule.id for rule in violation.rules) if violation else (),
         len(violation.history) if violation else None,
         time.monotonic() - begin,

@@ -23,7 +23,7 @@ from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.text import brief, counted
 from missionfsm.kernel.transport import TR_02
-from missionfsm.tools.check.basis import Untested
+from missionfsm.tools.check.basis import Flagged, Untested
 from missionfsm.tools.check.phrases import rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Outcome, Verdict, Violation
 
@@ -137,7 +137,7 @@ class _Subscription:
             events=self.events,
             violation=violation,
             readings={TR_02.id: ("b",)} if redelivered else {},
-            flagged=(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}",) if redelivered else (),
+            flagged=(Flagged(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}"),) if redelivered else (),
             unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
             untested=Untested(drives=tuple(spec.drives), unseen=True, all_drives=len(spec.drives)),
             notes=tuple(notes),

@@ -171,16 +171,16 @@ def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, st
     choice = dict(chosen)
     decided: dict[Ambiguity, str] = {}
     for name in sorted(choice, key=lambda name: name.count(".")):
-        letter = choice[name]
+        letters = choice[name]
         named = [one for one in ambiguities if one.id == name or one.id.startswith(f"{name}.")]
         if not named:
             raise ValueError(_unknown(name, [one.id for one in ambiguities]))
-        fitting = [one for one in named if one.readings.keys() >= set(letter)]
+        fitting = [one for one in named if one.readings.keys() >= set(letters)]
         if not fitting:
-            letters = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
-            msg = f"{name} has no reading {letter}: {letters}"
+            known = "; ".join(f"{one.id} has {', '.join(one.readings)}" for one in named)
+            msg = f"{name} has no reading {letters}: {known}"
             raise ValueError(msg)
-        decided.update(dict.fromkeys(fitting, letter))
+        decided.update(dict.fromkeys(fitting, letters))
     return meet(UNCONSTRAINED, (one[tuple(letters)] for one, letters in decided.items()))
 
 

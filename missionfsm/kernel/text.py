@@ -5,11 +5,14 @@ from __future__ import annotations
 MAX_CHARACTERS = 2000
 """Characters that a line has room for."""
 
+MAX_BRIEF = 60
+"""Characters of a value that an error message has room for."""
+
 
 def brief(value: object) -> str:
     """A value as an error message shows it: never long."""
     text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return text if len(text) <= MAX_BRIEF else f"{text[: MAX_BRIEF - 3]}..."
 
 
 def printable(text: str) -> str:

@@ -88,6 +88,16 @@ class Belief:
         return True
 
     @property
+    def of_last_event(self) -> Belief:
+        """This belief; of a system in parts it is that of the part which the last event was about."""
+        return self
+
+    @property
+    def exercised(self) -> dict[str, int]:
+        """How often each rule was exercised, by its tally."""
+        return self.automaton.exercised(self._tally)
+
+    @property
     def awaits(self) -> bool:
         """Whether more has to be seen before everything was, unless something was lost on the way."""
         if self.broken:

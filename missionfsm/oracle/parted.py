@@ -33,7 +33,8 @@ class Parted:
 
     Attributes:
         beliefs: the belief of each part.
-        latest: that of the part which the last event was about; of the one that did not explain it, where one did not.
+        of_last_event: that of the part which the last event was about; of the one that did not explain it, where one
+            did not.
         broken: whether nothing explains what was observed.
     """
 
@@ -50,7 +51,7 @@ class Parted:
         self._calls: dict[Name, Hashable] = {}
         self._left: dict[Hashable, int] = {}
         self._common = UNCONSTRAINED
-        self.latest = next(iter(self.beliefs.values()))
+        self.of_last_event = next(iter(self.beliefs.values()))
         self.broken = False
 
     def observe(self, event: Event) -> bool:
@@ -70,7 +71,7 @@ class Parted:
         if part is not None and part not in self.beliefs:
             part = next(iter(self.beliefs))  # nobody knows it: any of them says so
         for one in list(self.beliefs) if part is None else [part]:
-            self.latest = belief = self.beliefs[one]
+            self.of_last_event = belief = self.beliefs[one]
             if not (belief.observe(event) and self._meet(one, belief)):
                 self.broken = True
                 return False
@@ -86,13 +87,18 @@ class Parted:
         return all(self._common & ambiguity.group for ambiguity in self.spec.ambiguities)
 
     @property
+    def awaits(self) -> bool:
+        """Whether more has to be seen of some part before everything was, unless something was lost on the way."""
+        return any(belief.awaits for belief in self.beliefs.values())
+
+    @property
     def node(self) -> Node:
         """Where the part stands that the last event was about."""
-        return self.latest.node
+        return self.of_last_event.node
 
     def name(self, number: int) -> Name | None:
         """The observed name with a number, to the part that the last event was about."""
-        return self.latest.name(number)
+        return self.of_last_event.name(number)
 
     @property
     def left(self) -> int:

@@ -241,24 +241,27 @@ class Transcript:
 
     def _return(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         number = _whole_number(line, "return")
-        waiting = self._open.pop(number, None)
+        waiting = self._open.get(number)
         if waiting is None and self._anywhere and self._sent.add(number):
             return ()  # the answer to a call that was sent before the log began
         if waiting is None:
             raise UnreadableError(f"return {number}: no call with this id is waiting for an answer")
-        method, self.answered = waiting
+        method, _ = waiting
         if ("result" in line) == ("error" in line):
             raise UnreadableError(f"return {number}: expected either a result or an error")
         if method == "cancel":
+            _, self.answered = self._open.pop(number)
             return ()
         if "error" in line:
-            status = self._status(line["error"])
-            answer = self._errors.get(status)
-            if answer is None:
-                answer = self._errors[status] = Answer(status)
-            return (Returned(("call", number), answer, ()),)
-        answer, names = self.codec.read_answer(method, line["result"])
-        return (Returned(("call", number), answer, names),)
+            return self.answers(number, self._error(self._status(line["error"])), ())
+        return self.answers(number, *self.codec.read_answer(method, line["result"]))
+
+    def _error(self, status: str) -> Answer:
+        """The answer with a status, one object for one status."""
+        answer = self._errors.get(status)
+        if answer is None:
+            answer = self._errors[status] = Answer(status)
+        return answer
 
     def _status(self, error: JSON) -> str:
         status = error.get("status") if isinstance(error, dict) else None

@@ -127,14 +127,14 @@ def verdict(events: list[Event]) -> str:
                     held = Held(belief)
             held.add(HeldEvent(event, None, at, at, open_calls=False))
             if held.due:
-                explained, exact = held.explain(whole=False)
-                if not explained:
+                explained = held.explain(whole=False)
+                if not explained.whole:
                     return "Illegal"
-                if exact:
+                if explained.exact:
                     held = None
                 else:
                     held.wait()
-        return "Ok" if held is None or held.explain(whole=True)[0] else "Illegal"
+        return "Ok" if held is None or held.explain(whole=True).whole else "Illegal"
     except ExhaustedError:
         return "Unknown"
 

@@ -20,7 +20,7 @@ from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.systems import system
-from missionfsm.tools.check.basis import Untested, readings_line
+from missionfsm.tools.check.basis import Flagged, Untested, readings_line
 from missionfsm.tools.check.github import workflow_commands
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.scope import untested
@@ -147,7 +147,10 @@ def test_what_departs_from_the_text_stands_in_the_headline() -> None:
         Outcome.CONFORMS,
         "s",
         readings={"Q-1": ("b",), "Q-2": ("a", "b"), "Q-3": ("a",)},
-        flagged=("Q-1=b departs from the text: why", "incoherent, calls that look alike are read differently: …"),
+        flagged=(
+            Flagged("Q-1=b departs from the text: why", "Q-1=b"),
+            Flagged("incoherent, calls that look alike are read differently: …"),
+        ),
         untested=Untested(operations=2, all_drives=1),
     )
     folded = [

@@ -28,6 +28,9 @@ from missionfsm.kernel.step import Match, Mismatch, Step
 _ABORTED = {"c": "timed out", "a": "aborted", "b": "failed"}
 """AI-02: how missions are called that were aborted; those that were cancelled are so called, or failed (b)."""
 
+_LOST_IS_CALLED = ("failed", "aborted")
+"""What a mission may be called whose robot was lost: it is said nowhere."""
+
 Called = tuple[tuple[str, tuple[Assumption, ...]], ...]
 
 
@@ -81,7 +84,7 @@ def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
     wrong = [
         (one, other)
         for one, other in zip(allowed, came, strict=True)
-        if one != other and not (one == "lost" and other in ("failed", "aborted"))
+        if one != other and not (one == "lost" and other in _LOST_IS_CALLED)
     ]
     if not wrong:
         return (Match(),)
@@ -142,4 +145,4 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
 def may_be_called(server: Server, index: int, word: object) -> bool:
     """Whether a mission is called so under some reading as things stand."""
     words = {one for one, _ in _called(server, server.missions[index])}
-    return word in words or ("lost" in words and word in ("failed", "aborted"))
+    return word in words or ("lost" in words and word in _LOST_IS_CALLED)

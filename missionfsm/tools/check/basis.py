@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Self
 
 from attrs import field, frozen
 
@@ -10,7 +11,25 @@ from missionfsm.kernel.codec import JSON
 
 MAX_NAMED = 4
 """How many calls, drives or readings a line has room for."""
-_DEPARTS = " departs "
+
+
+class Flagged(str):
+    """A line about something that is explained, and yet departs from the letter of the text, or from itself.
+
+    Attributes:
+        reading: what departs from the text, as ``AM-09=b``; empty where it is something else.
+        about: what such lines are told apart and counted by: the ambiguity that is read so, or the pair.
+    """
+
+    __slots__ = ("about", "reading")
+    reading: str
+    about: str
+
+    def __new__(cls, says: str, reading: str = "", about: str = "") -> Self:
+        """A line that says so; what it is about is by default its ambiguity, or its words before the first comma."""
+        line = super().__new__(cls, says)
+        line.reading, line.about = reading, about or reading.partition("=")[0] or says.partition(",")[0]
+        return line
 
 
 @frozen
@@ -128,12 +147,14 @@ NOT_TRIED, NOT_THERE, NEVER_SUCCEEDED = "was not tried", "is not there", "never 
 _SAID = {NOT_TRIED: "not tried", NOT_THERE: "not there"}
 
 
-def departing(flagged: Iterable[str]) -> tuple[str, ...]:
-    """The readings, as ``AM-09=b``, that lines about what is flagged name as departing from the text."""
-    return tuple(line.partition(_DEPARTS)[0] for line in flagged if _DEPARTS in line)
+def departing(flagged: Iterable[Flagged]) -> tuple[str, ...]:
+    """The readings, as ``AM-09=b``, that depart from the text."""
+    return tuple(line.reading for line in flagged if line.reading)
 
 
-def readings_line(readings: Mapping[str, tuple[str, ...]], flagged: tuple[str, ...], *, all_names: bool = False) -> str:
+def readings_line(
+    readings: Mapping[str, tuple[str, ...]], flagged: tuple[Flagged, ...], *, all_names: bool = False
+) -> str:
     """What the readings that mattered came to, in a line."""
     still_open = sum(len(letters) > 1 for letters in readings.values())
     against = departing(flagged)
@@ -155,4 +176,14 @@ def _few(names: Iterable[str], *, all_names: bool) -> str:
     return f"{', '.join(listed[:MAX_NAMED])} and {len(listed) - MAX_NAMED} more"
 
 
-__all__ = ["NEVER_SUCCEEDED", "NOT_THERE", "NOT_TRIED", "OFTEN", "Reached", "Untested", "departing", "readings_line"]
+__all__ = [
+    "NEVER_SUCCEEDED",
+    "NOT_THERE",
+    "NOT_TRIED",
+    "OFTEN",
+    "Flagged",
+    "Reached",
+    "Untested",
+    "departing",
+    "readings_line",
+]

@@ -17,7 +17,8 @@ READING, LEFT_OUT, NAME, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4
 """How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least.
 
 LEFT_OUT is a message that comes before one that is due earlier, UNOWED one after all that were owed, UNBEGUN one before
-any is.
+any is. To SHAPE and VALUE is added, from 0 to 9, how far what came is from what was due; to UNOWED, of a message that
+shows something else than the last one, what that takes to be forgiven.
 """
 
 PASSING = 1
@@ -70,7 +71,7 @@ class Problem:
     since: tuple[str, ...] = ()
 
 
-@frozen
+@frozen(kw_only=True)
 class Candidate:
     """A way in which the event could nearly be explained.
 
@@ -87,10 +88,10 @@ class Candidate:
         code: of an answer, its code.
     """
 
-    what: str
-    rules: tuple[str, ...]
-    assumes: tuple[str, ...]
-    problems: tuple[Problem, ...]
+    what: str = ""
+    rules: tuple[str, ...] = ()
+    assumes: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = ()
     allowed: bool = True
     passing: bool = False
     unseen: tuple[str, ...] = ()

@@ -12,6 +12,7 @@ from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
+from missionfsm.oracle.symbols import relations_of
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNOWED, VALUE, Candidate, Circumstances, Problem
 from missionfsm.tools.check.nearest import Nearest
@@ -166,7 +167,7 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
 def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
     """What is wrong with the numbers of a message, or else with when it came, whatever it shows."""
     belief = nearest.belief
-    relations = belief.symbol(event)[0][3]
+    relations = relations_of(belief.symbol(event)[0])
     for relation in relations[len(event.marks) :]:
         wrong = nearest.spec.sequence(relation)
         if isinstance(wrong, Mismatch):
@@ -226,7 +227,7 @@ def _still_due(nearest: Nearest) -> Accusation:
             wanted = described(nearest.spec, owed.view)
             delivery = nearest.spec.delivery(channel.topic)
             shows = f"{where} shows {wanted}"
-            found.append(Candidate(shows, (), (), (), unseen=successor.rules, owed=(channel, owed)))
+            found.append(Candidate(what=shows, unseen=successor.rules, owed=(channel, owed)))
             rules += delivery.unowed if channel.last or not delivery.first else delivery.first
             last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
             notes.append(f"{where} did not show {wanted}{last}")
@@ -266,4 +267,4 @@ def _against_drive(nearest: Nearest, event: Event) -> Accusation:
     rest = [one for one in reachable if nearest.at_rest(one)] or reachable
     states = dict.fromkeys(described(nearest.spec, one.state) for one in rest)
     note = f"it cannot happen in {' or '.join(list(states)[:MAX_STATES])}"
-    return [Candidate(NOT_HAPPENED, (), (), ())], drive.impossible if drive else (), [note]
+    return [Candidate(what=NOT_HAPPENED)], drive.impossible if drive else (), [note]

@@ -33,11 +33,24 @@ class HeldEvent:
     open_calls: bool
 
 
+@frozen
+class Explained:
+    """What came of explaining events that waited.
+
+    Attributes:
+        whole: whether all of them are explained.
+        exact: whether all of their explanations are known, or it is known that one has none.
+    """
+
+    whole: bool
+    exact: bool
+
+
 class Held:
     """Events that wait to be explained together.
 
     Attributes:
-        lines: the events.
+        lines: the events, each with where it stands.
         unexplained: the position of the first one that nothing explains, once that is known.
         reached: how many of them were explained before it became too much.
     """
@@ -64,10 +77,8 @@ class Held:
         """Let so many more events come that looking at all of them anew costs little beside looking at the last."""
         self._size = TIMES * len(self.lines)
 
-    def explain(self, *, whole: bool) -> tuple[bool, bool]:
-        """Whether the events are explained, and whether all of their explanations are known then.
-
-        The belief goes on behind them, or before the first one that is not.
+    def explain(self, *, whole: bool) -> Explained:
+        """Explain the events. The belief goes on behind them, or before the first one that nothing explains.
 
         Args:
             whole: whether no further events come.
@@ -80,21 +91,21 @@ class Held:
         except ExhaustedError:
             if whole:
                 raise
-            return True, False
+            return Explained(whole=True, exact=False)
 
-    def _explain(self, *, whole: bool) -> tuple[bool, bool]:
+    def _explain(self, *, whole: bool) -> Explained:
         window = self._window
         lost = window.unanswered if whole else None
         search = window.search(lost)
         try:
             found = search.first_unexplained()
         finally:
-            reached = search.reached < len(window.positions)
-            self.reached = window.positions[search.reached] if reached else 0
+            stopped_early = search.reached < len(window.positions)
+            self.reached = window.positions[search.reached] if stopped_early else 0
         if found is None:
             if search.exact or whole:
                 window.close(search)
-            return True, search.exact
+            return Explained(whole=True, exact=search.exact)
         self.unexplained = window.positions[found]
         before = Window(self._belief)
         for line in self.lines[: self.unexplained]:
@@ -104,4 +115,4 @@ class Held:
         again.explain(len(before.positions))
         before.close(again)
         self._belief.broken = True
-        return False, True
+        return Explained(whole=False, exact=True)

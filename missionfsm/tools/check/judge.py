@@ -18,6 +18,7 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
+from missionfsm.tools.check.basis import Flagged
 from missionfsm.tools.check.candidates import Call, Circumstances
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
@@ -90,9 +91,9 @@ class Judge:
         self.automaton = automaton or Automaton(system.spec, head.drives, decided, PATIENCE if waits else EVENT_BUDGET)
         self.automaton.successors.live = not waits
         self._no_flagged = no_flagged
-        self._tally: Tally = defaultdict(int) if apart else self.automaton.tally
+        tally: Tally = defaultdict(int) if apart else self.automaton.tally
         world = system.codec.read_world(head.world)
-        self.belief: Belief | Parted = Belief(self.automaton, world, self._tally, past)
+        self.belief: Belief | Parted = Belief(self.automaton, world, tally, past)
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, EVENT_BUDGET)
@@ -138,7 +139,7 @@ class Judge:
     def awaits(self) -> bool:
         """Whether a message has yet to come, as far as can be told, unless it was lost on the way."""
         try:
-            return self.right and isinstance(self.belief, Belief) and self.belief.awaits
+            return self.right and self.belief.awaits
         except ExhaustedError:
             return False
 
@@ -203,22 +204,22 @@ class Judge:
     def _decide(self, held: Held, *, whole: bool) -> bool:
         """Explain the events that wait; those of a search that was not exhaustive go on waiting if more may come."""
         try:
-            explained, exact = held.explain(whole=whole)
+            explained = held.explain(whole=whole)
         except ExhaustedError:
             self.events += held.reached + 1
             self._undecided = held.lines[held.reached].event
             self.exhausted, self.right = True, False
             return False
-        if explained and not (exact or whole):
+        if explained.whole and not (explained.exact or whole):
             held.wait()
             return True
         self._held = None
-        known = held.lines if explained else held.lines[: held.unexplained]
+        known = held.lines if explained.whole else held.lines[: held.unexplained]
         self.events += len(known)
         for line in known:
             self._count(line.event, line.asked, open_calls=line.open_calls)
         self.rulings.skip()
-        if not explained:
+        if not explained.whole:
             line = held.lines[held.unexplained]
             self.events += 1
             for _ in range(min(self.read - line.read, len(self.lines))):
@@ -232,8 +233,7 @@ class Judge:
         """What is wrong with the event that nothing explains; put into words when it is asked for."""
         if self._unexplained is not None and self._violation is None:
             about = Circumstances(self._asked, self.rulings.found, tuple(self.recent))
-            belief = self.belief.latest if isinstance(self.belief, Parted) else self.belief
-            found = violation(belief, self._unexplained, about)
+            found = violation(self.belief.of_last_event, self._unexplained, about)
             if self.quiet is not None and type(self._unexplained) is Settled:
                 seen = f"nothing had come of it after {self.quiet.seconds:g} s, or by {found.observed}"
                 found = evolve(found, observed=seen)
@@ -289,14 +289,16 @@ class Judge:
         return held_to_the_text(verdict) if self._no_flagged else verdict
 
     @property
-    def oddities(self) -> tuple[str, ...]:
+    def oddities(self) -> tuple[Flagged, ...]:
         """What is explained, and yet belongs to no reading: a line each."""
-        return ("a call was not answered, or only after everything had settled",) if self._unanswered else ()
+        if not self._unanswered:
+            return ()
+        return (Flagged("a call was not answered, or only after everything had settled"),)
 
     @property
     def exercised(self) -> dict[str, int]:
         """How often each rule was exercised: here, or by all that walk the automaton."""
-        return self.belief.exercised if isinstance(self.belief, Parted) else self.automaton.exercised(self._tally)
+        return self.belief.exercised
 
 
 def check(system: System, head: Head, lines: Iterable[JSON], **options: Any) -> Verdict:  # noqa: ANN401 - see Judge

@@ -23,6 +23,7 @@ from missionfsm.kernel.terms import Content
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError, Successor
+from missionfsm.oracle.symbols import call_of, names_of
 from missionfsm.tools.check.candidates import (
     CODE,
     LEFT_OUT,
@@ -96,8 +97,8 @@ class Nearest:
 
     def answers(self, event: Returned) -> Iterator[Candidate]:
         """Every answer that the call could have had, or could have had under readings that were ruled out."""
-        number = self.belief.symbol(event)[0][3]
-        given = self.belief.symbol(event)[0][2]
+        symbol, _ = self.belief.symbol(event)
+        number, given = call_of(symbol), names_of(symbol)
         for successor in self.ways(besides=number):
             here = successor.explanation
             call = next((one for one in here.calls if one.name == number), None)
@@ -134,7 +135,14 @@ class Nearest:
         )
         shown = tuple(dict.fromkeys(map(str, assumes)))
         return Candidate(
-            what, rules, shown, tuple(problems), allowed, unseen=successor.rules, unusual=unusual, code=answer.code
+            what=what,
+            rules=rules,
+            assumes=shown,
+            problems=tuple(problems),
+            allowed=allowed,
+            unseen=successor.rules,
+            unusual=unusual,
+            code=answer.code,
         )
 
     def _answered(  # noqa: PLR0913 - what is compared
@@ -206,11 +214,12 @@ class Nearest:
             words = described(self.spec, owed.view)
             possible = not before_it and not self._clash(here, needs)
             due = (channel, before_it[0] if before_it else owed)
-            yield Candidate(words, (), (), tuple(problems), possible, owed.passing, owed=due)
+            yield Candidate(what=words, problems=tuple(problems), allowed=possible, passing=owed.passing, owed=due)
             if not owed.passing and delivery.skips:
                 skipped = (delivery.skips,)
         if not channel.owed:
-            yield Candidate("", (), (), (*before, *self._again(here, channel, delivery, message)), allowed=False)
+            again = tuple(self._again(here, channel, delivery, message))
+            yield Candidate(problems=(*before, *again), allowed=False)
 
     def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
         """Nothing is owed: the message is the last one again, or shows what was never reached."""
@@ -267,7 +276,7 @@ class Nearest:
                     continue
                 if not self._matched(after, channel, channel.owed[-1], message):
                     unowed = self.spec.delivery(channel.topic).unowed
-                    yield Candidate("", (), (), (Problem(says, rules or unowed, UNDRIVEN),), allowed=False)
+                    yield Candidate(problems=(Problem(says, rules or unowed, UNDRIVEN),), allowed=False)
 
     def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...]]]:
         """Steps that were not taken, with what they are and the rules that are broken if they were."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from attrs import evolve
+from attrs import evolve, frozen
 
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, clashes, constrain, meet, unflagged
 from missionfsm.kernel.rules import OK, UNIMPLEMENTED
 from missionfsm.kernel.spec import Spec
-from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, Untested
+from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, Flagged, Untested
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
@@ -59,23 +59,25 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 
 def flagged(
     spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, ways: Iterable[int] = ()
-) -> tuple[str, ...]:
+) -> tuple[Flagged, ...]:
     """What is explained, and yet departs from the letter of the text or from itself, a line each.
 
     Args:
         readings: ambiguity id to the readings that are left, for those that mattered.
         ways: what each explanation that is left assumes; where there are several, the one that departs least speaks.
     """
-    left = {one.id: readings.get(one.id, tuple(one.readings)) for one in spec.ambiguities}
-    departing = [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(left[one.id])]
+    left: Mapping[str, tuple[str, ...]] = {
+        one.id: readings.get(one.id, tuple(one.readings)) for one in spec.ambiguities
+    }
+    departing = _departing(spec, left)
     followed = meet(UNCONSTRAINED, (one[left[one.id]] for one in spec.ambiguities if left[one.id]))
     apart = list(clashes(spec.ambiguities, followed))
-    least = min(((_departing(spec, way), clashes(spec.ambiguities, way), way) for way in ways), key=_size, default=None)
+    least = min((_Way.followed(spec, way) for way in ways), key=_Way.size, default=None)
     if least is not None:
         # Readings that are possible each by itself need not be so together.
-        departing += [one for one in least[0] if one not in departing]
-        apart += [pair for pair in least[1] if pair not in apart]
-        left = {one.id: one.possible(least[2]) for one in spec.ambiguities}
+        departing += [one for one in least.departing if one not in departing]
+        apart += [pair for pair in least.apart if pair not in apart]
+        left = least.left
     return (
         *(_departure(one, left[one.id], rulings) for one in departing),
         *_incoherences(apart, left, rulings),
@@ -84,7 +86,7 @@ def flagged(
 
 def flagged_in_all(
     spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, several: Iterable[Iterable[int]]
-) -> tuple[str, ...]:
+) -> tuple[Flagged, ...]:
     """What `flagged` says of several conversations that follow the same readings, an ambiguity once.
 
     Args:
@@ -93,9 +95,9 @@ def flagged_in_all(
     lines = flagged(spec, readings, rulings)
     followed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
     for ways in several:
-        named = {line.partition("=")[0] for line in lines}
+        named = {line.about for line in lines}
         left = [way & followed for way in sorted(ways) if meet(way, _decided(spec, followed))]
-        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.partition("=")[0] not in named)
+        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.about not in named)
     return lines
 
 
@@ -103,25 +105,41 @@ def _decided(spec: Spec, assumed: int) -> Iterable[Assumption]:
     return (one.where(assumed & one.group) for one in spec.ambiguities)
 
 
-def _size(way: tuple[list[Ambiguity], tuple[tuple[Ambiguity, Ambiguity], ...], int]) -> int:
-    return len(way[0]) + len(way[1])
+@frozen
+class _Way:
+    """What one explanation reads: the letters that are left, by id, and where those depart."""
+
+    left: Mapping[str, tuple[str, ...]]
+    departing: list[Ambiguity]
+    apart: tuple[tuple[Ambiguity, Ambiguity], ...]
+
+    @classmethod
+    def followed(cls, spec: Spec, assumed: int) -> _Way:
+        """What an explanation with these assumptions reads."""
+        left = {one.id: one.possible(assumed) for one in spec.ambiguities}
+        return cls(left, _departing(spec, left), clashes(spec.ambiguities, assumed))
+
+    def size(self) -> int:
+        """In how much it departs."""
+        return len(self.departing) + len(self.apart)
 
 
-def _departing(spec: Spec, assumed: int) -> list[Ambiguity]:
-    """The ambiguities that an execution with these assumptions reads against the letter of the text."""
-    return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(one.possible(assumed))]
+def _departing(spec: Spec, left: Mapping[str, tuple[str, ...]]) -> list[Ambiguity]:
+    """The ambiguities of which nothing but what departs from the letter of the text is left."""
+    return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(left[one.id])]
 
 
-def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> str:
+def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> Flagged:
     says = "; or: ".join(ambiguity.readings[letter] for letter in letters)
     event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), rulings)
     where = f" (seen where {event})" if event else ""
-    return f"{ambiguity.id}={'|'.join(letters)} departs from the text: {ambiguity.question} {says}{where}"
+    reading = f"{ambiguity.id}={'|'.join(letters)}"
+    return Flagged(f"{reading} departs from the text: {ambiguity.question} {says}{where}", reading)
 
 
 def _incoherences(
     apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Rulings
-) -> Iterable[str]:
+) -> Iterable[Flagged]:
     """A line for every question that is read differently where it is asked alike, with an event for each side."""
     said: set[str | None] = set()
     for one, other in apart:
@@ -132,7 +150,8 @@ def _incoherences(
         for side, against in ((one, other), (other, one)):
             event = _event(side, left[against.id], rulings)
             sides.append(f"{side.id}={'|'.join(left[side.id])}" + (f" (seen where {event})" if event else ""))
-        yield f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
+        says = f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
+        yield Flagged(says, about=f"incoherent: {one.id}")
 
 
 def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Rulings) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from attrs import frozen
 
+from missionfsm.tools.check.basis import Flagged
 from missionfsm.tools.check.verdict import Outcome, Verdict
 
 
@@ -72,10 +73,9 @@ def summed_up(verdicts: Iterable[tuple[str, str | None, Verdict]]) -> Summary:
     )
 
 
-def _reading(line: str) -> str:
-    """What a flagged line is about: the id and the letter of a reading, or its first words."""
-    reading, departs, _ = line.partition(" departs ")
-    return reading if departs else line.partition(",")[0]
+def _reading(line: Flagged) -> str:
+    """What a flagged line is counted as: the reading that departs, or its first words."""
+    return line.reading or line.partition(",")[0]
 
 
 def _tallied(counted: Counter[str], first: dict[str, str]) -> tuple[Tally, ...]:

@@ -11,7 +11,7 @@ from attrs import field, frozen
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
 from missionfsm.kernel.text import counted, printable
-from missionfsm.tools.check.basis import Reached, Untested, readings_line
+from missionfsm.tools.check.basis import Flagged, Reached, Untested, readings_line
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -173,7 +173,8 @@ class Verdict:
         exercised: rule id to how often it was exercised.
         uncovered: ids of rules that were not.
         readings: ambiguity id to the readings that are still possible, for those that mattered.
-        flagged: what is explained, and yet departs from the letter of the text or from itself, a line each.
+        flagged: what is explained, and yet departs from the letter of the text or from itself: a line each, which is a
+            text that says of what reading it is.
         unchecked: what the specification waives and could have shown, a line each.
         untested: what nothing can be said of.
         because: why it is inconclusive.
@@ -199,7 +200,7 @@ class Verdict:
     uncovered: tuple[str, ...] = ()
     violation: Violation | None = None
     because: str = ""
-    flagged: tuple[str, ...] = ()
+    flagged: tuple[Flagged, ...] = ()
     unchecked: tuple[str, ...] = ()
     untested: Untested = field(factory=Untested)
     story: str = ""

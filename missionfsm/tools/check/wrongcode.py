@@ -17,6 +17,7 @@ from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK, Rule
 from missionfsm.kernel.step import Step
 from missionfsm.oracle.explanation import Explanation, InFlight, Ready
+from missionfsm.oracle.symbols import call_of
 from missionfsm.tools.check.candidates import Candidate
 from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import described, name_words
@@ -123,7 +124,7 @@ def _rules_of(steps: Iterable[Step], code: str) -> set[str]:
 
 def _asking(nearest: Nearest, event: Returned) -> list[tuple[Explanation, InFlight]]:
     """The explanations in which the call that was answered is still in flight, each with it."""
-    number = nearest.belief.symbol(event)[0][3]
+    number = call_of(nearest.belief.symbol(event)[0])
     explanations = nearest.belief.node.explanations
     return [(here, call) for here in explanations for call in here.calls if call.name == number]
 
@@ -131,7 +132,7 @@ def _asking(nearest: Nearest, event: Returned) -> list[tuple[Explanation, InFlig
 def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
     """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
     code, spec = event.answer.code, nearest.spec
-    number = nearest.belief.symbol(event)[0][3]
+    number = call_of(nearest.belief.symbol(event)[0])
     explanations = nearest.belief.node.explanations
     done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
     if not done or len(done) < len(explanations):

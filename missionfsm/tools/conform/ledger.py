@@ -8,6 +8,7 @@ from attrs import define, field
 
 from missionfsm.kernel.readings import departs
 from missionfsm.kernel.system import System
+from missionfsm.tools.check.basis import Flagged
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Violation
 from missionfsm.tools.conform.contradiction import inconsistent
@@ -37,7 +38,7 @@ class Ledger:
     examples: int = 0
     succeeded: int = 0
     answers: dict[str, Counter[str]] = field(factory=dict)
-    oddities: dict[str, None] = field(factory=dict)
+    oddities: dict[Flagged, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     ruled_out_by: dict[tuple[str, str], Conversation] = field(factory=dict)
     rulings: dict[tuple[str, str], Elimination] = field(factory=dict)

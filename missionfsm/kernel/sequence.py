@@ -5,7 +5,8 @@ from __future__ import annotations
 RELATIONS = ("first", "larger", "zero", "equal", "smaller", "negative", "renumbered")
 """How a number compares with its predecessor on its track; 0 is "zero" and less is "negative", whatever came before.
 
-One that is not larger is "renumbered" where the numbers of its track are known to have started over since.
+One that is not larger is "renumbered" where the numbers of its track are known to have started over since, and so is an
+equal one where what it numbers may have been shown again.
 """
 
 

@@ -102,6 +102,7 @@ class Drive:
         by_itself: the events that the environment may produce unseen where nobody drives them.
         cite: where the documents speak of it, if they do.
         renumbers: the event to the tracks whose numbers start over with it, on every channel.
+        shows_again: the event to the tracks of which what came last may come again with its number, on every channel.
         ends: it ends a channel: what arrived on that while it was being done arrived before it.
         impossible: ids of the rules that are broken where it is said to have happened though it could not.
         waits: whether one that was driven before still waits in a state; the tester drives none while one does.
@@ -115,6 +116,7 @@ class Drive:
     by_itself: tuple[Hashable, ...] = ()
     cite: Citation | None = None
     renumbers: Callable[[Incident], tuple[Hashable, ...]] | None = None
+    shows_again: Callable[[Incident], tuple[Hashable, ...]] | None = None
     ends: bool = False
     impossible: tuple[str, ...] = ()
     waits: Callable[[State], bool] = lambda _: False

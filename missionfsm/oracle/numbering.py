@@ -22,6 +22,8 @@ from missionfsm.oracle.symbols import Observer, Symbol
 
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
+_SHOWN_AGAIN, _STARTED_OVER = frozenset({"equal"}), frozenset({"equal", "smaller"})
+"""How a number may compare with its predecessor because of something that has happened since."""
 NOBODY = -sys.maxsize
 """The number of a channel of which an end was seen: nothing has it, so nothing explains that it ends again."""
 
@@ -66,7 +68,7 @@ class Numbering:
         self._lasting: dict[Name, tuple[tuple[str, Hashable], ...]] = {}
         self._latest: dict[Name, Received] = {}
         self._marks: dict[Name, dict[Hashable, int]] = {}
-        self._renumbered: set[tuple[Name, Hashable]] = set()
+        self._renumbered: dict[tuple[Name, Hashable], frozenset[str]] = {}
 
     def copy(self) -> Numbering:
         """One that knows the same and goes on by itself."""
@@ -192,7 +194,7 @@ class Numbering:
         relations = []
         for track, number in marks:
             how = relation(tracks.get(track), number)
-            if how in ("smaller", "equal") and (channel, track) in self._renumbered:
+            if how in self._renumbered.get((channel, track), ()):
                 how = "renumbered"
             relations.append(how)
         return tuple(relations)
@@ -256,21 +258,25 @@ class Numbering:
         for track, number in marks:
             # A number that is smaller is the first since the numbers started over; an equal one may be the last before.
             if number < tracks.get(track, number):
-                self._renumbered.discard((channel, track))
+                self._renumbered.pop((channel, track), None)
             tracks[track] = number
 
     def _unmark(self, channel: Name) -> None:
         """A channel numbers nothing any more."""
         self._latest.pop(channel, None)
         if self._renumbered:
-            self._renumbered.difference_update((channel, track) for track in self._marks.get(channel, _NO_MARKS))
+            for track in self._marks.get(channel, _NO_MARKS):
+                self._renumbered.pop((channel, track), None)
         self._marks.pop(channel, None)
 
     def _renumber(self, event: Incident) -> None:
-        """The numbers of some tracks start over."""
-        renumbers = self.spec.drives[event.name].renumbers
-        for track in renumbers(event) if renumbers else ():
-            self._renumbered.update((channel, track) for channel, tracks in self._marks.items() if track in tracks)
+        """The numbers of some tracks start over, or what came last may come again with its number."""
+        drive = self.spec.drives[event.name]
+        for which, excused in ((drive.shows_again, _SHOWN_AGAIN), (drive.renumbers, _STARTED_OVER)):
+            for track in which(event) if which else ():
+                for channel, tracks in self._marks.items():
+                    if track in tracks and self._renumbered.get((channel, track)) is not _STARTED_OVER:
+                        self._renumbered[channel, track] = excused
 
     def _retire(self, name: Name) -> None:
         """The thing with a name is no more."""

@@ -5,18 +5,23 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import pytest
 from attrs import evolve
 
+from missionfsm.adapters.stdio import Child
+from missionfsm.app.foreign import subjects
 from missionfsm.bear.status.scripts import APART, SHOWN
 from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.wire.fields import MESSAGES
 from missionfsm.bear.wire.protojson import camel
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.tour import play
+from missionfsm.tools.conform.tour import follow, play
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 UNMOVED = {
@@ -96,3 +101,46 @@ def test_metadata_that_robots_share_are_noticed() -> None:
     assert run.found is not None
     assert run.found.judge.violation is not None
     assert [one.id for one in run.found.judge.violation.rules] == ["bear.status/messages/sequence-numbers-grow"]
+
+
+STRANGERS = {one.name: one for one in subjects(Path(__file__).parent.parent / "strangers" / SYSTEM.name)}
+LEADS_TO = {
+    "get-cached": ("GetRobotStatus",),
+    "twist-kept": ("GetRobotStatus",),
+    "lost-wifi-silent": ("SubscribeNetworkStatus", "guests"),
+    "offline-location-not-found": ("SubscribeBatteryStatus", "DISCONNECTED"),
+    "reconnect-leaves-deaf": ("SubscribeBatteryStatus", "DISCONNECTED"),
+    "cancel-ends-topic": ("SubscribeBatteryStatus", "cancel"),
+    "moved-robot-lost": ("SubscribeBatteryStatus", "move"),
+    "restart-counter-stuck": ("SubscribeBatteryStatus", "restart"),
+    "updates-reversed": ("SubscribeBatteryStatus", "restart"),
+}
+"""Faults that chance was late to meet, each with words of the scripts that lead there."""
+
+
+def led(name: str, words: tuple[str, ...]) -> bool:
+    """Whether all that a stranger says in the scripts with some words can be explained."""
+    scripts = [one for one in SYSTEM.alphabet({}, Bounds()).scripts if all(word in str(one) for word in words)]
+    child = Child(STRANGERS[name].command, folder=STRANGERS[name].folder)
+    run = Run.against(SYSTEM, child)
+    try:
+        for script in scripts:
+            run.start(run.guide.worlds[0])
+            if not all(follow(run, step) for step in script) or not run.settle():
+                return False
+    finally:
+        child.close()
+    assert scripts
+    return True
+
+
+@pytest.mark.parametrize("fault", LEADS_TO)
+def test_scripts_lead_to_a_fault(fault: str) -> None:
+    """What happens to a robot or a stream is tried with all subscriptions, and what comes after it is looked at."""
+    assert not led(f"bug-{fault}", LEADS_TO[fault])
+
+
+@pytest.mark.parametrize("words", sorted(set(LEADS_TO.values())), ids="-".join)
+def test_scripts_lead_to_no_false_alarm(words: tuple[str, ...]) -> None:
+    """Nor do they find anything in those that are right."""
+    assert led("base", words)

@@ -467,6 +467,17 @@ def test_a_location_that_loses_a_robot_may_go_on_showing_it_or_not() -> None:
     assert readings(judge([*lines, SETTLED]), "AS-25") == ("b",)
 
 
+def test_a_robot_that_comes_back_may_be_shown_under_the_number_that_it_had() -> None:
+    """AS-11, AS-25: as a new stream would show it; one that did not move may not, nor may its numbers go back."""
+    away, back = ({"drive": {"event": "move", "robotId": "r3", "locationId": place}} for place in ("L1", "L2"))
+    shown = [battery_message(1, "r3", number, WORLDS[0]["robots"][2]["state"]["battery"]) for number in (4, 5, 6)]
+    lines = [*opened(1, BATTERY, at("L2")), shown[1]]
+    assert conforms(*lines, away, back, shown[1], SETTLED)
+    assert conforms(*lines, away, back, shown[2], SETTLED)
+    assert not conforms(*lines, away, back, shown[0], SETTLED)
+    assert not conforms(*lines, shown[1], SETTLED)
+
+
 def test_a_stream_served_in_part_may_end_with_permission_denied() -> None:
     """AS-01: own robots are served and the others left out, and then (c) the stream may be refused."""
     lines = [*opened(1, BATTERY, by_ids("r1", "x1")), battery_message(1, "r1", 5, FIRST), SETTLED]

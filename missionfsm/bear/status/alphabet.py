@@ -26,7 +26,7 @@ from missionfsm.bear.status.samples import (
     by_ids,
     report,
 )
-from missionfsm.bear.status.scripts import scripts
+from missionfsm.bear.status.scripts import Cast, scripts
 from missionfsm.bear.status.state import GET, Endpoint
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
@@ -101,6 +101,16 @@ class _Names:
         """The account's locations with robots of its own."""
         homes = {self.homes[one] for one in self.own}
         return tuple(one for one in self.places if one in homes and self.owned[one])
+
+    @property
+    def cast(self) -> Cast:
+        """Who is in the conversations that are written down."""
+        place = next(iter(self.selecting), None)
+        others = (*self.selecting[1:], *(one for one in self.places if self.owned[one] and one not in self.selecting))
+        taken = [*self.homes.values()]
+        hermits = (one for one in self.own if self.homes[one] in self.selecting and taken.count(self.homes[one]) == 1)
+        hermit = next(((one, self.homes[one]) for one in hermits), None)
+        return Cast(self.own[:2], place, next(iter(others), None), hermit)
 
     @property
     def refused(self) -> tuple[str, ...]:
@@ -222,7 +232,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         drives=tuple(_drives(names)),
         core_drives=tuple(_plain_drives(names)),
         worlds=_WORLDS,
-        scripts=tuple(scripts(names.own[:2], next(iter(names.selecting), None))),
+        scripts=tuple(scripts(names.cast)),
     )
 
 

@@ -1,9 +1,15 @@
-"""Conversations with a fleet that are worth having whole: each field of what a subscription shows changes alone."""
+"""Conversations with a fleet that are worth having whole.
+
+Each field of what a subscription shows changes alone, robots change after something has happened to them or to a
+stream, and what GetRobotStatus answers is asked for again after every change.
+"""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
+
+from attrs import frozen
 
 from missionfsm.bear.status.samples import (
     BATTERIES,
@@ -21,8 +27,8 @@ from missionfsm.bear.status.samples import (
     by_ids,
     report,
 )
-from missionfsm.bear.status.state import MAPS, Endpoint
-from missionfsm.kernel.alphabet import ScriptStep
+from missionfsm.bear.status.state import GET, MAPS, Endpoint
+from missionfsm.kernel.alphabet import ScriptStep, pick
 from missionfsm.kernel.codec import JSON
 
 
@@ -75,6 +81,7 @@ APART: Mapping[str, tuple[JSON, ...]] = {
         {"security": "SECURITY_USERNAME_PASSWORD_SECURED"},
         {"security": "SECURITY_PASSWORD_SECURED"},
         {"ssid": "guests"},
+        None,
     ),
     "connection": CONNECTIONS[::-1],
     "emergencyStop": _changed(STOPS[0], {"emergency": "EMERGENCY_ENGAGED"}, {"buttonPressed": "EMERGENCY_ENGAGED"}),
@@ -86,7 +93,7 @@ APART: Mapping[str, tuple[JSON, ...]] = {
         {"goals": {"destinationId": "table-3"}},
     ),
     "pose": _changed(POSES[0], {"xMeters": 2.0}, {"yMeters": 3.0}, {"headingRadians": 1.5}),
-    "twist": _changed(TWISTS[0], {"linearVelocity": 0.25}, {"angularVelocity": 0.5}),
+    "twist": _changed(TWISTS[0], {"linearVelocity": 0.25}, {"angularVelocity": 0.5}, None),
     "serviState": _changed(
         TRAYS,
         {"trayStates": {"trayStates": {"weightKg": 3.5}}},
@@ -103,7 +110,10 @@ APART: Mapping[str, tuple[JSON, ...]] = {
         {"conveyorState": {"installationState": "INSTALLATION_STATE_INSTALLED"}},
     ),
 }
-"""For each part values one after the other, so that each of its fields is once the only one that changes."""
+"""For each part values one after the other, so that each of its fields is once the only one that changes.
+
+The page says what it means that a network or a velocity is not there, so that this comes last.
+"""
 
 SHOWN: Mapping[Endpoint, tuple[str, ...]] = {
     Endpoint.BATTERY: ("battery",),
@@ -116,20 +126,83 @@ SHOWN: Mapping[Endpoint, tuple[str, ...]] = {
 """For each subscription the parts that it shows."""
 
 
-def scripts(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[ScriptStep, ...]]:
+_SETTLE = ScriptStep("settle")
+
+
+@frozen
+class Cast:
+    """Who is in the conversations.
+
+    Attributes:
+        robots: ids of the account's robots that are watched.
+        place: the id of a location of the account where they are, or None.
+        elsewhere: the id of another location of the account, or None.
+        hermit: a robot of the account and the location of the account where it is alone, or None.
+    """
+
+    robots: tuple[str, ...]
+    place: str | None = None
+    elsewhere: str | None = None
+    hermit: tuple[str, str] | None = None
+
+
+def scripts(cast: Cast) -> Iterator[tuple[ScriptStep, ...]]:
+    """Conversations with those who are in a world."""
+    yield from _apart(cast.robots, cast.place)
+    for robot in cast.robots[:1]:
+        yield _asked_again(robot)
+        yield from _happened(cast, robot)
+    if cast.hermit:
+        yield from _offline_at(*cast.hermit)
+
+
+def _asked_again(robot: str) -> tuple[ScriptStep, ...]:
+    """What GetRobotStatus answers of a robot, asked again after each change."""
+    get = ScriptStep(GET, {"robotId": robot})
+    changes = (report(robot, part, value) for part in SHOWN[Endpoint.ROBOT] for value in (*APART[part], None))
+    return (get, *itertools.chain.from_iterable((ScriptStep("drive", one), _SETTLE, get) for one in changes))
+
+
+def _happened(cast: Cast, robot: str) -> Iterator[tuple[ScriptStep, ...]]:
+    """Every subscription to a robot that changes after something has happened to it, or to a stream like it."""
+    off, on = (report(robot, "connection", one) for one in CONNECTIONS[::-1])
+    away, back = ({"event": "move", "robotId": robot, "locationId": one} for one in (cast.elsewhere, cast.place))
+    ends = ScriptStep("cancel", {"stream": pick("stream")}, ((0, 0),))
+    for endpoint, parts in SHOWN.items():
+        one = ScriptStep(endpoint.value, by_ids(robot))
+        changes = tuple(report(robot, parts[0], value) for value in APART[parts[0]][-3:])
+        then = _driven(*changes)
+        restart = _driven({"event": "restart", "robotId": robot})
+        yield (one, _SETTLE, one, _SETTLE, ends, _SETTLE, *then)
+        yield (one, _SETTLE, *(ScriptStep("drive", change) for change in changes), _SETTLE, *restart, *then)
+        yield (one, _SETTLE, *_driven(off, on), *then)
+        if cast.place and cast.elsewhere:
+            yield (one, _SETTLE, *_driven(away), *then)
+            there = ScriptStep(endpoint.value, at(cast.place))
+            yield (there, _SETTLE, *_driven(away, back), *then)
+
+
+def _driven(*events: JSON) -> tuple[ScriptStep, ...]:
+    """Some drives, each with all that it causes."""
+    return tuple(itertools.chain.from_iterable((ScriptStep("drive", one), _SETTLE) for one in events))
+
+
+def _offline_at(robot: str, place: str) -> Iterator[tuple[ScriptStep, ...]]:
+    """Every subscription to a location whose one robot is offline."""
+    off = _driven(report(robot, "connection", CONNECTIONS[1]))
+    yield from ((*off, ScriptStep(endpoint.value, at(place)), _SETTLE) for endpoint in Endpoint)
+
+
+def _apart(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[ScriptStep, ...]]:
     """Every subscription to several robots, and each field of what it shows changes alone.
 
     Chance seldom watches the second one change, and seldom one field of many.
-
-    Args:
-        robots: ids of those that are watched.
-        place: the id of a location where they are, or None.
     """
     selections = (*(() if place is None else (at(place),)), by_ids(*robots))
     for endpoint, parts in SHOWN.items():
         for selection, part in itertools.product(selections, parts):
             reports = (report(robot, part, value) for robot in robots[::-1] for value in APART[part])
-            changes = ((ScriptStep("settle"), ScriptStep("drive", one)) for one in reports)
+            changes = ((_SETTLE, ScriptStep("drive", one)) for one in reports)
             yield (ScriptStep(endpoint.value, selection), *itertools.chain.from_iterable(changes))
     for endpoint, first in itertools.product(MAPS, robots):
         yield _numbered_apart(endpoint, first, *(one for one in robots if one != first))
@@ -143,10 +216,10 @@ def _numbered_apart(endpoint: Endpoint, first: str, *others: str) -> tuple[Scrip
     (part,) = SHOWN[endpoint]
     before = (report(first, part, value) for value in (*APART[part], *APART[part]))
     after = (report(robot, part, value) for robot in others for value in APART[part][::-1])
-    settled = ((ScriptStep("drive", one), ScriptStep("settle")) for one in after)
+    settled = ((ScriptStep("drive", one), _SETTLE) for one in after)
     return (
         *(ScriptStep("drive", one) for one in before),
         ScriptStep(endpoint.value, by_ids(first, *others)),
-        ScriptStep("settle"),
+        _SETTLE,
         *itertools.chain.from_iterable(settled),
     )

@@ -107,7 +107,7 @@ WAIVERS = (
 """What the page says and no rule checks in a history, with the calls in whose use it could have shown."""
 
 
-def _renumbered(event: Event) -> tuple[str, ...]:
+def _whom(event: Event) -> tuple[str, ...]:
     return (event.robot,)
 
 
@@ -236,8 +236,9 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
             for one in (
                 Drive("report", reported, (FORGET,), impossible=(SELECTED.id,)),
                 # Numbers that start over are recognised by their 0; nothing else tells of a restart that nobody drove.
-                Drive("restart", restarted, renumbers=_renumbered, impossible=(SELECTED.id,)),
-                Drive("move", moved, impossible=(SELECTED.id,)),
+                Drive("restart", restarted, renumbers=_whom, impossible=(SELECTED.id,)),
+                # A robot that comes back to a location is shown as to a new stream, perhaps under the same number.
+                Drive("move", moved, shows_again=_whom, impossible=(SELECTED.id,)),
                 # Failures that nobody arms are outcomes of their own.
                 Drive("fault", armed, waits=lambda fleet: fleet.fault),
             )

@@ -21,8 +21,8 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
+from missionfsm.app.cores import cores
 from missionfsm.app.many import Judged, Piece, histories, joined, judge_piece, pieces
-from missionfsm.app.parallel import cores
 from missionfsm.kernel.codec import UnreadableError
 
 LOCAL = "local"

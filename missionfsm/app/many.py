@@ -21,7 +21,7 @@ from attrs import evolve, frozen
 
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.historyfile import is_plain_file, lines, open_history
-from missionfsm.app.parallel import cores
+from missionfsm.app.cores import cores
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.oracle.transcript import head

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import multiprocessing
-import os
 import signal
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection, wait
@@ -16,11 +15,6 @@ from missionfsm.tools.mutate.teeth import MutationReport, joined, teeth
 
 _MORE = "one more"
 """What a process tells the one that shows the progress, before it tells what it found."""
-
-
-def cores() -> int:
-    """How many processes can run at once."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def teeth_on(  # noqa: PLR0913 - options of the command

@@ -26,7 +26,6 @@ from missionfsm.adapters.historyfile import (
 )
 from missionfsm.app.asked import Asked, judged_system
 from missionfsm.app.conversations import joined
-from missionfsm.app.watched import UnplacedError, subscription, watch_messages
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.line_cache import Texts
@@ -130,7 +129,7 @@ def _judged(
             raise UnreadableError(message)
         with placed(path, number):
             line = texts.json(text)
-        if subscription(line):
+        if _is_bare_message(line):
             return _watched(path, asked, tell, itertools.chain([(number, line)], texts.parsed(numbered)))
         with placed(path, number):
             if isinstance(line, dict) and "missionfsm" not in line:
@@ -159,10 +158,21 @@ def _judged(
     ]
 
 
+def _is_bare_message(line: JSON) -> bool:
+    """Whether a line is a message of a subscription, or the body of a webhook."""
+    if isinstance(line, dict) and "missionfsm" in line:
+        return False
+    from missionfsm.app.watched import subscription  # noqa: PLC0415 - it loads all that has subscriptions
+
+    return subscription(line) is not None
+
+
 def _watched(
     path: str, asked: Asked, tell: Callable[[str], None], messages: Iterable[tuple[int, JSON]]
 ) -> list[tuple[str | None, Verdict]]:
     """The verdict on each subscription of which a file has the bare messages."""
+    from missionfsm.app.watched import UnplacedError, watch_messages  # noqa: PLC0415 - as above
+
     _refuse_without_effect(path, asked)
     try:
         watched = watch_messages(messages, tell, strict=asked.strict)

@@ -7,10 +7,6 @@ import os
 import time
 from collections.abc import Iterable, Sequence
 
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
-
 from missionfsm.cli.common import say_shown
 from missionfsm.kernel.text import clipped
 from missionfsm.tools.check.summary import Tally, summed_up
@@ -68,6 +64,10 @@ def _folder(paths: Sequence[str]) -> str:
 
 def _table(title: str, rows: Sequence[Tally]) -> list[str]:
     """What was found, a line each, however wide a line is."""
+    from rich.console import Console  # noqa: PLC0415 - seldom is anything found
+    from rich.table import Table  # noqa: PLC0415
+    from rich.text import Text  # noqa: PLC0415
+
     table = Table(box=None, pad_edge=False)
     table.add_column(title, no_wrap=True)
     table.add_column("times", justify="right")

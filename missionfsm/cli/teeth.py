@@ -33,7 +33,8 @@ def teeth(  # noqa: PLR0913 - options of the command
     html: HtmlFile = None,
 ) -> None:
     """Break every rule, one at a time, and see whether the oracle notices."""
-    from missionfsm.app.parallel import cores, teeth_on  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.cores import cores  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.parallel import teeth_on  # noqa: PLC0415
     from missionfsm.tools.mutate.teeth import sampled  # noqa: PLC0415
 
     judged = the_system(system)

@@ -30,6 +30,7 @@ class Foresight:
         self._spec = spec
         self._make_room = make_room
         self._sent_at = [at for at, _ in sent]
+        self._waits: tuple[tuple[object, object], Calls] = (None, None), 0
         self._bits: dict[str, Calls] = {}
         self._sent = [self._bit(operation) for _, operation in sent]
         self._between: dict[tuple[int, int], Calls] = {}
@@ -70,15 +71,20 @@ class Foresight:
 
     def _look_from(self, explanation: Explanation) -> None:
         """Look from an explanation, from which several messages are looked at in turn."""
-        waiting = 0
-        operation = self._spec.request_operation
-        for call in explanation.calls:
-            if call.done is None:
-                waiting |= self._bit(operation(call.request))
-        for request, *_ in explanation.lost:
-            waiting |= self._bit(operation(request))
         known = self._foreseen.setdefault((explanation.state, explanation.names), {})
-        self._here = explanation, known, waiting, frozenset(explanation.gone)
+        self._here = explanation, known, self._waiting(explanation), frozenset(explanation.gone)
+
+    def _waiting(self, explanation: Explanation) -> Calls:
+        """The operations of the calls that have not taken effect."""
+        calls, lost = explanation.calls, explanation.lost
+        (same_calls, same_lost), waiting = self._waits
+        if calls is not same_calls or lost is not same_lost:  # most events leave them as they are
+            operation = self._spec.request_operation
+            waiting = 0
+            for request in [*[one.request for one in calls if one.done is None], *[request for request, *_ in lost]]:
+                waiting |= self._bit(operation(request))
+            self._waits = (calls, lost), waiting
+        return waiting
 
     def _sent_between(self, since: int, until: int) -> Calls:
         """The operations of the calls that are sent between two positions."""

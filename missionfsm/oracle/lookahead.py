@@ -20,7 +20,7 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.terms import State
 from missionfsm.kernel.transport import REDELIVERED
-from missionfsm.oracle.alignment import Alignment, Message, Showings, may_go_unsaid
+from missionfsm.oracle.alignment import Alignment, Message, Showings
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, tidy, unify
 from missionfsm.oracle.foresight import Foresight
 from missionfsm.oracle.foretold import foretold
@@ -65,6 +65,23 @@ class _Stretch:
     rests: bool = field(kw_only=True)
     over: bool = field(kw_only=True)
     led: dict[tuple[Channel, bool, bool], _Led] = field(factory=dict)
+
+
+@define(eq=False, slots=True)
+class _Way:
+    """Whether channels may pass over what they owe, and show again what they have shown, as last asked for.
+
+    Attributes:
+        groups: the bits of the ambiguities on which that depends.
+        withheld: whether one of the two was withheld.
+    """
+
+    delivery: Delivery | None
+    assumed: int
+    required: int
+    ways: tuple[bool, bool]
+    groups: int
+    withheld: bool = field(kw_only=True)
 
 
 class Lookahead:
@@ -121,6 +138,7 @@ class Lookahead:
         self._irregular: dict[int, list[int]] = {}
         self._at_cut, self._found_cut = -1, horizon
         self._showings = Showings(spec)
+        self._way = _Way(None, 0, 0, (False, False), 0, withheld=False)
         self._ended: dict[int, int] = {}
         self._answered: dict[int, int] = {}
         called = self._read(symbols[:horizon], beyond)
@@ -265,9 +283,7 @@ class Lookahead:
         stretch, delivery = self._stretch(channel), self.spec.delivery(channel.topic)
         if not (stretch.due and delivery.stands):
             return ()
-        for reading in (delivery.skips, delivery.repeats):
-            self.depends |= reading.group if reading else 0
-        if self.may_assume(assumed, delivery.skips) or self.may_assume(assumed, delivery.repeats):
+        if any(self._ways(assumed, delivery)):
             return ()
         irregular = self._irregular.get(channel.name, [])
         following = bisect.bisect_left(irregular, self.at)
@@ -306,6 +322,8 @@ class Lookahead:
         return explanation.state
 
     def _is_over(self, explanation: Explanation, channel: Channel) -> bool:
+        if not self._stretch(channel).over:
+            return False
         found = self._narrowed(explanation, channel)
         return found is not None and found[2]
 
@@ -403,10 +421,7 @@ class Lookahead:
             silent = stretch.over and channel.owed
             return channel.owing() if silent else channel, None, stretch.over
         delivery = self.spec.delivery(channel.topic)
-        for one in (delivery.skips, delivery.repeats):
-            self.depends |= one.group if one else 0
-        assumed = explanation.assumed
-        skips, repeats = self.may_assume(assumed, delivery.skips), self.may_assume(assumed, delivery.repeats)
+        skips, repeats = self._ways(explanation.assumed, delivery)
         key = channel, skips, repeats
         found = stretch.led.get(key)
         if found is None:
@@ -414,6 +429,21 @@ class Lookahead:
             found = stretch.led[key] = self._leading(channel, stretch, delivery, skips=skips, repeats=repeats)
         narrowed, shows = found
         return narrowed if shows is None or self._foresees(explanation, *shows) else None
+
+    def _ways(self, assumed: int, delivery: Delivery) -> tuple[bool, bool]:
+        """Whether channels may pass over what they owe, and whether they may show again what they have shown."""
+        known = self._way
+        if known.delivery is not delivery or known.assumed != assumed or known.required != self.required:
+            withheld, self.withheld = self.withheld, False
+            ways = self.may_assume(assumed, delivery.skips), self.may_assume(assumed, delivery.repeats)
+            groups = 0
+            for one in (delivery.skips, delivery.repeats):
+                groups |= one.group if one else 0
+            known = self._way = _Way(delivery, assumed, self.required, ways, groups, withheld=self.withheld)
+            self.withheld = withheld
+        self.depends |= known.groups
+        self.withheld = self.withheld or known.withheld
+        return known.ways
 
     def _leading(self, channel: Channel, stretch: _Stretch, delivery: Delivery, *, skips: bool, repeats: bool) -> _Led:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
@@ -452,7 +482,7 @@ class Lookahead:
         """The same where all of the messages are what the channel owes."""
         channel, place = alignment.channel, alignment.place
         owed, last = channel.owed, place - 1
-        if stretch.over and place and not owed[last].stays and not may_go_unsaid(channel, last, alignment.delivery):
+        if stretch.over and place and not owed[last].stays and not alignment.goes_unsaid(last):
             # The last message shows this one, or one before it. One that comes later would be shown only where this one
             # is skipped, and whoever may skip it may skip those that are dropped as well.
             return (channel.owing(owed[:place]), None, True), None

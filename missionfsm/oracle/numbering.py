@@ -176,9 +176,11 @@ class Numbering:
 
     def _changes(self, event: Received) -> tuple[str, ...]:
         """What a message changes of what may never change."""
-        lasting = self.spec.lasting
+        lasting = self.spec.lasting(event.content) if self.spec.lasting else ()
+        if tuple(map(self._lasting.get, event.names)) == lasting:
+            return ()  # nearly always, and faster so
         found: dict[str, None] = {}
-        for name, shown in zip(event.names, lasting(event.content) if lasting else (), strict=False):
+        for name, shown in zip(event.names, lasting, strict=False):
             known = self._lasting.get(name, shown)
             if known is not shown and known != shown:
                 found.update(
@@ -233,9 +235,9 @@ class Numbering:
         """Remember what an event that was explained says of the names in it."""
         if type(event) is Received:
             self._latest[event.channel] = event
-            lasting = self.spec.lasting
-            if lasting is not None:
-                for name, shown in zip(event.names, lasting(event.content), strict=False):
+            lasting = self.spec.lasting(event.content) if self.spec.lasting else ()
+            if lasting and tuple(map(self._lasting.get, event.names)) != lasting:
+                for name, shown in zip(event.names, lasting, strict=False):
                     self._lasting.setdefault(name, shown)
             if event.marks:
                 self._mark(event.channel, event.marks)

@@ -152,11 +152,12 @@ class Successors:
         Where the events are recorded, steps that nobody can tell apart become one; whoever chooses what is tried next
         sees them as they are.
         """
-        possible = (step for step in steps if meet(self.assumed, step.assumes))
+        possible = tuple([step for step in steps if meet(self.assumed, step.assumes)])
         indistinct = self.spec.abstraction.indistinct
         if indistinct is None or self.live:
-            return tuple(possible)
-        return tuple(dict.fromkeys(step if step.after is state else indistinct(step) for step in possible))
+            return possible
+        merged = [step if step.after is state else indistinct(step) for step in possible]
+        return possible if all(map(operator.is_, merged, possible)) else tuple(dict.fromkeys(merged))
 
     def effects(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
         """The outcomes of a request in a state that change something."""

@@ -168,9 +168,10 @@ class World:
 
 def without_place(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
     """The missions, those that have ended without the goal at which they did: no message has to show it."""
-    if all(one.goal == 0 or one.state not in ENDED for one in missions):
-        return missions
-    return tuple([evolve(one, goal=0) if one.goal and one.state in ENDED else one for one in missions])
+    for ended in missions:
+        if ended.goal and ended.state in ENDED:
+            return tuple([evolve(one, goal=0) if one.goal and one.state in ENDED else one for one in missions])
+    return missions
 
 
 @value

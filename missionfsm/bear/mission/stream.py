@@ -80,12 +80,13 @@ class Listing:
 
     def may_look_like(self, other: Listing) -> bool:
         """Whether a subscriber need not be able to tell: a goal that is not selected may be shown as the first."""
-        mine, others = _selected(self.missions), _selected(other.missions)
-        return (mine, self.active, self.fresh) == (others, other.active, other.fresh)
+        if self.active != other.active or self.fresh != other.fresh or len(self.missions) != len(other.missions):
+            return False
+        return _selected(self.missions) == _selected(other.missions)
 
 
 def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
-    return tuple(evolve(one, goal=0) if one.goal == NOT_CHOSEN else one for one in missions)
+    return tuple([evolve(one, goal=0) if one.goal == NOT_CHOSEN else one for one in missions])
 
 
 @functools.lru_cache(maxsize=64)

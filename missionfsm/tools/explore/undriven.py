@@ -75,17 +75,26 @@ class _Look:
     """The situations near the start, and how calls are answered there."""
 
     def __init__(self, system: System, bounds: Bounds) -> None:
-        self.spec = system.spec
         self._bounds = bounds
-        self._assumed = choose(self.spec.ambiguities)
+        self._assumed = choose(system.spec.ambiguities)
+        self.spec = system.spec.decided(self._assumed) if system.spec.decided else system.spec
         usual = system.alphabet({}, bounds).worlds[0]
         alphabet = system.alphabet(usual, bounds)
         self._actions = Actions.from_alphabet(system, alphabet.core_inputs, alphabet.core_drives)
         self._start = self.spec.initial(system.codec.read_world(usual))
         self._succeeds: dict[Any, bool] = {}
+        self._answers: dict[Any, tuple[Step, ...]] = {}
 
     def _possible(self, steps: Iterable[Step]) -> Iterator[Step]:
         return (step for step in steps if meet(self._assumed, step.assumes))
+
+    def _outcomes(self, here: State, request: Request, refs: Refs) -> tuple[Step, ...]:
+        """Every answer to a call; remembered, since the nearest situations are walked again and again."""
+        key = (here, request, refs)
+        found = self._answers.get(key)
+        if found is None:
+            found = self._answers[key] = tuple(self._possible(self.spec.outcomes(*key)))
+        return found
 
     def _situations(self, most: int, missing: Collection[str] = ()) -> Iterator[State]:
         """One state of each, the nearest first, that is reached without some drives."""
@@ -108,7 +117,7 @@ class _Look:
         spec = self.spec
         for request, free in self._actions.requests:
             for refs in bindings(spec, here, free):
-                yield from spec.outcomes(here, request, refs)
+                yield from self._outcomes(here, request, refs)
         for event, free in self._actions.events:
             if event.name in missing:
                 continue
@@ -140,7 +149,7 @@ class _Look:
             became = self._unseen(here, sorted(missing))
             for request, free in self._actions.requests:
                 for refs in bindings(self.spec, here, free):
-                    steps = self._possible(self.spec.outcomes(here, request, refs))
+                    steps = self._outcomes(here, request, refs)
                     rules = {rule for step in steps if step.answer and step.answer.code != OK for rule in step.rules}
                     if not rules <= tested and not any(self._can_succeed(one, request, refs) for one in became):
                         tested |= rules
@@ -160,7 +169,7 @@ class _Look:
     def _can_succeed(self, state: State, request: Request, refs: Refs) -> bool:
         key = (state, request, refs)
         if key not in self._succeeds:
-            steps = self._possible(self.spec.outcomes(*key))
+            steps = self._outcomes(*key)
             self._succeeds[key] = any(step.answer is not None and step.answer.code == OK for step in steps)
         return self._succeeds[key]
 

@@ -109,10 +109,6 @@ def _added_up(verdicts: Sequence[Verdict]) -> Verdict:
     for one in verdicts:
         exercised.update(one.exercised)
     basis = next((one for one in verdicts if one.conforms), verdicts[-1])
-    readings: dict[str, tuple[str, ...]] = {}
-    for one in verdicts:
-        for name, letters in one.readings.items():
-            readings[name] = tuple(letter for letter in readings.get(name, letters) if letter in letters)
     ruled_out: dict[str, Mapping[str, str]] = {}
     for one in verdicts:
         ruled_out |= {name: {**events, **ruled_out.get(name, {})} for name, events in one.ruled_out.items()}
@@ -123,7 +119,7 @@ def _added_up(verdicts: Sequence[Verdict]) -> Verdict:
     )
     return evolve(
         basis,
-        readings=readings,
+        readings=_readings_of_all(verdicts),
         ruled_out=ruled_out,
         untested=untested,
         examples=len(verdicts),
@@ -132,6 +128,15 @@ def _added_up(verdicts: Sequence[Verdict]) -> Verdict:
         uncovered=tuple(rule for rule in verdicts[-1].uncovered if rule not in exercised),
         flagged=tuple(dict.fromkeys(line for one in verdicts for line in one.flagged)),
     )
+
+
+def _readings_of_all(verdicts: Sequence[Verdict]) -> dict[str, tuple[str, ...]]:
+    """Of each ambiguity that mattered the readings that every conversation follows in which it did."""
+    readings: dict[str, tuple[str, ...]] = {}
+    for one in verdicts:
+        for name, letters in one.readings.items():
+            readings[name] = tuple(letter for letter in readings.get(name, letters) if letter in letters)
+    return readings
 
 
 def _in_all(found: Sequence[Mapping[str, str]]) -> dict[str, str]:

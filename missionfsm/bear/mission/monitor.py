@@ -173,17 +173,19 @@ def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
     if any(before > after for before, after in pairwise(in_turn)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return
-    if 1 in stages:
-        allowed = {stages.index(1)}
-    else:
-        last = max((place for place, stage in enumerate(stages) if stage == 0), default=-1)
-        allowed = {-1, last, stages.index(2)} if 2 in stages else {-1, max(last, 0)}
-        allowed |= {
-            place for place, one in enumerate(missions) if one.state is State.STATE_PAUSED and _may_overtake(one)
-        }
+    allowed = _active_places(missions, stages)
     if index not in allowed:
         values = " or ".join(str(value) for value in sorted(allowed))
         yield CURRENT, f"current_mission_index is {index}, expected {values}"
+
+
+def _active_places(missions: tuple[MissionState, ...], stages: list[int]) -> set[int]:
+    """Where the active mission may be in a list with these stages; -1 where none need be active."""
+    if 1 in stages:
+        return {stages.index(1)}
+    last = max((place for place, stage in enumerate(stages) if stage == 0), default=-1)
+    paused = {place for place, one in enumerate(missions) if one.state is State.STATE_PAUSED and _may_overtake(one)}
+    return paused | ({-1, last, stages.index(2)} if 2 in stages else {-1, max(last, 0)})
 
 
 def _may_overtake(mission: MissionState) -> bool:

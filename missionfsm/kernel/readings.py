@@ -13,9 +13,11 @@ import difflib
 import functools
 import itertools
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 from attrs import field, frozen
 
+T = TypeVar("T")
 _bits = itertools.count()
 """Every reading has a bit of its own; the numbers have no meaning and are never written out."""
 
@@ -125,6 +127,14 @@ class Ambiguity:
     def possible(self, assumed: int) -> tuple[str, ...]:
         """The letters that an execution with these assumptions may still follow."""
         return tuple(letter for letter, bit in self._bit.items() if assumed & bit)
+
+
+def declared(names: Mapping[str, object], kind: type[T]) -> tuple[T, ...]:
+    """What a module calls by names of its own that is of a type, in the order in which it is written down.
+
+    ``AMBIGUITIES = declared(globals(), Ambiguity)`` stands behind the ambiguities of a system.
+    """
+    return tuple(one for name, one in names.items() if isinstance(one, kind) and not name.startswith("_"))
 
 
 UNCONSTRAINED = -1

@@ -12,24 +12,8 @@ from collections.abc import Iterator
 
 from attrs import evolve, frozen
 
-from missionfsm.isaac.robot import rules
+from missionfsm.isaac.robot import readings, rules
 from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives, Connection, Passes, Stops
-from missionfsm.isaac.robot.readings import (
-    AI_15_MISSION,
-    AI_15_STATUS,
-    AI_25_TAKEN,
-    AI_27_TYPE,
-    AI_31_END,
-    AI_31_PREEMPTED,
-    AI_31_UNUSABLE,
-    AI_32_SAME,
-    AI_33_NODE,
-    AI_33_NULL,
-    AI_33_PREEMPTS,
-    AI_33_RUNNING,
-    AI_33_UNUSABLE,
-    AI_33_VALUE,
-)
 from missionfsm.isaac.robot.state import (
     LIFECYCLE,
     NAME_BOUND,
@@ -160,11 +144,13 @@ def _unconnected(
 ) -> Iterator[Step]:
     ids = (*ids, rules.LINKED.id)
     before = _waiting_names(here)
-    yield Step(evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(AI_15_STATUS["a"],))
+    yield Step(
+        evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(readings.AI_15_STATUS["a"],)
+    )
     reports = tuple(_waits(here, one) for one in due)
     names = (*before, *_names_in(due), *runs)
     kept = Step(evolve(after, waiting=(*here.waiting, *reports)), names=names, rules=ids)
-    yield evolve(kept, assumes=(AI_15_STATUS["b"],))
+    yield evolve(kept, assumes=(readings.AI_15_STATUS["b"],))
     # What waits for the codelet's tick is not due before that: whether it is lost shows only where time passes.
     yield evolve(kept, assumes=tuple(one.when["b"] for one in due[:1]))
 
@@ -182,15 +168,15 @@ def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
         return (ignored,)
     if event.foreign:
         return (
-            evolve(ignored, assumes=(AI_27_TYPE["a"],)),
-            *_all(_starts(here, event), (AI_27_TYPE["b"],)),
+            evolve(ignored, assumes=(readings.AI_27_TYPE["a"],)),
+            *_all(_starts(here, event), (readings.AI_27_TYPE["b"],)),
         )
     if event.mission is None:
         return (ignored,)
     found = tuple(_mission(here, event, refs))
     if not event.numeric:
         return found
-    return (*_all(found, (AI_25_TAKEN["a"],)), evolve(ignored, assumes=(AI_25_TAKEN["b"],)))
+    return (*_all(found, (readings.AI_25_TAKEN["a"],)), evolve(ignored, assumes=(readings.AI_25_TAKEN["b"],)))
 
 
 def _all(steps: Iterator[Step] | tuple[Step, ...], assumes: tuple[Assumption, ...]) -> tuple[Step, ...]:
@@ -199,9 +185,9 @@ def _all(steps: Iterator[Step] | tuple[Step, ...], assumes: tuple[Assumption, ..
 
 _USES: dict[str, tuple[tuple[bool, tuple[Assumption, ...]], ...]] = {
     USABLE: ((True, ()),),
-    NULL: ((True, (AI_33_NULL["a"],)), (False, (AI_33_NULL["b"],))),
-    SHALLOW: ((True, (AI_33_NODE["a"],)), (False, (AI_33_NODE["b"],))),
-    ODD: ((False, (AI_33_VALUE["a"],)), (True, (AI_33_VALUE["b"],))),
+    NULL: ((True, (readings.AI_33_NULL["a"],)), (False, (readings.AI_33_NULL["b"],))),
+    SHALLOW: ((True, (readings.AI_33_NODE["a"],)), (False, (readings.AI_33_NODE["b"],))),
+    ODD: ((False, (readings.AI_33_VALUE["a"],)), (True, (readings.AI_33_VALUE["b"],))),
 }
 """Whether a configuration can be used, with what is assumed; one that is not here cannot."""
 
@@ -210,14 +196,14 @@ def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
     """A MissionProto arrives."""
     same: tuple[Assumption, ...] = ()
     if event.named and here.mission and refs[:1] == here.mission:
-        same = (AI_32_SAME["a"],)
-        yield Step(here, rules=(rules.IGNORES.id,), assumes=(AI_32_SAME["b"],))
+        same = (readings.AI_32_SAME["a"],)
+        yield Step(here, rules=(rules.IGNORES.id,), assumes=(readings.AI_32_SAME["b"],))
     for usable, assumes in _USES.get(event.mission or "", ((False, ()),)):
         if usable:
             yield from _all(_starts(here, event), (*same, *assumes))
             continue
-        yield from _all(_fails(here, event), (*same, *assumes, AI_33_UNUSABLE["a"]))
-        yield from _all(_starts(here, event), (*same, *assumes, AI_33_UNUSABLE["b"]))
+        yield from _all(_fails(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["a"]))
+        yield from _all(_starts(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["b"]))
 
 
 def _old(here: Codelet) -> int | None:
@@ -231,7 +217,7 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     because: tuple[Rule, ...] = (rules.STARTS,)
     due: tuple[Due, ...] = ()
     if here.running:
-        due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True),)
+        due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True),)
         because = (rules.PREEMPTS, *because)
     elif here.used:
         because = (rules.LISTENS, *because)
@@ -241,19 +227,19 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
 def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
     """A mission arrives whose configuration cannot be used."""
     new = NEW if event.named else None
-    for offered, said in ((False, AI_33_RUNNING["a"]), (True, AI_33_RUNNING["b"])):
-        failure = Due("failure", new, AI_31_UNUSABLE, offered)
+    for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
+        failure = Due("failure", new, readings.AI_31_UNUSABLE, offered)
         if not here.running:
             after = moved(evolve(here, named=False), "an unusable mission arrives")
             because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
             yield from _all(_concluded(here, after, None, (failure,), because), (said,))
             continue
         ended = moved(here, "an unusable mission arrives")
-        due = (Due("failure", _old(here), AI_31_PREEMPTED, offered=True), failure)
+        due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True), failure)
         preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
-        yield from _all(preempts, (said, AI_33_PREEMPTS["a"]))
+        yield from _all(preempts, (said, readings.AI_33_PREEMPTS["a"]))
         goes_on = _concluded(here, here, _old(here), (failure,), (rules.UNUSABLE,))
-        yield from _all(goes_on, (said, AI_33_PREEMPTS["b"]))
+        yield from _all(goes_on, (said, readings.AI_33_PREEMPTS["b"]))
 
 
 # The behavior tree.
@@ -270,7 +256,7 @@ def stops(here: Codelet, event: Stops, _: Refs) -> tuple[Step, ...]:
     trigger, status = _STOPS[event.name]
     if not here.running:
         return ()
-    due = (Due(status, _old(here), AI_31_END, offered=True),)
+    due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
     return tuple(_concluded(here, moved(here, trigger), None, due, (FINAL[status],)))
 
 
@@ -308,8 +294,8 @@ def _awaits(here: Codelet, time: int) -> Iterator[Step]:
         yield Step(here)
         return
     lost = evolve(here, waiting=(), waited=0)
-    yield Step(lost, names=here.mission, rules=(rules.LINKED.id,), assumes=(AI_15_STATUS["a"],))
-    yield Step(here, rules=(rules.LINKED.id,), assumes=(AI_15_STATUS["b"],))
+    yield Step(lost, names=here.mission, rules=(rules.LINKED.id,), assumes=(readings.AI_15_STATUS["a"],))
+    yield Step(here, rules=(rules.LINKED.id,), assumes=(readings.AI_15_STATUS["b"],))
     if here.waited + time < TICK:
         yield Step(evolve(here, waited=here.waited + time))
 
@@ -353,7 +339,7 @@ def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
     if not here.running:
         return ways
     return (
-        *(evolve(way, assumes=(*way.assumes, AI_15_MISSION["a"])) for way in ways),
+        *(evolve(way, assumes=(*way.assumes, readings.AI_15_MISSION["a"])) for way in ways),
         *(_given_up(way) for way in ways),
         _failed(gone),
     )
@@ -363,7 +349,7 @@ def _forgetful(gone: Step) -> Step:
     """The statuses that waited are lost with the connection (AI-15.status a)."""
     here: Codelet = gone.after
     after = evolve(here, waiting=(), waited=0)
-    return evolve(gone, after=after, names=here.mission, assumes=(AI_15_STATUS["a"],))
+    return evolve(gone, after=after, names=here.mission, assumes=(readings.AI_15_STATUS["a"],))
 
 
 def _given_up(gone: Step) -> Step:
@@ -371,7 +357,7 @@ def _given_up(gone: Step) -> Step:
     here: Codelet = gone.after
     names = tuple(range(here.identifiers - len(here.mission)))
     after = moved(here, "the connection drops")
-    return evolve(gone, after=after, names=names, assumes=(*gone.assumes, AI_15_MISSION["b"]))
+    return evolve(gone, after=after, names=names, assumes=(*gone.assumes, readings.AI_15_MISSION["b"]))
 
 
 def _failed(gone: Step) -> Step:
@@ -380,7 +366,7 @@ def _failed(gone: Step) -> Step:
     failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False)
     after = evolve(moved(here, "the connection drops"), waiting=(*here.waiting, failure))
     names = tuple(range(here.identifiers))
-    return evolve(gone, after=after, names=names, assumes=(AI_15_STATUS["b"], AI_15_MISSION["c"]))
+    return evolve(gone, after=after, names=names, assumes=(readings.AI_15_STATUS["b"], readings.AI_15_MISSION["c"]))
 
 
 def _connected(here: Codelet) -> Step:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.readings import Ambiguity, declared
 
 AI_10 = Ambiguity(
     "AI-10",
@@ -117,26 +117,7 @@ AI_33_PREEMPTS = Ambiguity(
     default="a",
 )
 
-AMBIGUITIES = (
-    AI_10,
-    AI_15_MISSION,
-    AI_15_STATUS,
-    AI_25_TAKEN,
-    AI_25_HEADER,
-    AI_27_TYPE,
-    AI_27_UUID,
-    AI_28_STATUS,
-    AI_31_END,
-    AI_31_PREEMPTED,
-    AI_31_UNUSABLE,
-    AI_32_SAME,
-    AI_33_NULL,
-    AI_33_VALUE,
-    AI_33_NODE,
-    AI_33_UNUSABLE,
-    AI_33_RUNNING,
-    AI_33_PREEMPTS,
-)
+AMBIGUITIES = declared(globals(), Ambiguity)
 
 _SERVER = "the mission server's affair"
 _PROGRAM = "about the program around the mission server"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.robot.state import SYSTEM_NAME
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
+from missionfsm.kernel.readings import declared
 from missionfsm.kernel.rules import Citation, Rule, promise
 
 CODELET = PAGE["Mission Codelet"]
@@ -109,20 +110,4 @@ INTEGERS = _promise(
     CLIENT,
     "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
 )
-RULES = (
-    STARTS,
-    LISTENS,
-    PREEMPTS,
-    UNUSABLE,
-    IGNORES,
-    RUNNING,
-    SUCCESS,
-    FAILURE,
-    ABOUT,
-    CHANNEL,
-    NAMED,
-    LINKED,
-    ENVELOPE,
-    TYPES,
-    INTEGERS,
-)
+RULES = declared(globals(), Rule)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from missionfsm.kernel.readings import Ambiguity
+from missionfsm.kernel.readings import Ambiguity, declared
 
 AI_02 = Ambiguity(
     "AI-02",
@@ -377,55 +377,7 @@ AI_39_ORDER = Ambiguity(
     default="n",
 )
 
-AMBIGUITIES = (
-    AI_02,
-    AI_03,
-    AI_03_WHEN,
-    AI_04,
-    AI_04_ROBOT,
-    AI_04_SENT,
-    AI_05,
-    AI_06,
-    AI_07,
-    AI_08,
-    AI_09,
-    AI_10,
-    AI_11,
-    AI_12,
-    AI_13,
-    AI_14_STATUS,
-    AI_15,
-    AI_15_SENT,
-    AI_15_WHEN,
-    AI_16,
-    AI_16_OLDER,
-    AI_16_UNDER_WAY,
-    AI_16_BACK,
-    AI_16_AGAIN,
-    AI_17,
-    AI_18_EARLY,
-    AI_18_UNNAMED,
-    AI_19,
-    AI_20_KEYS,
-    AI_20_NULL,
-    AI_20_EMPTY,
-    AI_22_STARTED,
-    AI_24,
-    AI_24_WHOLE,
-    AI_25_TAKEN,
-    AI_25_HEADER,
-    AI_26,
-    AI_27_UUID,
-    AI_28_CONFIG,
-    AI_28_UUID,
-    AI_31,
-    AI_33_NULL,
-    AI_36,
-    AI_37,
-    AI_38,
-    AI_39,
-    AI_39_ORDER,
-)
+AMBIGUITIES = declared(globals(), Ambiguity)
 
 WAIVED: Mapping[str, str] = {
     "AI-01": "one reading is left, completed successfully; sending a downstream after a failure is a violation",

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from missionfsm.cli.summary import Told
     from missionfsm.tools.check.baseline import Baseline
 
-Reached = tuple[str, str | None, Verdict]
+Finding = tuple[str, str | None, Verdict]
 """A file, a robot if it names one, and the verdict."""
 
 MANY = 20
@@ -145,7 +145,7 @@ class _Telling:
     may_sum_up: bool
     json: str | None
     verbose: bool
-    reached: list[Reached] = field(factory=list)
+    reached: list[Finding] = field(factory=list)
     seconds: list[float] = field(factory=list)
     troubles: Troubles = field(factory=Troubles)
 
@@ -229,7 +229,7 @@ class _Reports:
             refuse_without_parquet()
 
     def write(
-        self, reached: list[Reached], seconds: list[float], stale: tuple[str, ...], troubles: Troubles, *, many: bool
+        self, reached: list[Finding], seconds: list[float], stale: tuple[str, ...], troubles: Troubles, *, many: bool
     ) -> None:
         """Write all that are wanted; what goes wrong with one is kept, and the others are written.
 
@@ -250,14 +250,14 @@ class _Reports:
             named = [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached]
             write_junit(self.junit, named)
 
-    def _write_json(self, reached: list[Reached], stale: tuple[str, ...], *, many: bool) -> None:
+    def _write_json(self, reached: list[Finding], stale: tuple[str, ...], *, many: bool) -> None:
         if self.json is None:
             return
         more = {"stale": list(stale)} if stale else {}
         verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
         write_json(self.json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
 
-    def _write_parquet(self, reached: list[Reached], seconds: list[float]) -> None:
+    def _write_parquet(self, reached: list[Finding], seconds: list[float]) -> None:
         if self.parquet is None:
             return
         from missionfsm.adapters.parquet import write_parquet  # noqa: PLC0415 - loaded where it is needed

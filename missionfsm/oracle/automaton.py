@@ -9,10 +9,9 @@ from attrs import define, field
 
 from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Spec
-from missionfsm.oracle import memory
 from missionfsm.oracle.calls import FEW, is_of_calls_alone
 from missionfsm.oracle.explanation import GONE, Explanation, rename
-from missionfsm.oracle.memory import MEMORY
+from missionfsm.oracle.memory import ENTRY, MEMORY, NODES, explanation_bytes
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import EVENT_BUDGET, Successor, Successors
 from missionfsm.oracle.symbols import Part, Symbol
@@ -36,7 +35,7 @@ class Node:
     bytes: int = field(init=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        self.bytes = memory.ENTRY + sum(map(memory.explanation_bytes, self.explanations))
+        self.bytes = ENTRY + sum(map(explanation_bytes, self.explanations))
 
 
 def _forgetting(explanation: Explanation, kept: Mapping[int, int]) -> Explanation:
@@ -125,7 +124,7 @@ class Automaton:
         node = self._nodes.get(explanations)
         if node is None:
             node = Node(explanations, width)
-            if self._nodes and self.bytes + node.bytes > self.memory // memory.NODES:
+            if self._nodes and self.bytes + node.bytes > self.memory // NODES:
                 self._forget_nodes()
             self._nodes[explanations] = node
             self.bytes += node.bytes
@@ -153,7 +152,7 @@ class Automaton:
             successors.limit = successors.budget
         node.next[symbol] = edge
         self._edges += 1
-        self.bytes += memory.ENTRY
+        self.bytes += ENTRY
         return edge
 
     def _step(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> tuple[Successor, ...]:

@@ -27,7 +27,7 @@ MAX_STATES = 256
 Kind = tuple[Request, Answer | None]
 """A request, and what it is known to be answered; None where it is not known."""
 
-Lost = tuple[int, ...]
+LostCounts = tuple[int, ...]
 """Of each kind of lost calls, how many have not taken effect."""
 
 
@@ -44,7 +44,7 @@ class Effects:
 
 
 @define(eq=False, slots=True)
-class Node:
+class Standing:
     """Where the search stands before an event.
 
     Attributes:
@@ -57,8 +57,8 @@ class Node:
     state: State
     done: int
     ready: int
-    lost: Lost
-    before: Node | None = field(default=None, repr=False)
+    lost: LostCounts
+    before: Standing | None = field(default=None, repr=False)
     by: int = 0
     step: Step | None = None
 
@@ -188,7 +188,7 @@ class CallSearch:
                 return frozenset(kinds)
         return frozenset(changing)
 
-    def path(self) -> Node | None:
+    def path(self) -> Standing | None:
         """Where the search stands behind all events; None where nothing explains them.
 
         Raises:
@@ -197,7 +197,7 @@ class CallSearch:
         if not all(map(self._may_be_answered, self._start.calls)):
             return None
         stack = [self._noticing(self._first())]
-        tried: dict[Hashable, list[tuple[int, Lost]]] = {}
+        tried: dict[Hashable, list[tuple[int, LostCounts]]] = {}
         while stack:
             here = self._walked(stack.pop())
             if here.at == len(self._symbols):
@@ -223,20 +223,20 @@ class CallSearch:
         answer = self._kinds[self._place[call.name]][1]
         return answer is None or bool(self._successors.agreements(call.done.answer, answer))
 
-    def _first(self) -> Node:
+    def _first(self) -> Standing:
         """Where the search stands before all events."""
         start, place = self._start, self._place
         done = sum(1 << place[call.name] for call in start.calls if call.done)
         ready = sum(1 << place[call.name] for call in start.calls if self._is_ready(call))
         lost = {request: times for request, _, times in start.lost}
-        return Node(0, start.state, done, ready, tuple(lost.get(request, 0) for request, _ in self._lost))
+        return Standing(0, start.state, done, ready, tuple(lost.get(request, 0) for request, _ in self._lost))
 
     def _is_ready(self, call: InFlight) -> bool:
         """Whether a call of the start could have been answered as it is, without effect, before the start."""
         answer = self._kinds[self._place[call.name]][1]
         return answer is not None and any(self._successors.agreements(one.answer, answer) for one in call.ready)
 
-    def _noticing(self, node: Node) -> Node:
+    def _noticing(self, node: Standing) -> Standing:
         """The node with those calls ready that the state lets be answered without effect."""
         state, kinds = node.state, self._kinds
         for place in self._pending[node.at]:
@@ -245,7 +245,7 @@ class CallSearch:
                 node.ready |= bit
         return node
 
-    def _walked(self, node: Node) -> Node:
+    def _walked(self, node: Standing) -> Standing:
         """The node behind all events that leave no choice."""
         at, state, done, ready, lost = node.at, node.state, node.done, node.ready, node.lost
         while at < len(self._symbols):
@@ -262,28 +262,30 @@ class CallSearch:
                 ready |= 1 << self._place[what[3]]
             at += 1
         self.reached = max(self.reached, at)
-        return node if at == node.at else Node(at, state, done, ready, lost, node, 0)
+        return node if at == node.at else Standing(at, state, done, ready, lost, node, 0)
 
-    def _forks(self, node: Node) -> Iterator[Node]:
+    def _forks(self, node: Standing) -> Iterator[Standing]:
         """Where it can go on before an answer of a call that has not taken effect; the likeliest last."""
         call = self._place[self._symbols[node.at][3]]
         bit = 1 << call
         for number, times in enumerate(node.lost):
             for step in self.effects(node.state, self._lost[number]).steps if times else ():
                 left = (*node.lost[:number], times - 1, *node.lost[number + 1 :])
-                yield self._noticing(Node(node.at, step.after, node.done, node.ready, left, node, -1 - number, step))
+                yield self._noticing(
+                    Standing(node.at, step.after, node.done, node.ready, left, node, -1 - number, step)
+                )
         for place in (*(one for one in self._pending[node.at] if one != call), call):
             own = 1 << place
             for step in () if node.done & own else self.effects(node.state, self._kinds[place]).steps:
-                after = Node(node.at, step.after, node.done | own, node.ready & ~own, node.lost, node, place, step)
+                after = Standing(node.at, step.after, node.done | own, node.ready & ~own, node.lost, node, place, step)
                 yield self._noticing(after)
         if node.ready & bit:
-            yield Node(node.at + 1, node.state, node.done, node.ready & ~bit, node.lost, node)
+            yield Standing(node.at + 1, node.state, node.done, node.ready & ~bit, node.lost, node)
 
-    def explanations(self, end: Node) -> list[tuple[Explanation, tuple[str, ...]]]:
+    def explanations(self, end: Standing) -> list[tuple[Explanation, tuple[str, ...]]]:
         """The explanation of the first n events at position n, each with the rules that the event exercises."""
         steps: list[tuple[int, int, Step]] = []
-        node: Node | None = end
+        node: Standing | None = end
         while node is not None:
             if node.step is not None:
                 steps.append((node.at, node.by, node.step))
@@ -341,4 +343,4 @@ class CallSearch:
         )
 
 
-__all__ = ["FEW", "CallSearch", "Node", "OtherwiseError", "are_calls_alone", "is_of_calls_alone"]
+__all__ = ["FEW", "CallSearch", "OtherwiseError", "Standing", "are_calls_alone", "is_of_calls_alone"]

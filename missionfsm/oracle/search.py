@@ -19,7 +19,7 @@ from missionfsm.kernel.history import Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.alignment import Message
-from missionfsm.oracle.calls import CallSearch, Node, OtherwiseError, are_calls_alone
+from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
 from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, explanation_bytes
@@ -136,7 +136,7 @@ class Search:
         self.whole = False
         self.width = WIDTH
         self._layers: list[Layer] = []
-        self._end: tuple[CallSearch, Node] | None = None
+        self._end: tuple[CallSearch, Standing] | None = None
         self._explained: int | None = None
         self.reached = 0
         self.beyond: set[int] = set()

@@ -14,7 +14,7 @@ from missionfsm.bear.status.state import STATE_PARTS, TOPICAL, Endpoint
 from missionfsm.isaac.robot.scripts import script
 from missionfsm.isaac.server.scripts import A, B, Script
 from missionfsm.systems import system
-from missionfsm.tools.check.basis import OFTEN, Reached
+from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
 from missionfsm.tools.conform.conform import FILLS, Plan, conform
 from missionfsm.tools.conform.reach import Candidate
 from missionfsm.tools.conform.run import Run
@@ -77,13 +77,13 @@ def test_a_run_asks_everything_in_every_situation() -> None:
     assert fill(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
     assert set(itertools.product(MATRIX.ways, columns())) - set(run.reach.times) == set()
-    assert run.reach.reached() == Reached(len(run.reach.times))
+    assert run.reach.reached() == MatrixCoverage(len(run.reach.times))
 
 
 def test_what_was_met_too_seldom_is_told() -> None:
     """The rarest come first, the whole list where it is wanted, and situations that never came about."""
     holes = {f"paused × {name}": times for name, times in (("a", 2), ("b", 0), ("c", 1), ("d", 1), ("e", 1), ("f", 1))}
-    reached = Reached(40, holes, ("cleared",))
+    reached = MatrixCoverage(40, holes, ("cleared",))
     assert reached.lines() == [
         f"situations × actions: 34 of 40 met {OFTEN} times or more",
         "  never came about: cleared",
@@ -161,7 +161,7 @@ def test_a_mission_server_is_asked_everything_in_every_situation() -> None:
         for queue in ("", " with a queue")
     }
     assert asked - set(run.reach.times) == {("running", "submit after a mission that is QUEUED")}
-    assert run.reach.reached() == Reached(len(run.reach.times))
+    assert run.reach.reached() == MatrixCoverage(len(run.reach.times))
 
 
 def test_a_robot_is_told_everything_in_every_situation() -> None:
@@ -177,7 +177,7 @@ def test_a_robot_is_told_everything_in_every_situation() -> None:
         *itertools.product(("away", "away on a mission"), {*TIMES, "connect"}),
         *itertools.product(("away on a mission",), ENDS),
     }
-    assert run.reach.reached() == Reached(len(run.reach.times))
+    assert run.reach.reached() == MatrixCoverage(len(run.reach.times))
 
 
 def test_what_is_asked_about_a_name_counts_for_what_bears_it() -> None:

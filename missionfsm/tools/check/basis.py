@@ -113,7 +113,7 @@ OFTEN = 3
 
 
 @frozen
-class Reached:
+class MatrixCoverage:
     """How often a run met each kind of action in each situation, where the system says which there are.
 
     Attributes:
@@ -182,7 +182,7 @@ __all__ = [
     "NOT_TRIED",
     "OFTEN",
     "Flagged",
-    "Reached",
+    "MatrixCoverage",
     "Untested",
     "departing",
     "readings_line",

@@ -26,7 +26,7 @@ PASSING = 1
 
 
 @frozen
-class Call:
+class AnsweredCall:
     """A call that was answered: what was asked about which names, and the answer."""
 
     request: Request
@@ -51,7 +51,7 @@ class Circumstances:
 
     request: Request = None
     rulings: Mapping[tuple[str, str], Elimination] = {}
-    recent: tuple[Call, ...] = ()
+    recent: tuple[AnsweredCall, ...] = ()
 
 
 @frozen

@@ -19,7 +19,7 @@ from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.basis import Flagged
-from missionfsm.tools.check.candidates import Call, Circumstances
+from missionfsm.tools.check.candidates import AnsweredCall, Circumstances
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent
@@ -108,7 +108,7 @@ class Judge:
         self.answers: dict[str, Counter[str]] = {name: Counter() for name in system.spec.operations}
         self.right = True
         self.exhausted = False
-        self.recent: deque[Call] = deque(maxlen=RECENT)
+        self.recent: deque[AnsweredCall] = deque(maxlen=RECENT)
         self._about: dict[Name, tuple[Name, ...]] = {}
         self._lost_a_call = self._unanswered = False
         self._unexplained: Event | None = None
@@ -184,7 +184,7 @@ class Judge:
         if type(event) is Returned:
             self.succeeded += event.answer.code == OK
             self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
-            self.recent.append(Call(asked, self._about.pop(event.call, ()), event.answer, event.names))
+            self.recent.append(AnsweredCall(asked, self._about.pop(event.call, ()), event.answer, event.names))
         elif type(event) is Settled:
             self._unanswered = self._unanswered or self._lost_a_call or open_calls
         elif type(event) is Called:

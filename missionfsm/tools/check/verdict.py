@@ -11,7 +11,7 @@ from attrs import field, frozen
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
 from missionfsm.kernel.text import counted, printable
-from missionfsm.tools.check.basis import Flagged, Reached, Untested, readings_line
+from missionfsm.tools.check.basis import Flagged, MatrixCoverage, Untested, readings_line
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -211,7 +211,7 @@ class Verdict:
     rare: Mapping[str, str] = field(factory=dict)
     notes: tuple[str, ...] = ()
     uncounted: frozenset[str] = frozenset()
-    reach: Reached | None = None
+    reach: MatrixCoverage | None = None
     advised: bool = True
 
     @property

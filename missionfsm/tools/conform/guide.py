@@ -69,7 +69,7 @@ class Template:
 
 
 @frozen(eq=False)
-class Call:
+class PreparedCall:
     """An input without stand-ins but perhaps for one name, and what it says."""
 
     prompt: Input
@@ -114,15 +114,15 @@ class Guide:
         self._growth: dict[Any, int] = {}
         self._idle: dict[Hashable, Edge] = {}
 
-    def _prepared(self, alphabet: Alphabet) -> dict[str, list[Call]]:
+    def _prepared(self, alphabet: Alphabet) -> dict[str, list[PreparedCall]]:
         """The calls of each operation; those that are the same request in other words only once."""
-        found: dict[str, dict[Any, Call]] = {}
+        found: dict[str, dict[Any, PreparedCall]] = {}
         for prompt in alphabet.inputs:
             if is_template(prompt.params):
                 continue
             names, rest = self.system.codec.split_request(prompt.method, prompt.params)
             request = self.system.codec.read_request(prompt.method, rest)
-            found.setdefault(prompt.method, {}).setdefault(request, Call(prompt, request, bool(names)))
+            found.setdefault(prompt.method, {}).setdefault(request, PreparedCall(prompt, request, bool(names)))
         return {method: list(calls.values()) for method, calls in found.items()}
 
     def _prepared_events(self, alphabet: Alphabet) -> dict[str, list[tuple[JSON, Any]]]:
@@ -181,7 +181,7 @@ class Guide:
         here: Explanation,
         search_key: Hashable,
         names: list[Named],
-        calls: Iterable[Call],
+        calls: Iterable[PreparedCall],
     ) -> Iterator[Proposal]:
         """Proposals from calls, about each of some names where they are about any."""
         phase = self.abstraction.phase(here.state)

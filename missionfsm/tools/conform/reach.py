@@ -19,7 +19,7 @@ from missionfsm.kernel.matrix import Matrix, Open
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Incident, Refs, Request, State
 from missionfsm.oracle.explanation import Explanation
-from missionfsm.tools.check.basis import OFTEN, Reached
+from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
 from missionfsm.tools.conform.actions import CANCEL, SETTLE, Action, Bindings, NameRef, filled
 from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.guide import Guide, Template, rested, template_of
@@ -248,10 +248,10 @@ class Reach:
         """How many of the times that cells are to be met they were."""
         return sum(min(times, OFTEN) for times in self.times.values())
 
-    def reached(self) -> Reached:
+    def reached(self) -> MatrixCoverage:
         """What it came to."""
         met = {situation for situation, _ in self.times}
-        return Reached(
+        return MatrixCoverage(
             len(self.times),
             {
                 f"{situation} × {kind}": times

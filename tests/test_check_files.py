@@ -159,6 +159,16 @@ MALFORMED = {
         2,
         "drive.part: [] is not a part",
     ),
+    "a status that is a number": (
+        [FIRST, CLEAR, '{"return": 1, "error": {"status": 9}}'],
+        3,
+        "error.status: 9 is not the name of a gRPC error (FAILED_PRECONDITION is)",
+    ),
+    "a status that no number is": (
+        [FIRST, CLEAR, '{"return": 1, "error": {"status": 99}}'],
+        3,
+        "error.status: 99 is not the name of a gRPC error",
+    ),
     "settled but not true": ([FIRST, '{"settled": 1}'], 2, "settled: 1 is not true"),
     "time going down": ([FIRST, clear(at=5.5), '{"return": 1, "at": 4}'], 3, "at: 4 comes after 5.5"),
     "time that is a text": ([FIRST, clear(at="5")], 2, "at: '5' is not a number of seconds"),

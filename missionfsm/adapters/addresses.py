@@ -51,7 +51,10 @@ class Addresses:
             raise UnreadableError(message)
         latest = self._latest.get(robot)
         if latest is not None and at < latest:
-            message = f"at: {at} comes after {latest}" + ("" if robot is None else f" of {brief(robot)}")
+            whose = "" if robot is None else f" of {brief(robot)}"
+            message = (
+                f"at: {at} comes after {latest}{whose}; a robot's times never go back, so leave out all but one clock's"
+            )
             raise UnreadableError(message)
         self._latest[robot] = at
 

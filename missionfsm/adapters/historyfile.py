@@ -23,6 +23,7 @@ from missionfsm.kernel.ids import IdSet
 STDIN = "-"
 LONGEST_LINE = 64 * 1024 * 1024
 """Bytes that a line may have, give or take a chunk."""
+ONE_A_LINE = "a value has to stand in one line, as `jq -c .` writes it"
 CHUNK = 1 << 16
 """Bytes that are read at a time."""
 
@@ -139,8 +140,8 @@ class Lines:
         try:
             return loads(text)
         except CutShortError as error:
-            short = " (the file ends in the middle of it)" if self._cut else ""
-            message = f"{error}{short}"
+            why = "the file ends in the middle of it" if self._cut else ONE_A_LINE
+            message = f"{error} ({why})"
             raise UnreadableError(message) from None
 
     def parsed(self, numbered: Iterator[tuple[int, bytes]]) -> Iterator[tuple[int, JSON]]:

@@ -132,6 +132,9 @@ def _judged(
         if _is_bare_message(line):
             return _watched(path, asked, tell, itertools.chain([(number, line)], texts.parsed(numbered)))
         with placed(path, number):
+            if isinstance(line, list):
+                message = f"the first line has to be {FIRST_LINE}; of a list, `jq -c '.[]'` makes lines"
+                raise UnreadableError(message)
             if isinstance(line, dict) and "missionfsm" not in line:
                 message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
                 raise UnreadableError(message)

@@ -266,7 +266,9 @@ class Transcript:
     def _status(self, error: JSON) -> str:
         status = error.get("status") if isinstance(error, dict) else None
         if not isinstance(status, str) or status not in STATUS_NUMBERS or status == OK:
-            raise UnreadableError(f"error.status: {brief(status)} is not the name of a gRPC error")
+            named = (name for name, number in STATUS_NUMBERS.items() if number == status and type(status) is int)
+            name = next((f" ({name} is)" for name in named if name != OK), "")
+            raise UnreadableError(f"error.status: {brief(status)} is not the name of a gRPC error{name}")
         return status
 
     def _stream(self, line: dict[str, JSON]) -> tuple[Event, ...]:

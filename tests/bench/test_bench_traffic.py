@@ -33,6 +33,18 @@ from missionfsm.tools.reference.subject import ReferenceSubject
 PATIENCE = 60
 """Seconds of the processor's time that a log may take."""
 
+CHECK = """
+import atexit, runpy, sys
+
+def peak():
+    with open("/proc/self/status") as status:
+        print(*(line for line in status if line.startswith("VmHWM")), file=sys.stderr)
+
+atexit.register(peak)
+runpy.run_module("missionfsm", run_name="__main__", alter_sys=True)
+"""
+"""The command, which says in the end how many kilobytes it had: who waits for it is told those of its parent."""
+
 
 @frozen
 class Measured:
@@ -45,17 +57,15 @@ class Measured:
 
 def measured(python: str, path: Path, *options: str) -> Measured:
     """Judge a log in a process of its own."""
-    command = [python, "-m", "missionfsm", "check", str(path), *options]
+    command = [python, "-c", CHECK, "check", str(path), *options]
     limit = ("prlimit", f"--cpu={PATIENCE}", "--")
-    with subprocess.Popen(
-        [*limit, *command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=path.parent
-    ) as one:
-        assert one.stdout is not None
-        out = one.stdout.read().decode()
-        _, status, used = os.wait4(one.pid, 0)
-        one.returncode = os.waitstatus_to_exitcode(status)
-    verdict = out.split(": ")[1].partition(":")[0] if ": " in out else "no answer"
-    return Measured(verdict, used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3)
+    before = os.times()
+    ended = subprocess.run([*limit, *command], capture_output=True, text=True, cwd=path.parent, check=False)
+    after = os.times()
+    seconds = after.children_user + after.children_system - before.children_user - before.children_system
+    verdict = ended.stdout.split(": ")[1].partition(":")[0] if ": " in ended.stdout else "no answer"
+    kilobytes = ended.stderr.rpartition("VmHWM:")[2].split()
+    return Measured(verdict, seconds, int(kilobytes[0]) / 1e3 if kilobytes else 0.0)
 
 
 def shown(name: str, path: Path, *options: str) -> None:

@@ -250,6 +250,14 @@ def test_a_rule_that_is_named_exists(lab: Lab) -> None:
     assert {rule for taken in lab.all_taken for rule in taken.step.rules if rule not in known} == set()
 
 
+def test_what_a_question_is_about_exists(lab: Lab) -> None:
+    """Who follows no reading of an ambiguity breaks promises that there are."""
+    about = lab.spec.answers_for
+    known = [f"{one.id}." for one in lab.spec.ambiguities]
+    assert [name for name in about if not any(one.startswith(f"{name}.") for one in known)] == []
+    assert {rule for rules in about.values() for rule in rules} <= set(lab.spec.rules_by_id)
+
+
 def test_urgency_ends(lab: Lab) -> None:
     """Urgent steps come to rest from every state that a step leads to, whichever of them are taken."""
     resting: dict[State, bool] = {}

@@ -241,6 +241,9 @@ class Spec:
             which the request is answered OK so; None where nothing is known of that. As for `foresees`.
         abstraction: how a search and an exploration look at its states.
         parting: how it falls into parts that do not touch one another; None where it is one.
+        answers_for: the id of an ambiguity, or how those of several begin up to a dot, to the ids of the promises that
+            it is a question about: who follows none of its readings breaks those. Of the others it is what was
+            exercised.
         waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
@@ -288,6 +291,7 @@ class Spec:
     succeeds: Callable[[State, tuple[int, ...], Request, tuple[int, ...], tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = field(factory=Abstraction)
     parting: Parting | None = None
+    answers_for: Mapping[str, tuple[str, ...]] = field(factory=dict)
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
     unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...]] | None = None

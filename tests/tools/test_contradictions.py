@@ -71,6 +71,61 @@ def test_the_evidence_of_a_reading_says_the_situation() -> None:
     ] == []
 
 
+def shown(number: int, state: str, **more: JSON) -> JSON:
+    """A message that lists one mission."""
+    goals = [{"destinationId": "table-1"}]
+    mission = {"missionId": "m", "state": state, "goals": goals, "missionType": {"baseType": "BASE_TYPE_NAVIGATE"}}
+    metadata = {"timestamp": "2025-04-01T15:30:00Z", "sequenceNumber": number}
+    return {
+        "stream": 1,
+        "message": {
+            "metadata": metadata,
+            "missionStates": {"missions": [{**mission, **more}], "currentMissionIndex": 0},
+        },
+    }
+
+
+def ended(event: str, state: str, index: int, **feedback: JSON) -> list[JSON]:
+    """A mission runs and ends; which index the last message has, and what the mission feeds back while it runs."""
+    goal = {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}
+    last = shown(3, state)
+    last["message"]["missionStates"]["currentMissionIndex"] = index
+    return [
+        {**HEAD, "drives": [event]},
+        {"call": 1, "method": "CreateMission", "params": {"mission": goal}},
+        {"return": 1, "result": {"missionId": "m"}},
+        {"settled": True},
+        {"call": 2, "method": "SubscribeMissionStatus", "params": {}},
+        {"return": 2, "result": {"stream": 1}},
+        shown(2, "STATE_RUNNING", missionFeedback=feedback),
+        {"drive": {"event": event}},
+        last,
+        {"settled": True},
+    ]
+
+
+BASE_OR_SERVI = ({"baseFeedback": {"status": 1}}, {"serviFeedback": {"status": 1}})
+
+
+@pytest.mark.parametrize(
+    ("conversations", "rule"),
+    [
+        (
+            [ended("missionFailed", "STATE_FAILED", 0), ended("missionSucceeded", "STATE_SUCCEEDED", -1)],
+            "the-current-mission-index-is-the-active-mission",
+        ),
+        (
+            [ended("missionFailed", "STATE_FAILED", -1, **feedback) for feedback in BASE_OR_SERVI],
+            "the-feedback-fits-the-mission",
+        ),
+    ],
+)
+def test_a_contradiction_accuses_what_the_question_is_about(conversations: list[list[JSON]], rule: str) -> None:
+    """Not all that was promised of the messages: which index is shown, or whose feedback."""
+    verdict = check([line for lines in conversations for line in lines])
+    assert [one.id for one in violation(verdict).rules] == [f"bear.mission/SubscribeMissionStatus/{rule}"]
+
+
 def test_several_conversations_in_one_file_are_judged_together(tmp_path: Path, command_line: CommandLine) -> None:
     """Those that agree conform, with the events of all; those that do not are told with both."""
     refused = {"return": 1, "error": {"status": "FAILED_PRECONDITION", "message": ""}}

@@ -36,6 +36,7 @@ from missionfsm.bear.mission.state import (
 )
 from missionfsm.bear.mission.stream import (
     ALL_LISTED,
+    ANSWERS_FOR,
     GOALS,
     GOALS_CHANGED,
     MORE,
@@ -134,6 +135,12 @@ WAIVERS = (
     Waiver(
         "one-number-stands-for-one-state",
         "Numbers are compared within one stream; that two streams show one state under one number is not checked.",
+        MISSION["SubscribeMissionStatus", "EventMetadata"],
+        ("SubscribeMissionStatus",),
+    ),
+    Waiver(
+        "timestamps-that-go-on",
+        "A timestamp has to be a time that exists; one that stands still or goes back is not compared.",
         MISSION["SubscribeMissionStatus", "EventMetadata"],
         ("SubscribeMissionStatus",),
     ),
@@ -337,6 +344,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         names=lambda robot: len(robot.turns),
         request_operation=lambda request: request.operation,
         ambiguities=AMBIGUITIES,
+        answers_for={**ANSWERS_FOR, "AM-30": (f"{SYSTEM_NAME}/UpdateMission/finish",), "AM-45.none.refused": ()},
         describe=describe,
         rules=RULES,
         charts=(LIFECYCLE,),

@@ -149,6 +149,22 @@ OWED = _promise(
 RULES = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX, FEEDBACK, TYPE, OWED)
 
 _SHOWN = tuple(rule.id for rule in RULES)
+ANSWERS_FOR: Mapping[str, tuple[str, ...]] = {
+    entry: (rule.id,)
+    for rule, entries in (
+        (STATE, ("AM-08", "AM-09", "AM-10", "AM-45.none")),
+        (CURRENT, ("AM-14",)),
+        (ALL_LISTED, ("AM-13", "AM-35", "AM-36")),
+        (TYPE, ("AM-26", "AM-51")),
+        (GOALS, ("AM-27",)),
+        (GOAL_INDEX, ("AM-45.when", "AM-64")),
+        (FEEDBACK, ("AM-50",)),
+        (WELL_FORMED, ("AM-49", "AM-58.sent")),
+        (OWED, ("AM-47", "AM-54", "AM-63")),
+    )
+    for entry in entries
+}
+"""By what is shown, the promise that a question is about; see `missionfsm.kernel.spec.Spec`."""
 
 TYPES: Mapping[Kind, tuple[MissionType, ...]] = {
     Kind.BASE_NAVIGATE: (MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),),

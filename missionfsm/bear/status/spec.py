@@ -15,10 +15,16 @@ from missionfsm.bear.status.readings import (
     AMBIGUITIES,
     AS_01,
     AS_08,
+    AS_09_PART,
     AS_12_EVENT,
     AS_12_HYBRID,
     AS_13_SKIP,
+    AS_17_OFFLINE,
+    AS_17_ZERO,
+    AS_21,
+    AS_22,
     AS_26,
+    AS_29_EMPTY,
     AS_34,
 )
 from missionfsm.bear.status.rules import OPERATIONS
@@ -39,8 +45,8 @@ from missionfsm.bear.status.state import (
     initial,
     whose,
 )
-from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, WELL_FORMED, answers, matches
-from missionfsm.bear.status.values import faults
+from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, answers, matches
+from missionfsm.bear.status.values import a_stuck_state_is_known, faults, reserved_reasons_are_not_used
 from missionfsm.bear.status.views import Topic, concerns
 from missionfsm.kernel import history
 from missionfsm.kernel.abstraction import Abstraction
@@ -181,6 +187,24 @@ POSSIBILITIES = (
 )
 
 
+_ANSWERS_FOR: Mapping[str, tuple[str, ...]] = {
+    "AS-08": (UPDATES.id,),
+    "AS-09.unset": (UPDATES.id,),
+    "AS-12": (UPDATES.id,),
+    "AS-13": (UPDATES.id,),
+    "AS-14": (WELL_FORMED.id,),
+    "AS-25": (SELECTED.id,),
+    "AS-18": (a_stuck_state_is_known.rule.id,),
+    "AS-19": (reserved_reasons_are_not_used.rule.id,),
+    **{
+        one.id: (VALUES[call].id,)
+        for question in (*AS_09_PART.values(), AS_17_OFFLINE, AS_17_ZERO, AS_21, AS_22, AS_29_EMPTY)
+        for call, one in question.parts.items()
+    },
+}
+"""By what is shown, the promise that a question is about; see `missionfsm.kernel.spec.Spec`."""
+
+
 def _names(_: Fleet) -> int:
     return 0
 
@@ -251,6 +275,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         names=_names,
         request_operation=lambda request: request.operation,
         ambiguities=AMBIGUITIES,
+        answers_for=_ANSWERS_FOR,
         waived=WAIVERS,
         concerns=concerns,
         describe=describe,

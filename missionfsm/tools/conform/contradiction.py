@@ -34,6 +34,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     expected, notes, others, rules = [], [], [], list[str]()
     last: Judge | None = None
     ruled_out: list[tuple[Judge, str, str]] = []
+    promised = _promised(spec, ambiguity)
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
@@ -41,7 +42,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         if judge is None or ruling is None:
             others.append(f"{letter} is ruled out: another reading had to be followed")
         else:
-            rules += ruling.rules or _exercised(judge, ruling)
+            rules += ruling.rules or promised or _exercised(judge, ruling)
             notes.append(f"{letter} is ruled out: {ruling}")
             last = judge
         if judge is not None:
@@ -70,6 +71,12 @@ def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
         )
         for judge, says in found.values()
     )
+
+
+def _promised(spec: Spec, ambiguity: Ambiguity) -> tuple[str, ...]:
+    """Ids of the promises that an ambiguity is a question about, by the longest of the names that it begins with."""
+    names = (name for name in spec.answers_for if f"{ambiguity.id}.".startswith(f"{name}."))
+    return spec.answers_for.get(max(names, key=len, default=""), ())
 
 
 def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:

@@ -105,3 +105,33 @@ def test_everything_is_used() -> None:
         and item.name not in CALLED_BY_OTHERS
     }
     assert sorted(found) == []
+
+
+def _documented(node: ast.ClassDef) -> set[str]:
+    """The fields that a class says something of: in its docstring, or in a text right behind the field."""
+    said = set(re.findall(r"\w+", ast.get_docstring(node) or ""))
+    pairs = zip(node.body, node.body[1:], strict=False)
+    behind = {
+        one.target.id
+        for one, text in pairs
+        if isinstance(one, ast.AnnAssign)
+        and isinstance(one.target, ast.Name)
+        and isinstance(text, ast.Expr)
+        and isinstance(text.value, ast.Constant)
+    }
+    return said | behind
+
+
+def test_every_field_of_the_language_and_of_the_engine_is_documented() -> None:
+    """A class of the kernel, the oracle or the verdicts that lists attributes leaves none of its fields out."""
+    found = [
+        f"{of(path)}.{node.name}.{one.target.id}"
+        for folder in ("kernel", "oracle", "tools/check")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef) and "Attributes:\n" in (ast.get_docstring(node) or "")
+        for one in node.body
+        if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name) and not one.target.id.startswith("_")
+        if one.target.id not in _documented(node)
+    ]
+    assert found == []

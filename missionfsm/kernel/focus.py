@@ -8,12 +8,20 @@ something is observed there.
 from __future__ import annotations
 
 from collections.abc import Hashable
+from typing import Final, Literal
 
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
-RECEIVED, RETURNED, DRIVEN, ENDED, SETTLED = "received", "returned", "driven", "ended", "settled"
+Kind = Literal["received", "returned", "driven", "ended", "settled"]
+"""What is observed, after the events of `missionfsm.kernel.history`."""
+
+RECEIVED: Final = "received"
+RETURNED: Final = "returned"
+DRIVEN: Final = "driven"
+ENDED: Final = "ended"
+SETTLED: Final = "settled"
 
 
 @value(cache_hash=True)
@@ -21,7 +29,7 @@ class Focus:
     """What is observed.
 
     Attributes:
-        kind: one of the words above, after the events of `missionfsm.kernel.history`.
+        kind: what it is.
         what: the request that was answered, or the event that was driven.
         refs: the positions of its names among those of the state, as for outcomes.
         answer: the answer, where a request was answered.
@@ -30,7 +38,7 @@ class Focus:
         aside: whether it leaves the state as it is, and is about no channel that a call in flight may have opened.
     """
 
-    kind: str
+    kind: Kind
     what: Hashable = None
     refs: Refs = ()
     answer: Answer | None = None

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+_BLOCK_BITS = 8
+"""Numbers that differ in the last bits alone, so many of them, are kept together."""
+
 
 class IdSet:
     """A set of whole numbers that costs next to nothing where they are close together."""
@@ -17,7 +20,7 @@ class IdSet:
             return True
         if 0 < number < self._next:
             return False
-        block, bit = number >> 8, 1 << (number & 255)
+        block, bit = number >> _BLOCK_BITS, 1 << (number % (1 << _BLOCK_BITS))
         bits = self._blocks.get(block, 0)
         if bits & bit:
             return False

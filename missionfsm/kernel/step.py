@@ -12,7 +12,11 @@ from missionfsm.kernel.terms import State, View
 from missionfsm.kernel.values import value
 
 ONCE_HAD = -1
-"""In the place of the position of a name: the state has it no more."""
+"""In the place of the position of a name, for outcomes: the state has it no more.
+
+References in a `Step` count otherwise: there -1 is the first name that the event brought along. The oracle numbers
+observed names; its `GONE` is neither.
+"""
 
 
 @value

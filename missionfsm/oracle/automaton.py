@@ -26,6 +26,8 @@ class Node:
     """All explanations of what was observed, and the edges that were walked from here.
 
     Attributes:
+        width: how many names have numbers here.
+        next: the edges, by symbol.
         bytes: what the node takes, without its edges (see `missionfsm.oracle.memory`).
     """
 

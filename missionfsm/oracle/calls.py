@@ -48,9 +48,12 @@ class Standing:
     """Where the search stands before an event.
 
     Attributes:
+        at: how many events are explained.
+        state: that of the system.
         done: the bits of the calls in flight that have taken effect.
         ready: those of the others that could have been answered without effect at some moment since they were sent.
         by: the call that has taken effect last since the node before, or the kind of a lost one, below 0.
+        step: the step that it took.
     """
 
     at: int

@@ -72,6 +72,8 @@ class _Way:
     """Whether channels may pass over what they owe, and show again what they have shown, as last asked for.
 
     Attributes:
+        delivery, assumed, required: of which delivery that was asked, what was assumed, and which readings had to stay.
+        ways: the answer: whether they may pass over, and whether they may show again.
         groups: the bits of the ambiguities on which that depends.
         withheld: whether one of the two was withheld.
     """

@@ -54,6 +54,7 @@ class _Tried:
     """An explanation that was followed, and leads nowhere.
 
     Attributes:
+        assumed, lost: what it assumes, and the lost calls that it has left.
         depends: the bits of the ambiguities on which that depends; all of them while it is not known.
     """
 

@@ -57,6 +57,8 @@ class Head:
     """The first line of a history.
 
     Attributes:
+        system: the name of the system.
+        world: the parameters of `reset`, as JSON.
         drives: the drives that the tester commanded. Without them the environment may have done everything by itself.
         strict: whether nothing was lost, doubled or made up on the way.
         anywhere: whether it begins while the system is in use; nothing is known of what was before.

@@ -12,7 +12,7 @@ from collections.abc import Hashable, Iterable, Iterator
 from attrs import evolve
 
 from missionfsm.kernel.codec import Malformed
-from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus
+from missionfsm.kernel.focus import DRIVEN, ENDED, RECEIVED, RETURNED, SETTLED, Focus, Kind
 from missionfsm.kernel.history import Answer, Called, Cancelled, Driven, Ended, Received, Returned, Settled
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.step import Match, Mismatch, Step
@@ -591,7 +591,7 @@ class TransitionFunction:
 
         return about
 
-    def _before(self, kind: str, name: int) -> FocusOf:
+    def _before(self, kind: Kind, name: int) -> FocusOf:
         """That something comes on a channel of that name, or on one whose name is not known yet."""
 
         def about(here: Explanation) -> Focus:

@@ -170,6 +170,14 @@ class Verdict:
     """A judgement of one implementation or of one recorded history.
 
     Attributes:
+        outcome: how it came out.
+        system: the name of the system that was judged.
+        implementation: what the adapter says it is, or what was judged in the place of one.
+        seed: from which random conversations were drawn; None where nothing was.
+        examples: how many conversations were had; 0 for a recorded history.
+        events: how many events were judged.
+        violation: what is wrong, if anything is.
+        story: the conversation that shows it, in numbered lines.
         exercised: rule id to how often it was exercised.
         uncovered: ids of rules that were not.
         readings: ambiguity id to the readings that are still possible, for those that mattered.

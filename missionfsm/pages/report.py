@@ -22,8 +22,9 @@ from missionfsm.pages.outline import (
 )
 from missionfsm.pages.render import rendered
 from missionfsm.pages.sequence import SHOWN, Row, rows
+from missionfsm.tools.check.experiment import Experiment
 from missionfsm.tools.check.narrate import as_pytest
-from missionfsm.tools.check.verdict import Experiment, Outcome, Side, Verdict
+from missionfsm.tools.check.verdict import Outcome, Side, Verdict
 
 _NUMBER = re.compile(r"\d+")
 _GRAVITY = (Outcome.VIOLATES, Outcome.INCONCLUSIVE, Outcome.CONFORMS)

@@ -22,8 +22,9 @@ from missionfsm.pages.outline import ClauseLine, Evidence, Section, Standing, do
 from missionfsm.pages.render import prose, specification_page
 from missionfsm.pages.report import Judged, report
 from missionfsm.pages.teeth import teeth_page
+from missionfsm.tools.check.experiment import Experiment
 from missionfsm.tools.check.judge import check
-from missionfsm.tools.check.verdict import Experiment, Verdict
+from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.explore.explore import explore
 from missionfsm.tools.mutate.teeth import MutantResult, MutationReport
 from missionfsm.tools.specpages import clauses

@@ -12,6 +12,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
 from missionfsm.kernel.text import counted, printable
 from missionfsm.tools.check.basis import Flagged, MatrixCoverage, Untested, readings_line
+from missionfsm.tools.check.experiment import Experiment
 
 RATE, PER = 100, 10_000
 """How often each rule should be exercised, in how many steps."""
@@ -131,38 +132,6 @@ class Violation:
         """The rules that are broken and are not told with what was allowed."""
         justified = {rule for one in self.expected for rule in one.rules}
         return tuple(rule for rule in self.rules if rule not in justified)
-
-
-@frozen
-class Experiment:
-    """What would tell readings apart that are still open.
-
-    Attributes:
-        ambiguity: the id of the question.
-        follows: the letter of the reading that it shows.
-        against: the letters that it rules out if the implementation follows that one.
-        says: what to do and what is then seen, line by line.
-        history: the same as lines of the history format, as the reference answers under `follows`.
-    """
-
-    ambiguity: str
-    follows: str
-    against: tuple[str, ...]
-    says: str
-    history: tuple[JSON, ...] = ()
-
-    def to_json(self) -> JSON:
-        """The experiment as the command line writes it."""
-        return {
-            "ambiguity": self.ambiguity,
-            "follows": self.follows,
-            "against": list(self.against),
-            "says": self.says.splitlines(),
-            "history": list(self.history),
-        }
-
-    def __str__(self) -> str:
-        return f"{self.ambiguity}: {self.follows}, and not {' or '.join(self.against)}, would show in\n{self.says}"
 
 
 @frozen

@@ -16,8 +16,8 @@ from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import View
 from missionfsm.oracle.automaton import Automaton
+from missionfsm.tools.check.experiment import Experiment
 from missionfsm.tools.check.narrate import story
-from missionfsm.tools.check.verdict import Experiment
 from missionfsm.tools.conform.actions import WRONG_NAME, Action, Bindings, NameRef
 from missionfsm.tools.conform.conversation import Conversation, Partner
 from missionfsm.tools.conform.guide import Guide, Template

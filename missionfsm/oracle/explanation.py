@@ -33,8 +33,10 @@ def _lowest_of_owed(owed: Owed) -> int:
 
 
 def _lowest_of_channel(channel: Channel) -> int:
-    lowest = channel.last.lowest if channel.last else GONE
-    return min([channel.name, lowest, *[one.lowest for one in channel.owed]])
+    lowest = min(channel.name, channel.last.lowest if channel.last else GONE)
+    for one in channel.owed:
+        lowest = min(lowest, one.lowest)
+    return lowest
 
 
 @value(cache_hash=True)

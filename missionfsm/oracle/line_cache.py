@@ -25,7 +25,7 @@ FORMS = 100
 """How many different texts around a name are remembered."""
 NAMES = 1_000
 """How many names are remembered with the texts that they have in messages."""
-LONG = 2_000
+LONG = 16_000
 """Bytes of a line that is too long to be remembered."""
 
 

@@ -55,6 +55,7 @@ class _Stretch:
         rest: the position of what settles next.
         over: whether nothing else is shown after the messages.
         led: what was found of channels with that name.
+        uncertain: those of them of which it is known that none of these messages is bound to be what they owe.
     """
 
     due: list[Message]
@@ -65,6 +66,7 @@ class _Stretch:
     rests: bool = field(kw_only=True)
     over: bool = field(kw_only=True)
     led: dict[tuple[Channel, bool, bool], _Led] = field(factory=dict)
+    uncertain: set[Channel] = field(factory=set)
 
 
 @define(eq=False, slots=True)
@@ -263,9 +265,14 @@ class Lookahead:
         bound = False
         for at in range(len(explanation.channels)):
             while (channel := explanation.channels[at]).owed and channel.name > GONE:
+                uncertain = self._stretch(channel).uncertain
+                if channel in uncertain:
+                    break
                 due = self._due_for_certain(channel, explanation.assumed)
                 found = foretold(self.spec, self._showings, channel, due, explanation.assumed, self.meet)
                 if found is None:
+                    if due:
+                        uncertain.add(channel)
                     break
                 channels = (*explanation.channels[:at], found.channel, *explanation.channels[at + 1 :])
                 after = explanation.replace(assumed=found.assumed, channels=channels)
@@ -277,7 +284,7 @@ class Lookahead:
                 explanation, bound = named, bound or bool(found.names)
         return tidy(explanation) if bound else explanation
 
-    def _due_for_certain(self, channel: Channel, assumed: int) -> Iterable[tuple[Message, int]]:
+    def _due_for_certain(self, channel: Channel, assumed: int) -> Sequence[tuple[Message, int]]:
         """The messages that a channel shows next, with their positions, if it passes over nothing that it owes.
 
         None where it may, or may repeat itself, and none from one on whose number is something special.
@@ -291,7 +298,7 @@ class Lookahead:
         following = bisect.bisect_left(irregular, self.at)
         until = irregular[following] if following < len(irregular) else self._horizon
         certain = bisect.bisect_left(stretch.positions, until)
-        return zip(stretch.due[:certain], stretch.positions[:certain], strict=True)
+        return tuple(zip(stretch.due[:certain], stretch.positions[:certain], strict=True))
 
     def _with_channels_narrowed(self, explanation: Explanation) -> Explanation | None:
         """The explanation with each channel narrowed; None where one cannot show what it is known to show."""
@@ -375,10 +382,11 @@ class Lookahead:
 
     def _stretch(self, channel: Channel) -> _Stretch:
         """What is known of a channel from now on, but for the messages that are foretold."""
-        name, cut = channel.name, self._cut
+        name = channel.name
         known = self._stretches.get(name)
         if known is not None and known[0] <= self.at <= known[1] and known[2] == channel.foretold:
             return known[3]
+        cut = self._cut
         positions, _ = self._messages.get(name, _NO_MESSAGES)
         coming, quiet = bisect.bisect_left(positions, self.at), bisect.bisect_left(self._settled, self.at)
         first, end = coming + channel.foretold, min(self._ended.get(name, cut), cut)
@@ -525,6 +533,7 @@ class Lookahead:
             self._showings.forget()
             for stretch in self._known.values():
                 stretch.led.clear()
+                stretch.uncertain.clear()
 
     def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
         """Whether the state may come to be shown so before an event."""

@@ -199,11 +199,14 @@ def _apart(robots: tuple[str, ...], place: str | None) -> Iterator[tuple[ScriptS
     Chance seldom watches the second one change, and seldom one field of many.
     """
     selections = (*(() if place is None else (at(place),)), by_ids(*robots))
+    # A short run begins with calls that have an answer: subscriptions alone would tell little.
+    asked = tuple(ScriptStep(GET, {"robotId": robot}) for robot in robots)
     for endpoint, parts in SHOWN.items():
         for selection, part in itertools.product(selections, parts):
             reports = (report(robot, part, value) for robot in robots[::-1] for value in APART[part])
             changes = ((_SETTLE, ScriptStep("drive", one)) for one in reports)
-            yield (ScriptStep(endpoint.value, selection), *itertools.chain.from_iterable(changes))
+            yield (*asked, ScriptStep(endpoint.value, selection), *itertools.chain.from_iterable(changes))
+            asked = ()
     for endpoint, first in itertools.product(MAPS, robots):
         yield _numbered_apart(endpoint, first, *(one for one in robots if one != first))
 

@@ -38,6 +38,7 @@ AGAIN = 0.6
 """How often what the surroundings did happens once more at once: goal after goal, say."""
 
 EXPERIMENTS, ADVICE = "telling open readings apart", "what would decide open readings and why rules came up seldom"
+MISSED = "which rules could not be tested for want of drives"
 """What a run that is stopped may not come to, besides conversations."""
 
 LONGEST_SUSPECTED = 60
@@ -163,6 +164,8 @@ def conform(  # noqa: PLR0913 - every one has a default
         run.ledger.note(f"the adapter had not answered when it was stopped: {error}")
     verdict = verdict_of(run, seed, known, advice=advice)
     if enough() and not _has_found(run):
+        if verdict.untested.drives:
+            left.append(MISSED)
         done = f"it was stopped after {run.ledger.examples} of {plan.conversations(run.system)} conversations"
         rest = f"; it did not come to {', nor to '.join(left)}" if left else ""
         verdict = evolve(verdict, notes=(*verdict.notes, done + rest))
@@ -302,7 +305,7 @@ def _untested(run: Run, left_out: Iterable[str]) -> Untested:
     absent = {} if declared is None else dict.fromkeys(set(found.calls) - set(declared), f"{NOT_THERE}: not declared")
     calls = {name: absent.get(name, why) for name, why in found.calls.items()}
     # Where a robot is in use, nothing is known of the state from which that would be explored.
-    known = not run.system.spec.anywhere
+    known = not run.system.spec.anywhere and not run.enough()
     missed = missed_without(run.system, frozenset(found.drives)) if known else Missed()
     # What is left out for this run was not commanded either, and the robot does not do it by itself.
     commanded = set(drives) - run.without

@@ -231,7 +231,14 @@ def test_both_profiles_take_their_letters_from_the_same_list() -> None:
         "AI-39": "b" if AS_SHIPPED.scheduling_period else "a",
     }
     # What the running server leaves no choice in.
-    names = {"AI-02": "c", "AI-04.robot": "q", "AI-04.sent": "s", "AI-28.config": "b", "AI-31": "b"}
+    names = {
+        "AI-02.canceled": "a",
+        "AI-02.aborted": "c",
+        "AI-04.robot": "q",
+        "AI-04.sent": "s",
+        "AI-28.config": "b",
+        "AI-31": "b",
+    }
     names |= {"AI-27.uuid": "a", "AI-28.uuid": "y", "AI-16.older": "v", "AI-16.again": "t"}
     assert {one: {**letters, **names}[one] for one in SHIPPED_SERVER} == {**letters, **names}
     assert [one for one, letter in {**letters, **names}.items() if letter not in SHIPPED_SERVER[one]] == []

@@ -221,6 +221,14 @@ def test_every_other_break_of_the_independent_robot_is_caught() -> None:
     assert uncaught(others) == []
 
 
+def test_what_cannot_be_used_may_be_passed_over() -> None:
+    """AI-33.unusable c: such a message is no mission, with and without one that runs; that is accepted and flagged."""
+    verdict = judged(arrives(ONE, "no json"), passes(1), arrives(ONE), says("running"), arrives(TWO, "no json"),
+                     passes(1), says("running"), SUCCEEDED, says("success"), SETTLED)  # fmt: skip
+    assert verdict.conforms, str(verdict)
+    assert "AI-33.unusable=c" in [one.partition(" ")[0] for one in verdict.flagged]
+
+
 def test_every_broken_rule_is_noticed() -> None:
     """Whichever rule the reference breaks, in whichever way, the oracle notices."""
     found = teeth(ROBOT)

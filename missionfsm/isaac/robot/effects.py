@@ -204,6 +204,7 @@ def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
             continue
         yield from _all(_fails(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["a"]))
         yield from _all(_starts(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["b"]))
+        yield Step(here, rules=(rules.IGNORES.id,), assumes=(*same, *assumes, readings.AI_33_UNUSABLE["c"]))
 
 
 def _old(here: Codelet) -> int | None:

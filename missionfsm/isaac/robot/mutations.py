@@ -97,7 +97,7 @@ def _running_after(_: Codelet, step: Step) -> Step:
 
 def _ends_what_runs(before: Codelet, step: Step) -> Step:
     """What means nothing fails the mission that runs."""
-    if not before.running or step.after is not before:
+    if not before.running or step.after != before:
         return step
     report = Report("failure", before.named, before.world.status_channel)
     idle = evolve(before, running=False, named=False, used=True)

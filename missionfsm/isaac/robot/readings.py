@@ -100,9 +100,13 @@ AI_33_NODE = Ambiguity(
 AI_33_UNUSABLE = Ambiguity(
     "AI-33.unusable",
     "What becomes of a mission whose configuration cannot be used?",
-    {"a": "it fails at once", "b": "it runs with the configuration as it is"},
+    {
+        "a": "it fails at once",
+        "b": "it runs with the configuration as it is",
+        "c": "it is passed over: what cannot configure the application is no mission",
+    },
     default="a",
-    flagged=frozenset("b"),
+    flagged=frozenset("bc"),
 )
 AI_33_RUNNING = Ambiguity(
     "AI-33.running",

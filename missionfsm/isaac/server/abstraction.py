@@ -57,5 +57,8 @@ def canonical(server: Server) -> Server:
         else one
         for one in server.missions
     )
-    links = tuple(evolve(one, early=(), held=(0, 0)) if one.early or one.held[1] else one for one in server.links)
+    links = tuple(
+        evolve(one, early=(), held=(0, 0), rests=0) if one.early or one.held[1] or one.rests else one
+        for one in server.links
+    )
     return Server(server.name_channel, missions, links, tolerance=server.tolerance)

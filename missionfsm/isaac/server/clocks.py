@@ -13,6 +13,7 @@ from missionfsm.isaac.server.deciding import counts, ways
 from missionfsm.isaac.server.readings import (
     AI_24,
     AI_39,
+    AI_39_LIMITS,
 )
 from missionfsm.isaac.server.state import (
     DAY,
@@ -35,11 +36,16 @@ Moves = Iterator[Move]
 
 def by(state: Server, due: int) -> int:
     """When something that is due at a moment is noticed at the latest, in microseconds."""
-    return state.tolerance + (state.next_pass(due) if state.letters(AI_39) == "b" else due)
+    return state.tolerance + (state.next_pass(due) if _looks(state) else due)
+
+
+def _looks(state: Server) -> bool:
+    """Whether it is known that timeouts are noticed when the server looks, about once a second."""
+    return state.letters(AI_39) == "b" or state.letters(AI_39_LIMITS) == "b"
 
 
 def with_later_clocks(move: Move) -> Move:
-    """AI-39 b has been decided: clocks that run may strike later than was thought."""
+    """AI-39 b or AI-39.limits b has been decided: clocks that run may strike later than was thought."""
     missions = tuple(
         evolve(one, clocks=tuple(_later(move.state, clock) for clock in one.clocks)) if one.clocks else one
         for one in move.state.missions

@@ -26,7 +26,17 @@ from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CON
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Sends, World
 from missionfsm.isaac.shared.drives import in_microseconds, seconds, text_line
-from missionfsm.isaac.shared.line import MICROSECONDS, canonical, from_json, new_uuid, see, stamp, to_json, uuid_name
+from missionfsm.isaac.shared.line import (
+    MICROSECONDS,
+    LineContent,
+    canonical,
+    from_json,
+    new_uuid,
+    see,
+    stamp,
+    to_json,
+    uuid_name,
+)
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line, encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
@@ -309,8 +319,14 @@ def write_drive_result(event: Incident, names: tuple[Name, ...]) -> dict[str, JS
 
 
 def split_message(line: JSON) -> tuple[Part, ...]:
-    """The identifier in a line, the uuid of its header as a mark, and what is left of it."""
+    """The identifier in a line, the uuid of its header as a mark, and what is left of it.
+
+    Nothing of a text, as long as it is well formed: whether a server greets a robot, or confirms its name, is its own
+    affair.
+    """
     names, said = see(line)
+    if isinstance(said, LineContent) and said.kind == "text" and not said.bare:
+        return ()
     own = stamp(line)
     return ((names, () if own is None else (("uuid", own),), to_json(said)),)
 

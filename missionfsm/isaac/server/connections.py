@@ -8,11 +8,12 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import acknowledged, closed, ends, lost, untimed
+from missionfsm.isaac.server.lifecycle import acknowledged, back, closed, ends, lost, untimed
 from missionfsm.isaac.server.readings import (
     AI_07,
     AI_09,
     AI_10,
+    AI_10_FROM,
     AI_14_STATUS,
     AI_16,
     AI_16_AGAIN,
@@ -20,12 +21,15 @@ from missionfsm.isaac.server.readings import (
     AI_16_OLDER,
     AI_16_UNDER_WAY,
     AI_17,
+    AI_17_UNDER_WAY,
     AI_18_EARLY,
     AI_25_TAKEN,
     AI_26,
     AI_37,
+    AI_37_EMPTY,
     AI_38,
     AI_39,
+    AI_39_FAILED,
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
@@ -131,15 +135,23 @@ def _unreadable(move: Move, link: Link) -> Moves:
 
 
 def _says_name(move: Move, link: Link, text: str) -> Moves:
-    if not text:
-        yield _nothing(move)
-        return
     if text == text.strip():
-        yield from _named(move, link, text)
+        yield from _says_key(move, link, text)
         return
     for letter, way in ways(move, AI_37, "a", "b"):
-        key = text if letter == "a" else text.strip()
-        yield from _named(way, link, key) if key else (_nothing(way),)
+        yield from _says_key(way, link, text if letter == "a" else text.strip())
+
+
+def _says_key(move: Move, link: Link, key: str) -> Moves:
+    """What a name does, its space taken away or not; one that is empty is none, or no robot's (AI-37.empty)."""
+    if not key:
+        none, nobodys = split(move, AI_37_EMPTY, "d")
+        if none is not None:
+            yield _nothing(none)
+        if nobodys is None:
+            return
+        move = nobodys
+    yield from _named(move, link, key)
 
 
 def _named(move: Move, link: Link, key: str) -> Moves:
@@ -162,14 +174,27 @@ def _named(move: Move, link: Link, key: str) -> Moves:
 
 
 def _renamed(move: Move, link: Link, key: str) -> Moves:
-    """A robot says another name: it keeps its own (AI-17), or takes the other."""
-    ignored, bound = split(move, AI_17, "a")
+    """A robot says another name: it keeps its own (AI-17), or takes the other, or loses its connection."""
+    ignored, bound, closing = _other_name(move)
     if ignored is not None:
         yield ignored
-    if bound is not None:
-        for after in lost(bound, link):
-            for free in _succeeded(after.with_link(link.slot, name=None, serves=False), link):
-                yield from _claims(free, link, key)
+    if closing is not None:
+        yield from drops(closing, link)
+    if bound is None:
+        return
+    under_way = any(one.status in UNDER_WAY and one.sent_on == link.slot for one in bound.state.missions)
+    stays, dropping = split(bound, AI_17_UNDER_WAY, "k") if under_way else (None, bound)
+    left = () if stays is None else (stays,)
+    for after in (*left, *(() if dropping is None else lost(dropping, link))):
+        for free in _succeeded(after.with_link(link.slot, name=None, serves=False), link):
+            yield from _claims(free, link, key)
+
+
+def _other_name(move: Move) -> tuple[Move | None, Move | None, Move | None]:
+    """AI-17: the move in which another name is ignored, the one in which it is taken, and where it closes."""
+    ignored, rest = split(move, AI_17, "a")
+    bound, closing = (None, None) if rest is None else split(rest, AI_17, "b")
+    return ignored, bound, closing
 
 
 def _named_otherwise(move: Move, link: Link, key: str) -> Moves:
@@ -177,9 +202,11 @@ def _named_otherwise(move: Move, link: Link, key: str) -> Moves:
     keeps, without = split(move, AI_16_BACK, "pr")
     if without is not None:
         yield from _claims(without, link, key)
-    ignored, bound = (None, None) if keeps is None else split(keeps, AI_17, "a")
+    ignored, bound, closing = (None, None, None) if keeps is None else _other_name(keeps)
     if ignored is not None:
         yield ignored
+    if closing is not None:
+        yield from drops(closing, link)
     if bound is not None:
         yield from _claims(bound, link, key)
 
@@ -229,14 +256,24 @@ def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Move
     if not under_way and not kept:
         yield from _served(displaced, link)
         return
-    for letter, way in ways(displaced, AI_16_UNDER_WAY, "k", "l", "m"):
+    for letter, way in ways(displaced, AI_16_UNDER_WAY, "k", "l", "m", "n"):
         if letter == "k":
             yield from _served(way, link)
+        elif letter == "n":
+            yield from _served(_adopted(way, holder, link), link)
         elif letter == "l":
             for after in lost(way, holder):
                 yield from _served(after, link)
         else:
             yield from _served(_untied(way, holder) if unnoticed else untimed(way, holder.slot), link)
+
+
+def _adopted(move: Move, holder: Link, link: Link) -> Move:
+    """What was sent on an older connection goes on on the newer one (AI-16.under-way n)."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.sent_on == holder.slot:
+            move = move.with_mission(index, sent_on=link.slot)
+    return move
 
 
 def _untied(move: Move, holder: Link) -> Move:
@@ -255,7 +292,7 @@ def _served(move: Move, link: Link) -> Moves:
     for index, mission in enumerate(move.state.missions):
         if mission.robot == found.name and mission.status is Status.QUEUED:
             move = started(move, index, START, "connect")
-    moves = [move]
+    moves = list(back(move, found.name))
     for report in found.early:
         moves = [after for one in moves for after in _believed(one, link.slot, report)]
     yield from moves
@@ -288,9 +325,30 @@ def _could_matter(state: Server, report: Report) -> bool:
 
 
 def _believed(move: Move, slot: int, report: Report) -> Moves:
-    """What a status does, for each way in which it may be matched to a mission (AI-10)."""
+    """What a status does, on whichever connections one is heard that names its mission (AI-10.from)."""
     link = move.state.link_at(slot)
     assert link is not None, "the connection is open"  # noqa: S101 - callers have it from the state
+    own, anywhere = (move, None) if not _from_elsewhere(move.state, link, report) else split(move, AI_10_FROM, "r")
+    if own is not None:
+        yield from _matched(own, link, report, anywhere=False)
+    if anywhere is not None:
+        yield from _matched(anywhere, link, report, anywhere=True)
+
+
+def _from_elsewhere(state: Server, link: Link, report: Report) -> bool:
+    """Whether a status names a mission that was sent and is none of those that its connection may report on."""
+    named = {report.named, report.header} - {None, NOBODYS}
+    return any(_was_sent(state, one) and not _may_report(state, link, one) for one in named if one is not None)
+
+
+def _was_sent(state: Server, index: int) -> bool:
+    """Whether a mission was sent, and no drop of its connection has yet to be noticed."""
+    mission = state.missions[index]
+    return mission.sent and not any(one.kind == DROP for one in mission.clocks)
+
+
+def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves:
+    """What a status does, for each way in which it may be matched to a mission (AI-10)."""
     targets: dict[tuple[int, ...], str] = {}
     current = _current(move.state, link, report)
     by_payload = current if report.named is None else (report.named,)
@@ -300,7 +358,11 @@ def _believed(move: Move, slot: int, report: Report) -> Moves:
         ("c", () if report.header is None else (report.header,)),
         ("d", current),
     ):
-        meant = tuple(index for index in found if index >= 0 and _may_report(move.state, link, index))
+        meant = tuple(
+            index
+            for index in found
+            if index >= 0 and (_may_report(move.state, link, index) or (anywhere and _was_sent(move.state, index)))
+        )
         targets[meant] = targets.get(meant, "") + letter
     for meant, letters in targets.items():
         way, _ = split(move, AI_10, letters)
@@ -338,14 +400,14 @@ def _current(state: Server, link: Link, report: Report) -> tuple[int, ...]:
 def _may_report(state: Server, link: Link, index: int) -> bool:
     """Whether a connection is listened to about a mission: that of its robot, or the one that it was sent on."""
     mission = state.missions[index]
-    if not mission.sent or any(one.kind == DROP for one in mission.clocks):
+    if not _was_sent(state, index):
         return False
     elsewhere = (
         mission.sent_on is not None and mission.sent_on != link.slot and state.link_at(mission.sent_on) is not None
     )
     if link.serves and mission.robot == link.name:
         return not elsewhere or mission.status in ENDED
-    return mission.sent_on == link.slot and mission.robot == link.name
+    return mission.sent_on == link.slot
 
 
 def _on_channel(move: Move, index: int, report: Report) -> Moves:
@@ -371,9 +433,19 @@ def _happens(move: Move, index: int, report: Report) -> Moves:
         heard, deaf = (move, None) if mission.status is Status.RUNNING else split(move, AI_07, "ac")
         if heard is not None:
             trigger = "report success" if report.status == "success" else "report failure"
-            yield ends(heard, index, trigger, rules.FINAL.id)
+            ended = ends(heard, index, trigger, rules.FINAL.id)
+            yield ended if report.status == "success" else _rests(ended, mission)
         if deaf is not None:
             yield _nothing(deaf)
+
+
+def _rests(move: Move, mission: Mission) -> Move:
+    """AI-39.failed: a robot that has reported a failure may be given no other mission for a second."""
+    link = move.state.serving(mission.robot)
+    letters = move.state.letters
+    if link is None or letters(AI_39) != "a" or "b" not in letters(AI_39_FAILED):
+        return move
+    return move.with_link(link.slot, rests=PASS_PERIOD)
 
 
 def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:

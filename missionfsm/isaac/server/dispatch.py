@@ -30,6 +30,8 @@ from missionfsm.isaac.server.readings import (
     AI_24_WHOLE,
     AI_36,
     AI_39,
+    AI_39_FAILED,
+    AI_39_LIMITS,
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
@@ -110,6 +112,8 @@ def dispatches(move: Move, part: Part) -> Moves:
 
 def dispatches_to(move: Move, link: Link) -> Moves:
     """Every way to send a mission on a connection now."""
+    if move.state.lets_rest(link):
+        return
     undecided = _whether_anybody(move)
     if undecided:
         yield from undecided
@@ -120,8 +124,11 @@ def dispatches_to(move: Move, link: Link) -> Moves:
     for index, chosen in choices:
         if index is not None:
             now, later = split(chosen, AI_39, "a")
-            if now is not None:
-                yield from sends(now, link, index)
+            soon, rests = split(now, AI_39_FAILED, "a") if now is not None and link.rests else (now, None)
+            if soon is not None:
+                yield from sends(soon, link, index)
+            if rests is not None:
+                yield rests
             if later is not None:
                 yield from _sent_later(later, chosen, decides=decides and later.state != move.state)
         elif chosen is not move:
@@ -140,7 +147,7 @@ def _whether_anybody(move: Move) -> tuple[Move, ...]:
 def _sent_later(later: Move, chosen: Move, *, decides: bool) -> Moves:
     """Nothing is sent before the next pass: a move where that has just been decided, or something with it."""
     if later.state.letters(AI_39) != chosen.state.letters(AI_39):
-        yield with_later_clocks(later)
+        yield later if later.state.letters(AI_39_LIMITS) == "b" else with_later_clocks(later)
     elif decides:
         yield later
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.clocks import START_CLOCKS, Moves, started, stopped, ticking
+from missionfsm.isaac.server.clocks import START_CLOCKS, Moves, started, stopped, ticking, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.readings import (
@@ -26,6 +26,7 @@ from missionfsm.isaac.server.readings import (
     AI_31,
     AI_36,
     AI_39,
+    AI_39_LIMITS,
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
@@ -117,7 +118,7 @@ def failures_that_cancel(mission: Mission) -> str:
 
 
 def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
-    """Where a clock that is over aborts its mission, and where it means nothing (it runs no more)."""
+    """Where a clock that is over aborts its mission, and where it does not: it means nothing, or strikes later."""
     if clock.kind == DROP:
         return tuple(_drop_noticed(move, index)), ()
     if clock.kind == DOOM:
@@ -129,10 +130,19 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
     if alike is None:
         return (), (move,)
     aborting, meaningless = _aborting(alike, index, clock)
+    late = (with_later_clocks(one) for way in aborting if (one := _late(way, clock)) is not None)
     return (
         tuple(one for way in aborting for one in aborted(way, index, clock.kind)),
-        (*(stopped(way, index, (clock.kind, clock.since)) for way in meaningless), *filter(None, (unlike,))),
+        (*(stopped(way, index, (clock.kind, clock.since)) for way in meaningless), *late, *filter(None, (unlike,))),
     )
+
+
+def _late(move: Move, clock: Clock) -> Move | None:
+    """AI-39.limits b: a server that sends at once may notice a timeout later, when it looks; None for all others."""
+    letters = move.state.letters
+    if clock.kind == SILENT or clock.whole or letters(AI_39) == "b" or letters(AI_39_LIMITS) != "ab":
+        return None
+    return split(move, AI_39_LIMITS, "b")[0]
 
 
 def _aborting(move: Move, index: int, clock: Clock) -> tuple[list[Move], list[Move]]:
@@ -251,11 +261,44 @@ def _lost_mission(move: Move, index: int, *, still: bool) -> Moves:
         if letter == "a":
             yield here
             continue
-        at_once, later = split(here, AI_15_WHEN, "n")
-        if at_once is not None:
-            yield ends(at_once, index, "lose") if letter == "c" else sent_again(at_once, index)
-        if later is not None:
-            yield _to_be_noticed(later, index, DROP, still=still)
+        for when, noticed in ways(here, AI_15_WHEN, "n", "p", "r", "g"):
+            if when == "n":
+                yield ends(noticed, index, "lose") if letter == "c" else sent_again(noticed, index)
+            elif when == "p":
+                yield _to_be_noticed(noticed, index, DROP, still=still)
+            elif when == "g":
+                yield _in_grace(noticed, index, still=still)
+            else:
+                yield noticed
+
+
+def _in_grace(move: Move, index: int, *, still: bool) -> Move:
+    """A mission fails after a while, of which nothing says how long it is, unless its robot is back before."""
+    soonest = move.at[0] + (still and not move.state.tolerance)
+    return ticking(move, index, (*move.state.missions[index].clocks, Clock(DROP, DROP, soonest, None)))
+
+
+def back(move: Move, robot: str | None) -> Moves:
+    """A robot is there again: what was under way when its connection dropped goes on, or ends now (AI-15.when)."""
+    moves = [move]
+    for index, mission in enumerate(move.state.missions):
+        if mission.robot == robot and mission.sent_on is None and mission.status in UNDER_WAY:
+            moves = [after for one in moves for after in _back(one, index)]
+    yield from moves
+
+
+def _back(move: Move, index: int) -> Moves:
+    when = move.state.letters(AI_15_WHEN)
+    if when == "g":
+        yield stopped(move, index, (DROP, "drop"))
+    elif when == "r":
+        for letter, way in ways(move, dropped(move.state.missions[index]), "a", "b", "c"):
+            if letter == "a":
+                yield way
+            else:
+                yield ends(way, index, "lose") if letter == "c" else sent_again(way, index)
+    else:
+        yield move
 
 
 def _to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) -> Move:

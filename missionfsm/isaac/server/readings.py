@@ -10,14 +10,16 @@ from collections.abc import Mapping
 
 from missionfsm.kernel.readings import Ambiguity, declared
 
-AI_02 = Ambiguity(
-    "AI-02",
-    "How are missions called that were cancelled or aborted?",
-    {
-        "a": "canceled, and aborted",
-        "b": "failed, both",
-        "c": "canceled, and timed out",
-    },
+AI_02_CANCELED = Ambiguity(
+    "AI-02.canceled",
+    "How is a mission called that was cancelled?",
+    {"a": "canceled", "b": "failed"},
+    default="a",
+)
+AI_02_ABORTED = Ambiguity(
+    "AI-02.aborted",
+    "How is a mission called that was aborted?",
+    {"a": "aborted", "b": "failed", "c": "timed out"},
     default="c",
 )
 AI_03 = Ambiguity(
@@ -136,6 +138,12 @@ AI_10 = Ambiguity(
     flagged=frozenset("d"),
     rule="a-final-status-ends-the-mission",
 )
+AI_10_FROM = Ambiguity(
+    "AI-10.from",
+    "On which connections is a status heard that names its mission?",
+    {"r": "on that of its robot, or the one that it was sent on", "w": "on any"},
+    default="r",
+)
 AI_11 = Ambiguity(
     "AI-11",
     "How many missions is a robot sent at a time?",
@@ -179,7 +187,12 @@ AI_15_SENT = Ambiguity(
 AI_15_WHEN = Ambiguity(
     "AI-15.when",
     "When does a mission that was sent fail, or is it sent again, whose robot's connection drops?",
-    {"n": "at once", "p": "in the next scheduling pass"},
+    {
+        "n": "at once",
+        "p": "in the next scheduling pass",
+        "r": "once the robot is back",
+        "g": "after a while, unless the robot is back before: then it goes on",
+    },
     default="n",
 )
 AI_16 = Ambiguity(
@@ -206,6 +219,7 @@ AI_16_UNDER_WAY = Ambiguity(
         "k": "it goes on there, and the robot is busy with it",
         "l": "as if that connection had dropped",
         "m": "it goes on there without its timeouts, and the robot is free",
+        "n": "it goes on on the newer one",
     },
     default="l",
 )
@@ -228,8 +242,18 @@ AI_16_AGAIN = Ambiguity(
 AI_17 = Ambiguity(
     "AI-17",
     "What does another name on a connection do?",
-    {"a": "nothing", "b": "the connection is that robot's from then on"},
+    {
+        "a": "nothing",
+        "b": "the connection is that robot's from then on",
+        "d": "it closes the connection",
+    },
     default="a",
+)
+AI_17_UNDER_WAY = Ambiguity(
+    "AI-17.under-way",
+    "A connection becomes another robot's by another name: what of the mission that was sent on it?",
+    {"k": "it goes on there", "l": "as if that connection had dropped"},
+    default="l",
 )
 AI_18_EARLY = Ambiguity(
     "AI-18.early",
@@ -261,6 +285,12 @@ AI_20_NULL = Ambiguity(
 )
 AI_20_EMPTY = Ambiguity(
     "AI-20.empty", "Is a mission with an empty channel refused?", {"a": "yes", "c": "no"}, default="c"
+)
+AI_20_REPEATED = Ambiguity(
+    "AI-20.repeated",
+    "Is a mission refused that names an upstream twice?",
+    {"a": "yes", "c": "no, it is waited for once"},
+    default="c",
 )
 AI_22_STARTED = Ambiguity(
     "AI-22.started",
@@ -352,6 +382,12 @@ AI_37 = Ambiguity(
     {"a": "exactly", "b": "without the space around it"},
     default="a",
 )
+AI_37_EMPTY = Ambiguity(
+    "AI-37.empty",
+    "What is a text that is empty, said as a name?",
+    {"d": "nothing: the name is still waited for", "n": "the connection's name, which is no robot's"},
+    default="d",
+)
 AI_38 = Ambiguity(
     "AI-38",
     "What does a message of a type do that does not travel as JSON?",
@@ -366,7 +402,18 @@ AI_39 = Ambiguity(
     {"a": "at once", "b": "when the server looks, about once a second"},
     default="a",
 )
-
+AI_39_FAILED = Ambiguity(
+    "AI-39.failed",
+    "When does a server that sends at once send the next mission to a robot that has just reported a failure?",
+    {"a": "at once", "b": "up to a second later"},
+    default="a",
+)
+AI_39_LIMITS = Ambiguity(
+    "AI-39.limits",
+    "When does a server notice a timeout that sends at once?",
+    {"a": "at once", "b": "when it looks, about once a second"},
+    default="a",
+)
 AI_39_ORDER = Ambiguity(
     "AI-39.order",
     "A scheduling pass takes up names and drops, and sends: in which order?",

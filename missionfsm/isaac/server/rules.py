@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.server.inputs import EMPTY, HANDLE, KEY, MALFORMED, NEGATIVE, NO_NAME, NULL, NULL_CONFIG, Ask
-from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_33_NULL
+from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_20_REPEATED, AI_33_NULL
 from missionfsm.isaac.server.state import SYSTEM_NAME, Server
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
 from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, refusal
@@ -37,6 +37,13 @@ def an_upstream_is_unknown(_: Server, ask: Ask) -> bool:
     AI-21: only so is what is submitted a directed acyclic graph.
     """
     return None in ask.upstream
+
+
+@refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "upstream"], assumes=AI_20_REPEATED["a"])
+def an_upstream_is_named_twice(_: Server, ask: Ask) -> bool:
+    """An upstream is named twice, and such a mission is refused (AI-20.repeated)."""
+    known = [one for one in ask.upstream if one is not None]
+    return len(set(known)) < len(known)
 
 
 @refusal(INVALID_ARGUMENT, cite=PAGE["Sample Usage", "timeout"])
@@ -238,6 +245,7 @@ OPERATIONS = {
                 the_mission_is_malformed,
                 an_upstream_is_no_handle,
                 an_upstream_is_unknown,
+                an_upstream_is_named_twice,
                 a_timeout_is_negative,
                 the_robots_name_is_empty,
                 the_mission_has_no_robot,

@@ -36,6 +36,11 @@ class Script:
         self.lines.append(ScriptStep("submit", {"mission": {"robot": robot, **fields}}, picks))
         return self
 
+    def odd(self, *missions: JSON) -> Script:
+        """Submissions with which something is wrong."""
+        self.lines += [ScriptStep("submit", {"mission": mission}) for mission in missions]
+        return self
+
     def refused(self, *upstream: JSON) -> Script:
         """A submission that names missions which do not exist."""
         self.lines.append(ScriptStep("submit", {"mission": {"robot": A, "upstream": list(upstream)}}, ((MISSION, 0),)))
@@ -113,6 +118,45 @@ _SCRIPTS = (
     .report(1, 1, "success")
     .report(1, 2, "running")
     .report(1, 2, "success"),
+    # A diamond: of two missions after one, each is as good as the other, and what comes after both waits for both.
+    Script()
+    .submit(A)
+    .submit(A, 0)
+    .submit(B, 0)
+    .submit("carter-03", 1, 2)
+    .robot(0, A)
+    .robot(1, "carter-03")
+    .report(0, 0, "success")
+    .robot(2, B)
+    .report(2, 2, "success")
+    .report(0, 1, "success"),
+    # Two missions after one: the failure of one is none of the other.
+    Script().submit(A).submit(A, 0).submit(A, 0).robot(0, A).report(0, 0, "success").report(0, 1, "failure"),
+    # Three upstreams, of which the last is the last to succeed; one that is named twice is one.
+    Script()
+    .submit(A)
+    .submit(A)
+    .submit(B)
+    .submit("carter-03", 0, 1, 2)
+    .submit("carter-04", 0, 0)
+    .robot(0, A)
+    .robot(1, "carter-03")
+    .report(0, 0, "success")
+    .report(0, 1, "success")
+    .robot(2, B)
+    .report(2, 2, "success")
+    .robot(3, "carter-04"),
+    # What had ended before a mission was submitted counts as what ends after.
+    Script()
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "success")
+    .submit(A, 0)
+    .wait()
+    .report(0, 1, "failure")
+    .submit(A, 0)
+    .submit(A, 1)
+    .wait(),
     # One of two upstreams is not enough; then the other fails.
     Script()
     .submit(A)
@@ -178,6 +222,9 @@ _SCRIPTS = (
     .report(0, 1, "running")
     .report(0, 0, "failure")
     .report(0, 1, "success"),
+    # What is said of a timeout counts, to a part of a second; where nothing is said there are five seconds to start.
+    Script().submit(A, start_timeout=1.9).robot(0, A),
+    Script().submit(A, start_timeout=3).robot(0, A).wait(5).submit(A).wait(9),
     # RUNNING that is said again and again gives no more time.
     Script()
     .submit(A, timeout=4)
@@ -218,7 +265,7 @@ _SCRIPTS = (
     .report(0, 1, "success")
     .report(0, 1, "failure"),
     # A robot that reports nothing for long, though it was acknowledged, is still at it.
-    Script().submit(A).robot(0, A).report(0, 0, "running").wait(60).report(0, 0, "success"),
+    Script().submit(A).robot(0, A).report(0, 0, "running").wait(4000).report(0, 0, "success"),
     # What was queued waits for its robot; what is done is not sent again.
     Script()
     .submit(A)
@@ -370,8 +417,21 @@ _SCRIPTS = (
     .name(2, B)
     .wait()
     .report(2, 1, "success"),
-    # Upstreams that do not exist.
+    # Upstreams that do not exist, and what is of another type than documented.
     Script()
+    .odd(
+        {"robot": A, "config": [1]},
+        {"robot": A, "config": "{}"},
+        {"robot": 7},
+        {"robot": A, "channel": 3},
+        {"robot": A, "start_timeout": "5"},
+        {"robot": A, "timeout": True},
+        {"robot": A, "timeout": -0.5},
+        {"robot": A, "upstream": "1"},
+        {"robot": A, "upstream": [0.5]},
+        "carter",
+    )
+    .look()
     .refused(upcoming("mission"))
     .submit(B)
     .refused(-1)

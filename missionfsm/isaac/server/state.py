@@ -14,6 +14,7 @@ from typing import Any
 
 from attrs import evolve
 
+from missionfsm.isaac.server.readings import AI_39_FAILED
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.readings import Ambiguity
@@ -181,6 +182,7 @@ class Link:
             it is (AI-39.order s).
         pass_since: how many microseconds ago a scheduling pass may have come that sent or cancelled something here, and
             of which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
+        rests: microseconds for which nothing need be sent, since its robot has reported a failure (AI-39.failed b).
     """
 
     slot: int
@@ -191,6 +193,7 @@ class Link:
     fresh: int = 0
     held: tuple[int, int] = (0, 0)
     pass_since: int | None = None
+    rests: int = 0
 
 
 Left = tuple[tuple[str, str], ...]
@@ -239,6 +242,10 @@ class Server:
     def link_at(self, slot: int) -> Link | None:
         """The connection in a slot."""
         return next((one for one in self.links if one.slot == slot), None)
+
+    def lets_rest(self, link: Link) -> bool:
+        """Whether nothing is sent on a connection yet, since its robot has just reported a failure (AI-39.failed b)."""
+        return link.rests > 0 and self.letters(AI_39_FAILED) == "b"
 
     def link_of_topic(self, at: Hashable) -> Link | None:
         """The connection that a topic is about."""

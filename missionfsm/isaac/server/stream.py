@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.readings import (
-    AI_02,
+    AI_02_ABORTED,
+    AI_02_CANCELED,
     AI_04,
     AI_04_ROBOT,
     AI_04_SENT,
@@ -26,7 +27,7 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Match, Mismatch, Step
 
 _ABORTED = {"c": "timed out", "a": "aborted", "b": "failed"}
-"""AI-02: how missions are called that were aborted; those that were cancelled are so called, or failed (b)."""
+"""AI-02.aborted: how missions are called that were aborted."""
 
 _LOST_IS_CALLED = ("failed", "aborted")
 """What a mission may be called whose robot was lost: it is said nowhere."""
@@ -40,9 +41,9 @@ def _called(server: Server, mission: Mission) -> Called:
     if status is Status.STARTED:
         return ("started", (AI_04_SENT["s"],)), ("queued", (AI_04_SENT["t"],))
     if status is Status.CANCELED:
-        return ("canceled", (AI_02["a", "c"],)), ("failed", (AI_02["b"],))
+        return ("canceled", (AI_02_CANCELED["a"],)), ("failed", (AI_02_CANCELED["b"],))
     if status is Status.ABORTED:
-        return tuple((word, (AI_02[letter],)) for letter, word in _ABORTED.items())
+        return tuple((word, (AI_02_ABORTED[letter],)) for letter, word in _ABORTED.items())
     if status is Status.QUEUED:
         reasons = []
         if mission.waits or mission.doomed:

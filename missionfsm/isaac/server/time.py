@@ -145,13 +145,18 @@ def _moment(move: Move, low: int, part: Part, awaited: tuple[tuple[int, int, int
 
 def _waits_for_pass(state: Server, link: Link) -> bool:
     """Whether a scheduling pass would send something on a connection or cancel something for it."""
-    later = state.letters(AI_39) == "b"
+    later = _sends_later(state, link)
     return link.serves and bool((later and possible(state, link)) or lapses(state, link))
+
+
+def _sends_later(state: Server, link: Link) -> bool:
+    """Whether what can be sent on a connection is sent when the server looks."""
+    return state.letters(AI_39) == "b" or state.lets_rest(link)
 
 
 def _waits_quietly(state: Server, link: Link) -> bool:
     """Whether a pass may do something for a connection that sends nothing: cancel, or give up what has no time."""
-    later = state.letters(AI_39) == "b"
+    later = _sends_later(state, link)
     no_time = later and any(state.missions[index].start == 0 for index, _ in possible(state, link))
     return link.serves and bool(no_time or lapses(state, link))
 
@@ -261,8 +266,9 @@ def _after_pass(move: Move, slot: int, part: Part) -> Iterator[Move]:
     link = evolve(link, pass_since=None)
     for lapsed in lapses(here.state, link):
         yield from _followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
-    for index, chosen in possible(here.state, link) if here.state.letters(AI_39) == "b" else ():
-        for after in sends(here.to(chosen.state), link, index):
+    rested = here.with_link(slot, rests=0) if link.rests else here
+    for index, chosen in possible(rested.state, evolve(link, rests=0)) if _sends_later(here.state, link) else ():
+        for after in sends(rested.to(chosen.state), link, index):
             if not quiet or len(after.sent) == len(here.sent):
                 yield from _followed(after, part)
 
@@ -297,6 +303,8 @@ def _shifted(move: Move, time: int) -> Move:
     for link in move.state.links:
         if link.pass_since is not None:
             after = after.with_link(link.slot, pass_since=time - link.pass_since)
+        if link.rests:
+            after = after.with_link(link.slot, rests=max(0, link.rests - time))
         if link.fresh:
             after = _takeover_noticed(after, link, time)
         if link.held[1]:

@@ -11,7 +11,8 @@ DOCUMENTED, AS_SHIPPED = "documented", "as-shipped"
 """The names of the profiles: nothing departs from the text, or all is as the shipped software does it."""
 
 SHIPPED_SERVER: Mapping[str, str] = {
-    "AI-02": "c",
+    "AI-02.canceled": "a",
+    "AI-02.aborted": "c",
     "AI-03": "a",
     "AI-03.when": "p",
     "AI-04": "a",

@@ -1,0 +1,142 @@
+"""What servers of others do where the page is silent: each is accepted, and known by what it shows."""
+
+from __future__ import annotations
+
+import orjson
+import pytest
+from server_history import History
+
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import Header, Message, TextProto, Uuid
+from missionfsm.tools.check.verdict import Verdict
+
+EXACT = {
+    "AI-05": "a",
+    "AI-06": "a",
+    "AI-07": "a",
+    "AI-10": "a",
+    "AI-24.whole": "x",
+    "AI-39": "a",
+    "AI-39.failed": "ab",
+    "AI-39.limits": "ab",
+}
+"""Readings without which less can be told from a short history."""
+
+
+def follows(verdict: Verdict, **readings: str) -> bool:
+    """Whether a history conforms and tells these readings, written AI_02_aborted for AI-02.aborted."""
+    told = {name.replace("_", "-", 1).replace("_", ".", 1).replace("_", "-"): one for name, one in readings.items()}
+    return verdict.conforms and {name: "".join(verdict.readings[name]) for name in told} == told
+
+
+def sent(**mission: object) -> History:
+    """A mission that was sent at once."""
+    return History().submit(1, **mission).robot(1).sends(1, 1).settles
+
+
+def test_a_status_may_be_heard_from_anybody() -> None:
+    """AI-10.from: of a mission that it names, on another robot's connection or on one without a name."""
+    from_another = sent().robot(2, "s").reports(2, 1, "success").settles
+    assert follows(from_another.shows("SUCCESS").judged(readings=EXACT), AI_10_from="w")
+    from_nobody = sent().drive("connect", connection=2).reports(2, 1, "success").settles
+    assert follows(from_nobody.shows("SUCCESS").judged(readings=EXACT), AI_10_from="w")
+    unheard = sent().robot(2, "s").reports(2, 1, "success").settles
+    assert follows(unheard.shows("STARTED").judged(readings=EXACT), AI_10_from="r")
+    about_nothing = sent().robot(2, "s").submit(2, robot="s").reports(2, 9, "success")
+    assert not about_nothing.settles.shows("STARTED", "SUCCESS").judged().conforms
+
+
+def test_a_drop_that_is_found_out_when_the_robot_is_back() -> None:
+    """AI-15.when r: until then the mission stands as it stood, and the robot's next one waits."""
+    begun = sent().submit(2).drive("disconnect", connection=1).waits(3).settles.shows("STARTED", "QUEUED")
+    begun = begun.robot(2).sends(2, 2).settles.shows("FAILED_DISCONNECTED", "STARTED")
+    assert follows(begun.judged(readings=EXACT), AI_15_when="rg", AI_15_sent="c")
+
+
+def test_a_robot_may_have_time_to_come_back() -> None:
+    """AI-15.when g: a mission goes on whose robot is back soon, and fails if it stays away."""
+    begun = sent().drive("disconnect", connection=1).waits(3).settles.shows("STARTED")
+    begun = begun.robot(2).settles.shows("STARTED").reports(2, 1, "running").settles.shows("RUNNING")
+    begun = begun.drive("disconnect", connection=2).settles.shows("RUNNING").waits(11).settles
+    assert follows(begun.shows("FAILED_DISCONNECTED").judged(readings={**EXACT, "AI-15.sent": "c"}), AI_15_when="g")
+
+
+def test_a_mission_may_pass_to_the_newer_connection() -> None:
+    """AI-16.under-way n: although a mission fails whose connection drops; the older one is not listened to."""
+    begun = sent().robot(2).settles.shows("STARTED").reports(1, 1, "success").settles.shows("STARTED")
+    begun = begun.reports(2, 1, "running").settles.shows("RUNNING").drive("disconnect", connection=2).settles
+    verdict = begun.shows("FAILED_DISCONNECTED").judged(readings=EXACT)
+    assert follows(verdict, AI_15="c")
+    assert "n" in verdict.readings["AI-16.under-way"]
+
+
+def test_another_name_may_cost_the_connection() -> None:
+    """AI-17 d: like a line that cannot be read."""
+    begun = sent().says(1, "s").closes(1).settles.shows("FAILED_DISCONNECTED")
+    assert follows(begun.judged(readings=EXACT), AI_17="d", AI_15_sent="c")
+
+
+def test_a_mission_may_go_on_under_another_name() -> None:
+    """AI-17.under-way k: although a mission fails whose connection drops."""
+    begun = sent().submit(2, robot="s").says(1, "s").sends(1, 2).reports(1, 1, "running")
+    begun = begun.settles.shows("RUNNING", "STARTED").drive("disconnect", connection=1).settles
+    verdict = begun.shows("FAILED_DISCONNECTED", "FAILED_DISCONNECTED").judged(readings=EXACT)
+    assert follows(verdict, AI_17="b", AI_17_under_way="k", AI_15="c")
+
+
+@pytest.mark.parametrize("refused", [True, False])
+def test_an_upstream_that_is_named_twice(*, refused: bool) -> None:
+    """AI-20.repeated: it is refused, or is one upstream; that the mission waits for ever is a violation."""
+
+    def begin() -> History:
+        begun = History().submit(1).submit(2, robot="s", upstream=[1, 1], refused=refused).robot(1).sends(1, 1)
+        return begun.robot(2, "s").reports(1, 1, "success")
+
+    begun = begin() if refused else begin().sends(2, 2)
+    assert refused or not begin().settles.shows("SUCCESS", "QUEUED").judged(readings=EXACT).conforms
+    verdict = begun.settles.shows("SUCCESS", *(() if refused else ("STARTED",))).judged(readings=EXACT)
+    assert follows(verdict, AI_20_repeated="a" if refused else "c")
+
+
+def test_a_name_that_is_empty() -> None:
+    """AI-37.empty: it is nothing, or it is the name for which the connection is known from then on."""
+    served = History().submit(1).robot(1, "").says(1).sends(1, 1).settles.shows("STARTED")
+    assert follows(served.judged(readings={**EXACT, "AI-17": "a"}), AI_37_empty="d")
+    unserved = History().submit(1).robot(1, "").says(1).settles.shows("QUEUED")
+    assert follows(unserved.judged(readings=EXACT), AI_37_empty="n", AI_17="ad")
+
+
+def test_timeouts_that_are_looked_at_now_and_then() -> None:
+    """AI-39.limits b: a server that sends at once may abort up to a second late, and not before."""
+    late = sent().waits(5.9).settles
+    assert follows(late.shows("STARTED").judged(readings=EXACT), AI_39_limits="b")
+    assert not sent().waits(6.1).settles.shows("STARTED").judged(readings=EXACT).conforms
+    assert not sent().waits(4.9).settles.shows("FAILED_TIMEDOUT").judged(readings=EXACT).conforms
+
+
+def test_texts_that_a_server_sends() -> None:
+    """To greet a robot or to confirm its name; one that is no message as documented is a violation all the same."""
+    line = encode(Message(Header("name", 1, 1, Uuid(3, 4)), TextProto(""))).decode().strip()
+    history = History().submit(1).drive("connect", connection=1)
+    history.lines.append({"connection": 1, "line": line})
+    assert history.says(1).sends(1, 1).settles.shows("STARTED").judged().conforms
+    wrong = orjson.loads(line)
+    wrong["header"]["pubtime"] = 1
+    history.lines.append({"connection": 1, "line": orjson.dumps(wrong).decode()})
+    assert not history.settles.judged().conforms
+
+
+def test_a_robot_may_rest_after_a_failure() -> None:
+    """AI-39.failed b: its next mission may come up to a second later, and no later, though others come at once."""
+
+    def begin() -> History:
+        return sent().submit(2).settles.reports(1, 1, "failure").settles.shows("FAILED", "QUEUED")
+
+    assert follows(begin().waits(1.1).sends(1, 2).settles.judged(readings=EXACT), AI_39_failed="b")
+    assert not begin().waits(1.1).settles.shows("FAILED", "QUEUED").judged(readings=EXACT).conforms
+    rested = begin().waits(1.1).sends(1, 2).reports(1, 2, "failure").waits(1.1).submit(3).sends(1, 3)
+    assert rested.settles.shows("FAILED", "FAILED", "STARTED").judged(readings=EXACT).conforms
+    at_once = sent().submit(2).settles.reports(1, 1, "failure").sends(1, 2).settles
+    assert follows(at_once.judged(readings=EXACT), AI_39_failed="a")
+    succeeded = sent().submit(2).reports(1, 1, "success").settles.shows("SUCCESS", "QUEUED")
+    assert not succeeded.judged(readings=EXACT).conforms

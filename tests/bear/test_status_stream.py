@@ -413,15 +413,22 @@ def test_only_selected_robots_are_shown(robot: str) -> None:
     assert not conforms(*lines)
 
 
-def test_somebody_elses_robot_at_an_own_location_is_not_shown() -> None:
-    """A location selects the account's robots; x1 stands there as well."""
+def test_somebody_elses_robot_at_an_own_location_may_be_shown_and_is_flagged() -> None:
+    """AS-03: a location selects all robots that are there; x1 is, x2 is not. What is shown is what it reports."""
     lines = [
         *opened(1, BATTERY, at("L1")),
         battery_message(1, "r1", 1, FIRST),
         battery_message(1, "r2", 1, SECOND),
     ]
     assert conforms(*lines, SETTLED)
-    assert not conforms(*lines, battery_message(1, "x1", 1, SECOND))
+    changed = report("x1", "battery", battery(50))
+    shown = [battery_message(1, "x1", number, value) for number, value in ((1, SECOND), (2, battery(50)))]
+    served = judge([*lines, shown[0], changed, shown[1], SETTLED])
+    assert (readings(served, "AS-03.served"), served.violation) == (("s",), None)
+    assert [line.partition(" ")[0] for line in served.verdict().flagged] == [f"AS-03.served.{BATTERY}=s"]
+    assert conforms(*lines, changed, SETTLED)
+    assert not conforms(*lines, battery_message(1, "x1", 1, battery(50)))
+    assert not conforms(*lines, battery_message(1, "x2", 1, SECOND))
 
 
 MOVED = {"drive": {"event": "move", "robotId": "r3", "locationId": "L1"}}

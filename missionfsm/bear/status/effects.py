@@ -14,6 +14,7 @@ from missionfsm.bear.status.messages import (
     RobotState,
 )
 from missionfsm.bear.status.readings import (
+    AS_03_SERVED,
     AS_04,
     AS_04_BLANK,
     AS_07,
@@ -35,7 +36,7 @@ from missionfsm.bear.status.state import (
     whose,
 )
 from missionfsm.bear.status.stream import renderings
-from missionfsm.bear.status.views import About, Assumed, Promised, Seen, Topic, View, blank, view
+from missionfsm.bear.status.views import BLANK, About, Assumed, Promised, Seen, Topic, View, blank, view
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
@@ -159,16 +160,38 @@ def _opened(fleet: Fleet, request: Request, alone: str | None) -> Iterator[Step]
     endpoint = Endpoint(request.operation)
     by_location = request.location is not None
     selected = fleet.at(request.location or "") if by_location else own(fleet, request)
-    candidates = tuple(one for one in fleet.robots if one.owned) if by_location else selected
+    others = tuple(_others_at(fleet, request.location)) if by_location else ()
+    candidates = (*(one for one in fleet.robots if one.owned), *others) if by_location else selected
     if alone is not None:
-        selected, candidates = (tuple(one for one in some if one.id == alone) for some in (selected, candidates))
+        selected, others, candidates = (
+            tuple(one for one in some if one.id == alone) for some in (selected, others, candidates)
+        )
     partly = not by_location and bool(foreign(fleet, request))
-    topics = [Topic(endpoint, one.id, request.location, one in selected, partly) for one in candidates]
+    there = (*selected, *others)
+    topics = [Topic(endpoint, one.id, request.location, one in there, partly) for one in candidates]
     if not topics:
         topics = [Topic(endpoint, "", request.location)]
-    for owed, assumes in _firsts(fleet, endpoint, selected):
+    perhaps = {one.id: tuple(_first_of_others(fleet, one, endpoint)) for one in others}
+    for first, assumes in _firsts(fleet, endpoint, selected):
+        owed = {**first, **perhaps}
         opens = tuple(Opening(topic, 0, owed.get(topic.robot, ())) for topic in topics)
         yield Step(fleet, opens=opens, answer=Answer(OK), refs=(0,), assumes=assumes)
+
+
+def _others_at(fleet: Fleet, location: str | None) -> Iterator[Robot]:
+    """Robots of somebody else at a location of the account."""
+    place = fleet.location(location or "")
+    if place is not None and place.owned:
+        yield from (one for one in fleet.robots if not one.owned and one.location == location)
+
+
+def _first_of_others(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator[Emission]:
+    """AS-03: what a stream that serves robots of somebody else may show first of one."""
+    unknown = blank(robot, endpoint) if endpoint in BLANK else None
+    shown = View(robot.id, endpoint, unheard=True) if fleet.unheard else view(robot, endpoint) or unknown
+    if shown:
+        about = About(endpoint, robot.id, robot.location)
+        yield Emission(about, shown, (), only=AS_03_SERVED[endpoint.value]["s"], stays=fleet.unheard)
 
 
 def _question(fleet: Fleet, endpoint: Endpoint, robot: Robot) -> Ambiguity | None:

@@ -16,6 +16,7 @@ from missionfsm.bear.status.messages import (
     Wifi,
 )
 from missionfsm.bear.status.readings import (
+    AS_03_SERVED,
     AS_09_OFFLINE,
     AS_09_UNSET,
     AS_13_FIELDS,
@@ -67,8 +68,14 @@ def _forgotten(fleet: Fleet, alone: str | None) -> Step:
     """Any robot may report anything from now on: every stream may show it any number of times."""
     after = evolve(fleet, unheard=True)
     emits = tuple(
-        Emission(About(endpoint, robot.id, robot.location), View(robot.id, endpoint, unheard=True), (), stays=True)
-        for endpoint, robot in each(one for one in fleet.robots if one.owned and alone in (None, one.id))
+        Emission(
+            About(endpoint, robot.id, robot.location),
+            View(robot.id, endpoint, unheard=True),
+            (),
+            only=None if robot.owned else AS_03_SERVED[endpoint.value]["s"],
+            stays=True,
+        )
+        for endpoint, robot in each(one for one in fleet.robots if alone in (None, one.id))
     )
     return Step(after, emits=emits, label="robots report by themselves")
 
@@ -126,7 +133,8 @@ def _reporting_steps(  # noqa: PLR0913 - what a report is made of
     """What a change of a robot shows, in every combination of the readings that matter."""
     into = fleet.put(after)
     if not after.owned or after == before:
-        yield Step(into, assumes=assumes, label="report")
+        emits = () if after == before else tuple(_of_others(after, part))
+        yield Step(into, emits=emits, assumes=assumes, label="report")
         return
     ways: list[list[Way]] = []
     for endpoint, topical in TOPICAL.items():
@@ -141,6 +149,16 @@ def _reporting_steps(  # noqa: PLR0913 - what a report is made of
         assumed = tuple(one for _, more in combination for one in more)
         rules = (UPDATES.id,) if emits else ()
         yield Step(into, emits=emits, assumes=(*assumes, *assumed), rules=rules, label="report")
+
+
+def _of_others(robot: Robot, part: str) -> Iterator[Emission]:
+    """AS-03: what streams that serve robots of somebody else may show of a change of one."""
+    for endpoint in Endpoint:
+        shown = view(robot, endpoint)
+        concerned = part == TOPICAL[endpoint] if endpoint in TOPICAL else part in STATE_PARTS
+        if shown and concerned:
+            only = AS_03_SERVED[endpoint.value]["s"]
+            yield Emission(About(endpoint, robot.id, robot.location), shown, (), only=only)
 
 
 def _addressed(  # noqa: PLR0913 - an emission's own fields

@@ -115,6 +115,14 @@ AS_03_MIXED = _asked(
     "h",
     flagged="g",
 )
+AS_03_SERVED = _asked(
+    SUBSCRIPTIONS,
+    "AS-03.served",
+    "does the stream of an own location show somebody else's robots that are there?",
+    {"h": "no, the account's own alone", "s": "yes, all robots at the location"},
+    "h",
+    flagged="s",
+)
 AS_03_FOREIGN = _asked(
     SUBSCRIPTIONS,
     "AS-03.foreign",

@@ -113,7 +113,7 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Baseline(known_violations(expect_violations))
-    reports = _Reports(json, html, junit, parquet, github)
+    reports = _Reports(json=json, html=html, junit=junit, parquet=parquet, github=github)
     with one_line_errors():
         found = histories(files)
         reports.refuse_impossible((*found, expect_violations))

@@ -297,6 +297,8 @@ def tidy(explanation: Explanation) -> Explanation:
     if len(explanation.channels) > 1:
         explanation = _in_order(explanation)
     unseen = dict.fromkeys(_unseen(explanation))
+    if not unseen:
+        return explanation
     new = {name: GONE - 1 - position for position, name in enumerate(unseen)}
     return explanation if all(map(operator.eq, new, new.values())) else rename(explanation, new)
 

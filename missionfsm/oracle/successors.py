@@ -364,6 +364,9 @@ class Successors:
         waiting = [
             (at, call) for at, call in enumerate(explanation.calls) if call.done is None and call.name != besides
         ]
+        if not waiting:
+            yield from self._others(explanation, (), besides, focus)
+            return
         opening = [at for at, call in waiting if self.only_opens(explanation, call)]
         others = [at for at, _ in waiting if at not in opening]
         yield from self._others(explanation, others, besides, focus)

@@ -18,7 +18,7 @@ from missionfsm.oracle.symbols import Symbol
 WINDOW_BUDGET, EACH = 100_000, 200
 """How many explanations a window may cost before it is given up, and how many more for each of its events."""
 
-FIRST, MORE = 5_000, 50
+FIRST, MORE = 2_000, 10
 """The same where further events may come that tell more: it is tried again with them."""
 
 

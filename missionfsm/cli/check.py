@@ -119,11 +119,12 @@ def check(  # noqa: PLR0913 - options of the command
         reports.refuse_impossible((*found, expect_violations))
     many = found != list(dict.fromkeys(files))
     telling = _Telling(known, many or len(found) > MANY if summary is None else summary, summary is None, json, verbose)
+    told = Told(None if STDOUT not in (json, parquet) else STDOUT)
     with one_line_errors(), Bar("files", len(found)) as bar:
         live = None if telling.sums_up else telling.say
         for one in _judged(found, readings, jobs=jobs, dask=dask, progress=bar.more, tell=live, **how):
             telling.add(one)
-    telling.end(Told(None if STDOUT not in (json, parquet) else STDOUT))
+    telling.end(told)
     reached, troubles = telling.reached, telling.troubles
     if reached:
         reports.write(reached, telling.seconds, telling.stale, troubles, many=many)

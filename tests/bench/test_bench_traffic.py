@@ -209,6 +209,17 @@ def test_bench_traffic_fleet_stream(tmp_path: Path, robots: int) -> None:
     shown(f"{robots} robots", written(tmp_path / "log.jsonl", lines))
 
 
+def test_bench_traffic_independent_missions(tmp_path: Path) -> None:
+    """A hundred missions of as many robots, none of which is there, and a minute that passes."""
+    drives = ["connect", "line", "disconnect", "advance"]
+    lines: list[Any] = [{"missionfsm": 1, "system": "isaac.server", "world": {}, "drives": drives}]
+    for number in range(1, 101):
+        lines.append({"call": number, "method": "submit", "params": {"mission": {"robot": f"r{number}"}}})
+        lines.append({"return": number, "result": {"mission": number}})
+    lines += [{"drive": {"event": "advance", "seconds": 60}}, {"settled": True}]
+    shown("100 independent missions", written(tmp_path / "log.jsonl", lines))
+
+
 def test_bench_traffic_list_that_is_never_cleared(tmp_path: Path) -> None:
     """2,400 missions one after another, every one of which stays listed, and now and then somebody looks."""
     log = Recorder(drives=True)

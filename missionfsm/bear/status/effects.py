@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -158,15 +158,10 @@ def _got(fleet: Fleet, shown: View, seen: Seen, assumes: Assumed) -> Step:
 def _opened(fleet: Fleet, request: Request, alone: str | None) -> Iterator[Step]:
     """A subscription: a channel for every robot that it may ever be about, and what each is shown first."""
     endpoint = Endpoint(request.operation)
-    by_location = request.location is not None
-    selected = fleet.at(request.location or "") if by_location else own(fleet, request)
-    others = tuple(_others_at(fleet, request.location)) if by_location else ()
-    candidates = (*(one for one in fleet.robots if one.owned), *others) if by_location else selected
-    if alone is not None:
-        selected, others, candidates = (
-            tuple(one for one in some if one.id == alone) for some in (selected, others, candidates)
-        )
-    partly = not by_location and bool(foreign(fleet, request))
+    selected, others, candidates = (
+        tuple(one for one in some if alone is None or one.id == alone) for some in _subscribed(fleet, request)
+    )
+    partly = request.location is None and bool(foreign(fleet, request))
     there = (*selected, *others)
     topics = [Topic(endpoint, one.id, request.location, one in there, partly) for one in candidates]
     if not topics:
@@ -176,6 +171,15 @@ def _opened(fleet: Fleet, request: Request, alone: str | None) -> Iterator[Step]
         owed = {**first, **perhaps}
         opens = tuple(Opening(topic, 0, owed.get(topic.robot, ())) for topic in topics)
         yield Step(fleet, opens=opens, answer=Answer(OK), refs=(0,), assumes=assumes)
+
+
+def _subscribed(fleet: Fleet, request: Request) -> tuple[Iterable[Robot], Iterable[Robot], Iterable[Robot]]:
+    """The robots that a subscription selects now, those of others that it may show, and all it may ever be about."""
+    if request.location is None:
+        selected = own(fleet, request)
+        return selected, (), selected
+    others = tuple(_others_at(fleet, request.location))
+    return fleet.at(request.location), others, (*(one for one in fleet.robots if one.owned), *others)
 
 
 def _others_at(fleet: Fleet, location: str | None) -> Iterator[Robot]:

@@ -287,18 +287,7 @@ def _strike(here: _Moment, part: Part, index: int, clock: Clock, until: int) -> 
 
 def _shifted(move: Move, time: int) -> Move:
     """The end of it: clocks say how much is left from here on."""
-    missions = tuple(
-        evolve(
-            one,
-            clocks=tuple(
-                evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(0, clock.hi - time))
-                for clock in one.clocks
-            ),
-        )
-        if one.clocks
-        else one
-        for one in move.state.missions
-    )
+    missions = tuple(_with_clocks_shifted(one, time) for one in move.state.missions)
     after = evolve(_tidy(move), state=evolve(move.state, missions=missions), at=(0, 0))
     for link in move.state.links:
         if link.pass_since is not None:
@@ -315,6 +304,17 @@ def _shifted(move: Move, time: int) -> Move:
         gone = tuple(_gone(one, time) for one in state.gone if one.fresh > time or (one.fresh and one.slot >= 0))
         after = after.to(evolve(state, slow=max(0, state.slow - time), gone=gone))
     return after
+
+
+def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
+    """A mission whose clocks say how much is left so much later."""
+    if not mission.clocks:
+        return mission
+    clocks = (
+        evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(0, clock.hi - time))
+        for clock in mission.clocks
+    )
+    return evolve(mission, clocks=tuple(clocks))
 
 
 def _gone(link: Link, time: int) -> Link:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import random
 
+import pytest
+
 from missionfsm.app.asked import judged_system
 from missionfsm.kernel.codec import JSON
+from missionfsm.oracle.successors import Successors
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import Judge, check
@@ -116,17 +119,25 @@ def test_the_first_message_may_be_wrong_while_all_subscribe() -> None:
     assert found.violation.at == at + 2
 
 
-def test_subscriptions_in_flight_do_not_multiply() -> None:
+def test_subscriptions_in_flight_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of twelve that are under way at once the answers and the first messages are looked at one after the other."""
     spent = {}
+    spend, looked_at = Successors.spend, [0]
+
+    def counted(successors: Successors, cost: int = 1) -> None:
+        looked_at[0] += cost
+        spend(successors, cost)
+
+    monkeypatch.setattr(Successors, "spend", counted)
     for clients in (6, 12):
         log = Recording(1)
         log.round([("SubscribeMissionStatus", {})] * clients)
         judge = Judge(judged_system("bear.mission", strict=False), Head("bear.mission", {}, frozenset()), waits=False)
         costs = []
         for line in log.lines:
+            looked_at[0] = 0
             judge.feed(line)
-            costs.append(judge.automaton.successors.spent)
+            costs.append(looked_at[0])
         assert judge.right
         spent[clients] = max(costs)
-    assert spent[12] < 3 * spent[6]
+    assert 0 < spent[12] < 3 * spent[6]

@@ -132,6 +132,8 @@ _SCRIPTS = (
     .report(0, 1, "success"),
     # Two missions after one: the failure of one is none of the other.
     Script().submit(A).submit(A, 0).submit(A, 0).robot(0, A).report(0, 0, "success").report(0, 1, "failure"),
+    # A failure cancels all of a chain, however long it is.
+    Script().submit(A).submit(A, 0).submit(B, 1).submit(A, 2).submit(B, 3).robot(0, A).report(0, 0, "failure").wait(6),
     # Three upstreams, of which the last is the last to succeed; one that is named twice is one.
     Script()
     .submit(A)

@@ -102,6 +102,12 @@ class Script:
 
 
 _LAPS = {"goals.path": {"FollowPath": {"laps": 2, "tolerance": 0.25}}}
+_RICH = {
+    "goals.path": {
+        "Plan": {"on": False, "laps": 0, "note": "", "goals": [], "deep": {"er": {"still": [0.5, {"x": None}]}}}
+    },
+    "words": {"Say": {"text": "carter " * 200}},
+}
 _GRIP = {"arm": {"Grip": {"force": 17, "on": True}}}
 
 _SCRIPTS = (
@@ -118,6 +124,8 @@ _SCRIPTS = (
     .report(1, 1, "success")
     .report(1, 2, "running")
     .report(1, 2, "success"),
+    # A configuration arrives whole, and each mission has its own.
+    Script().submit(A, config=_RICH).submit(A, 0, config=_GRIP).robot(0, A).report(0, 0, "success"),
     # A diamond: of two missions after one, each is as good as the other, and what comes after both waits for both.
     Script()
     .submit(A)

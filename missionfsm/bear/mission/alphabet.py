@@ -58,6 +58,10 @@ _FORMS: tuple[JSON, ...] = (
     *_DEFECTIVE,
     {"serviMission": {"deliveryMission": {"goals": [*goals_at(TABLES[0]), {}]}}},
     {"baseMission": {"navigateAutoMission": {"goals": [*goals_at(TABLES[0]), {}]}}},
+    {"baseMission": {"navigateMission": {"goals": goals_at(TABLES[0])}}},
+    {"baseMission": {"navigateAutoMission": {"goal": goals_at(TABLES[0])[0]}}},
+    of_family("servi", "deliveryPatrolMission"),
+    base({"destinationId": TABLES[0][:-1]}),
 )
 """The same, and others that are wrong for a reason that they have."""
 
@@ -115,6 +119,13 @@ _DEFECTIVE_WORKFLOWS: tuple[JSON, ...] = (
     {"cartiWorkflow": {"traverse": {"goals": goals_at(TABLES[0])}}},
     {"serviWorkflow": {"hosting": {"goals": goals_at(TABLES[0])}}},
 )
+
+_OTHER_WORKFLOWS: tuple[JSON, ...] = (
+    {"serviWorkflow": {"delivery": {"goals": [*goals_at(TABLES[0]), {}]}}},
+    {"serviWorkflow": {"birthday": {"goals": goals_at(TABLES[0])}}},
+    {"serviWorkflow": {"deliveryPatrol": {"goals": []}}},
+)
+"""Others that are wrong for a reason that those have."""
 
 
 def _updates() -> Iterator[Input]:
@@ -232,7 +243,7 @@ def _refused() -> Iterator[tuple[ScriptStep, ...]]:
     yield _wrong("CreateMissionBatch")
     yield tuple(
         ScriptStep("CreateMissionWorkflow", {} if one is None else {"missionWorkflow": one})
-        for one in (*_DEFECTIVE_WORKFLOWS[:7], {"serviWorkflow": {"delivery": {"goals": [*goals_at(TABLES[0]), {}]}}})
+        for one in (*_DEFECTIVE_WORKFLOWS[:7], *_OTHER_WORKFLOWS)
     )
     yield (*CREATED, *_wrong("AppendMission"))
     yield (*CREATED, *_wrong("AppendMissionBatch"))

@@ -80,6 +80,7 @@ def _patrols() -> Iterator[tuple[ScriptStep, ...]]:
         yield (*begun, *APPENDED, *round_once, *call("SkipGoal"), *round_once, *commanded(0, FINISH))
         for command in COMMANDS:
             yield (*begun, *round_once, *commanded(0, command), *drive("goalReached"), *call("SkipGoal"))
+        yield (*begun, *commanded(0, PAUSE), *commanded(0, RESUME), *round_once, *drive("goalReached"))
 
 
 def _choices() -> Iterator[tuple[ScriptStep, ...]]:
@@ -98,6 +99,7 @@ def _again() -> Iterator[tuple[ScriptStep, ...]]:
     begun = (_SUBSCRIBE, *call("CreateMission", {"mission": four}))
     pause, resume, skip, reached = commanded(0, PAUSE), commanded(0, RESUME), call("SkipGoal"), drive("goalReached")
     yield (*begun, *pause, *resume, *pause, *resume, *reached, *pause, *resume, *reached, *reached, *reached)
+    yield (*begun, *pause, *pause, *resume, *reached, *resume, *reached)
     yield (*begun, *skip, *skip, *skip, *skip)
     yield (*begun, *reached, *pause, *skip, *resume, *skip, *reached, *reached)
     for status in ("INTERNAL", "DEADLINE_EXCEEDED"):

@@ -410,10 +410,12 @@ class Lookahead:
         cut, last = self._cut, bisect.bisect_left(positions, end)
         rests = quiet < bisect.bisect_left(self._settled, end)
         nothing = first >= last and not rests
+        # Nothing of it comes behind what is known either.
+        is_last = self._last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
         if rests:
             last = bisect.bisect_left(positions, self._settled[quiet], first)
         shown = slice(first, min(last, first + NEXT))
-        over = end < cut or (self._last and cut == self._horizon)
+        over = end < cut or is_last
         return _Stretch(
             messages[shown],
             positions[shown],

@@ -9,7 +9,9 @@ import pytest
 
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import JSON
+from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Outcome, Verdict
+from missionfsm.tools.reference.subject import ReferenceSubject
 
 EDGES = Path(__file__).parent / "edges"
 
@@ -49,6 +51,25 @@ def test_a_batch_may_be_long(tmp_path: Path, of: str, *, taken: bool) -> None:
     answer = {"result": {"missionIds": ids}} if taken else {"error": {"status": "INVALID_ARGUMENT"}}
     create = {"call": 1, "method": "CreateMissionBatch", "params": {"missions": missions}}
     assert judged(tmp_path, create, {"return": 1, **answer}).conforms
+
+
+@pytest.mark.parametrize("waiting", [2, 8])
+def test_a_wrong_answer_ends_a_log_of_which_nothing_is_driven(tmp_path: Path, waiting: int) -> None:
+    """It is found however many missions wait, whose ends nobody has been shown: no message comes any more."""
+    goal = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    robot = ReferenceSubject(system("bear.mission"))
+    robot.exchange("reset", {"world": {}})
+    lines: list[JSON] = []
+    for number, method in enumerate(("SubscribeMissionStatus", "CreateMission", *["AppendMission"] * waiting)):
+        params = goal if number else {}
+        came = robot.exchange(method, params)
+        lines += [{"call": number, "method": method, "params": params}, {"return": number, "result": came.result}]
+        lines += [{"stream": 1, "message": one.params["message"]} for one in came.after]
+    wrong = [{"call": 99, "method": "SkipGoal"}, {"return": 99, "error": {"status": "NOT_FOUND"}}]
+    assert judged(tmp_path, *lines).conforms
+    verdict = judged(tmp_path, *lines, *wrong)
+    assert verdict.violation is not None
+    assert (verdict.outcome, verdict.violation.line) == (Outcome.VIOLATES, len(lines) + 3)
 
 
 @pytest.mark.parametrize("ids", [["m", "m"], ["m", "n", "m"], ["m", "m", "m"]])

@@ -23,7 +23,7 @@ from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.run import Run
 
 NAVIGATE = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
-SHORT: dict[str, Any] = {"examples": 1, "tours": 1, "steps": 10, "seed": 1, "advice": False}
+SHORT: dict[str, Any] = {"drawn": 1, "tours": 1, "steps": 10, "seed": 1, "advice": False}
 
 
 @contextmanager

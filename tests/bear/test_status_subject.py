@@ -58,7 +58,7 @@ def test_the_subject_conforms(subject: Any) -> None:
     assert (found.verdict().outcome, found.verdict().flagged) == (Outcome.CONFORMS, ())
 
 
-TOLERATED = {"stream-closes-cleanly": "AS-26."}
+TOLERATED = {"stream-closes-cleanly": "AS-26.", "location-leaks-foreign-robot": "AS-03."}
 """What is not held against anybody, and the reading that says so."""
 
 
@@ -90,7 +90,7 @@ def test_every_other_break_is_caught(subject: Any, name: str) -> None:
 @needs_node
 @pytest.mark.parametrize(("name", "reading"), TOLERATED.items())
 def test_what_is_tolerated_is_flagged(subject: Any, name: str, reading: str) -> None:
-    """A stream that ends by itself is explained on random walks, and the verdicts name what it departs from."""
+    """Each of them is explained on random walks, and some verdict names what it departs from."""
     broken = subject("--break", name)
     found = [walk(broken, walks=1, steps=30, drives=DRIVES, seed=seed).verdict() for seed in range(12)]
     assert {one.outcome for one in found} == {Outcome.CONFORMS}

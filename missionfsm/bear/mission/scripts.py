@@ -85,6 +85,8 @@ def _patrols() -> Iterator[tuple[ScriptStep, ...]]:
 
 def _choices() -> Iterator[tuple[ScriptStep, ...]]:
     """Which goal is taken where some are not free: at the start, after a skip, and when that changes on the way."""
+    begun = (_SUBSCRIBE, *call("CreateMission", _AUTO))
+    yield (*begun, *drive("world", occupied=["table-1"]), *drive("world", occupied=[]), *call("SkipGoal"))
     for taken in (["table-1"], ["table-2"], ["table-1", "table-2"]):
         occupied = drive("world", occupied=taken)
         yield (_SUBSCRIBE, *occupied, *call("CreateMission", _AUTO), *call("SkipGoal"), *call("SkipGoal"))

@@ -29,8 +29,8 @@ WEB = Path(__file__).parent / "web"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """``--part 1/3``: of each long test with parameters only every third one, in turn."""
-    parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th parameter of long tests, the K-th turn")
+    """``--part 1/5``: of the long tests only every fifth one, in turn."""
+    parser.addoption("--part", default="0/1", metavar="K/N", help="every N-th of the long tests, the K-th turn")
 
 
 def pytest_xdist_auto_num_workers() -> int:
@@ -41,21 +41,18 @@ def pytest_xdist_auto_num_workers() -> int:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out what is not of the part that is asked for.
 
-    N parts one after the other are everything. Each test begins at a place of its own, so that a part has of all of
-    them a little; what has one parameter alone is in every part.
+    N parts one after the other are everything. Each test begins at a place of its own, so that a part has a little of
+    all that go through systems, readings or breaks.
     """
     turn, _, every = config.getoption("--part").partition("/")
-    lists: dict[str, list[pytest.Item]] = {}
+    numbers: dict[str, int] = {}
+    left_out = set()
     for item in items:
         if item.get_closest_marker("long"):
-            lists.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    left_out = {
-        item
-        for name, found in lists.items()
-        if len(found) > 1
-        for number, item in enumerate(found, zlib.crc32(name.encode()))
-        if (number - int(turn)) % int(every)
-    }
+            name = item.nodeid.partition("[")[0]
+            numbers[name] = number = numbers.get(name, zlib.crc32(name.encode())) + 1
+            if (number - int(turn)) % int(every):
+                left_out.add(item)
     # What takes longest is begun first, so that nobody waits for it at the end.
     items.sort(key=lambda item: not Path(item.path).is_relative_to(WEB))
     if left_out:

@@ -124,7 +124,7 @@ class Lookahead:
     ) -> None:
         self.spec = spec
         self.required, self.withheld, self.stopped = required, False, False
-        self._last = last
+        self.last = last
         self._horizon = horizon
         self._beyond = sorted(beyond)
         self.at = 0
@@ -246,7 +246,7 @@ class Lookahead:
 
         What a channel owes and cannot be what it shows next, is passed over then: those that differ in it are one.
         """
-        if not (self._messages or self._settled or self._last):
+        if not (self._messages or self._settled or self.last):
             return explanation
         if self._openings and not self._leads_to_openings(explanation):
             return None
@@ -324,7 +324,7 @@ class Lookahead:
         Where no message shows the state from now on, what has ended only counts.
         """
         forgets = self.spec.abstraction.forget_ended
-        if not forgets or not self._last or self.at < self._shown_from or self.spec.anywhere or self.spec.others:
+        if not forgets or not self.last or self.at < self._shown_from or self.spec.anywhere or self.spec.others:
             return explanation.state
         if all(self._is_over(explanation, channel) for channel in explanation.channels if channel.name > GONE):
             return forgets(explanation.state)
@@ -411,7 +411,7 @@ class Lookahead:
         rests = quiet < bisect.bisect_left(self._settled, end)
         nothing = first >= last and not rests
         # Nothing of it comes behind what is known either.
-        is_last = self._last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
+        is_last = self.last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
         if rests:
             last = bisect.bisect_left(positions, self._settled[quiet], first)
         shown = slice(first, min(last, first + NEXT))

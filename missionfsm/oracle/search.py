@@ -284,7 +284,7 @@ class Search:
         layers = self.layers
         while len(layers) <= self._horizon:
             if not layers:
-                if self._ahead.stopped:  # what was not imagined may explain them
+                if self._ahead.stopped and not self._ahead.last:  # what was not imagined may explain them
                     raise ExhaustedError
                 return False
             position = len(layers) - 1

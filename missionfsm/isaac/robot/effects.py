@@ -71,6 +71,12 @@ def moved(here: Codelet, trigger: str) -> Codelet:
     return evolve(here, running=runs, named=here.named and runs, used=True, quiet=0)
 
 
+def _kept_names(here: Codelet) -> tuple[int, ...]:
+    """The positions of the identifiers of the statuses that wait and are not lost for want of a connection."""
+    named = [one for one in here.waiting if one.report.named]
+    return tuple(at for at, one in enumerate(named) if one.kept)
+
+
 def _waiting_names(here: Codelet) -> tuple[int, ...]:
     return tuple(range(here.identifiers - len(here.mission)))
 
@@ -294,8 +300,13 @@ def _awaits(here: Codelet, time: int) -> Iterator[Step]:
     if not here.waiting:
         yield Step(here)
         return
-    lost = evolve(here, waiting=(), waited=0)
-    yield Step(lost, names=here.mission, rules=(rules.LINKED.id,), assumes=(readings.AI_15_STATUS["a"],))
+    kept = tuple(one for one in here.waiting if one.kept)
+    if kept == here.waiting:
+        yield Step(here, rules=(rules.LINKED.id,))
+        return
+    lost = evolve(here, waiting=kept, waited=0)
+    names = (*_kept_names(here), *here.mission)
+    yield Step(lost, names=names, rules=(rules.LINKED.id,), assumes=(readings.AI_15_STATUS["a"],))
     yield Step(here, rules=(rules.LINKED.id,), assumes=(readings.AI_15_STATUS["b"],))
     if here.waited + time < TICK:
         yield Step(evolve(here, waited=here.waited + time))
@@ -342,7 +353,7 @@ def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
     return (
         *(evolve(way, assumes=(*way.assumes, readings.AI_15_MISSION["a"])) for way in ways),
         *(_given_up(way) for way in ways),
-        _failed(gone),
+        *(_failed(way) for way in ways),
     )
 
 
@@ -364,10 +375,10 @@ def _given_up(gone: Step) -> Step:
 def _failed(gone: Step) -> Step:
     """The mission that runs fails with the connection, and its FAILURE waits with what waits (AI-15.mission c)."""
     here: Codelet = gone.after
-    failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False)
+    failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False, kept=True)
     after = evolve(moved(here, "the connection drops"), waiting=(*here.waiting, failure))
-    names = tuple(range(here.identifiers))
-    return evolve(gone, after=after, names=names, assumes=(readings.AI_15_STATUS["b"], readings.AI_15_MISSION["c"]))
+    names = tuple(range(here.identifiers)) if gone.names is None else gone.names
+    return evolve(gone, after=after, names=names, assumes=(*gone.assumes, readings.AI_15_MISSION["c"]))
 
 
 def _connected(here: Codelet) -> Step:

@@ -61,10 +61,16 @@ class Report:
 
 @frozen(cache_hash=True)
 class Waiting:
-    """A status that waits; `offered` is whether RUNNING of that mission may come just before it."""
+    """A status that waits.
+
+    Attributes:
+        offered: whether RUNNING of that mission may come just before it.
+        kept: whether it is told once the connection is there again, whatever becomes of others (AI-15.mission c).
+    """
 
     report: Report
     offered: bool
+    kept: bool = False
 
 
 @frozen(cache_hash=True)

@@ -309,7 +309,12 @@ def test_every_other_break_of_the_independent_server_is_caught() -> None:
 
 # The specification itself.
 
-UNDER_OTHER_READINGS = ("a-key-is-unknown", "a-channel-is-empty", "the-configuration-is-null")
+UNDER_OTHER_READINGS = (
+    "a-key-is-unknown",
+    "a-channel-is-empty",
+    "the-configuration-is-null",
+    "an-upstream-is-named-twice",  # under AI-20.repeated a; by default such an upstream is waited for once
+)
 """Reasons to refuse that the default readings do not know."""
 
 

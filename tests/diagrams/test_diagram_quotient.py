@@ -165,7 +165,7 @@ class Walker:
             if ONCE_HAD in refs and not here.gone:
                 continue
             names = tuple(self.named(here, ref) for ref in refs)
-            label = self.sketch.label(here.state, what, refs)
+            label = self.sketch.label(self.sketch.simple(here.state, self.model.choice), what, refs)
             after, reply = (self.model.call if asked else self.model.drive)(here, what, names)
             if reply.happened and label is not None and self.sketch.within(after.state):
                 code = reply.answer.code if reply.answer else ""

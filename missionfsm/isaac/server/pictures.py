@@ -5,7 +5,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Passes, Statuses, Submission
-from missionfsm.isaac.server.readings import AMBIGUITIES
+from missionfsm.isaac.server.readings import AI_10_FROM, AMBIGUITIES
 from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, robot_line
 from missionfsm.isaac.server.state import (
     ENDED,
@@ -16,7 +16,6 @@ from missionfsm.isaac.server.state import (
     Status,
     first_link_ref,
     mission_of_uuid,
-    uuid_ref,
 )
 from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
 from missionfsm.kernel.alphabet import Input, pick
@@ -77,6 +76,9 @@ def _shows(_: Sends) -> str:
     return "the mission is sent"
 
 
+_NUMBERS = ("first", "second")
+
+
 def _depend_node(server: Server) -> str | None:
     if len(server.missions) < len(ROBOTS) or not all(map(server.serving, ROBOTS)):
         return None
@@ -96,16 +98,19 @@ def _depend_within(server: Server) -> bool:
 
 
 def _depend_label(server: Server, what: Submission | Connects | Incoming | Passes, refs: Refs) -> str | None:
-    """What robots report of their own missions; what they say of another's is not heeded."""
+    """What robots report of their own missions, and of each other's where that may be heeded (AI-10.from w)."""
     if isinstance(what, Passes):
         return "time passes"
     if not isinstance(what, Incoming) or what.kind == NAME:
         return None
-    link, mission = ((-1 if ref is None else ref) for ref in refs)
-    robot = link - first_link_ref(server)
-    if robot < 0 or mission != uuid_ref(robot):
+    robot = (-1 if refs[0] is None else refs[0]) - first_link_ref(server)
+    mission = mission_of_uuid(server, refs[1])
+    if robot < 0 or mission == NOBODYS:
         return None
-    return f"the {('first', 'second')[robot]} robot reports {what.what.upper()}"
+    said = f"the {_NUMBERS[robot]} robot reports {what.what.upper()}"
+    if mission == robot:
+        return said
+    return f"{said} of the {_NUMBERS[mission]} mission" if "w" in server.letters(AI_10_FROM) else None
 
 
 def _simple(server: Server, assumed: int) -> Server:

@@ -243,6 +243,7 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
         _timed_out().submit(B),
         _ended("failure").submit(B),
         _ended().submit(B).wait(),
+        _ended().submit(B).wait().connect(),
         Script().submit(A).connect().name(0, A).connect().name(1, A).drop(0).drop(1).connect(),
     ),
     "waiting for an upstream": _ways(
@@ -287,10 +288,12 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
         _running(B, robot=B).robot(1, A),
         _late(_timed_out()).submit(A),
         _late(_ended("failure")).submit(A),
+        _late(_lost().robot(1, A), 1).submit(A),
     ),
     "a name that two connections said": _ways(
         _two(),
         _two().connect(),
+        _two().submit(B),
         _running().connect().name(1, A),
         _running(B).robot(1, B).connect().name(2, B),
         _ended("failure").connect().name(1, A),

@@ -140,7 +140,8 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
 def _late(move: Move, clock: Clock) -> Move | None:
     """AI-39.limits b: a server that sends at once may notice a timeout later, when it looks; None for all others."""
     letters = move.state.letters
-    if clock.kind == SILENT or clock.whole or letters(AI_39) == "b" or letters(AI_39_LIMITS) != "ab":
+    documented = (clock.kind, clock.since) in ((START, "send"), (RUN, "status"))
+    if not documented or clock.whole or letters(AI_39) != "a" or letters(AI_39_LIMITS) != "ab":
         return None
     return split(move, AI_39_LIMITS, "b")[0]
 
@@ -274,8 +275,11 @@ def _lost_mission(move: Move, index: int, *, still: bool) -> Moves:
 
 def _in_grace(move: Move, index: int, *, still: bool) -> Move:
     """A mission fails after a while, of which nothing says how long it is, unless its robot is back before."""
+    clocks = move.state.missions[index].clocks
+    if any(one.kind == DROP for one in clocks):
+        return move
     soonest = move.at[0] + (still and not move.state.tolerance)
-    return ticking(move, index, (*move.state.missions[index].clocks, Clock(DROP, DROP, soonest, None)))
+    return ticking(move, index, (*clocks, Clock(DROP, DROP, soonest, None)))
 
 
 def back(move: Move, robot: str | None) -> Moves:

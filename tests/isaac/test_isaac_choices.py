@@ -6,6 +6,8 @@ import orjson
 import pytest
 from server_history import History
 
+from missionfsm.isaac.server.lifecycle import lost
+from missionfsm.isaac.server.state import Link, Mission, Move, Server, Status
 from missionfsm.isaac.wire.framing import encode
 from missionfsm.isaac.wire.messages import Header, Message, TextProto, Uuid
 from missionfsm.tools.check.verdict import Verdict
@@ -140,3 +142,14 @@ def test_a_robot_may_rest_after_a_failure() -> None:
     assert follows(at_once.judged(readings=EXACT), AI_39_failed="a")
     succeeded = sent().submit(2).reports(1, 1, "success").settles.shows("SUCCESS", "QUEUED")
     assert not succeeded.judged(readings=EXACT).conforms
+
+
+def test_a_period_of_grace_is_one() -> None:
+    """AI-15.when g: a mission whose robot drops again before it was given up has no second clock for that."""
+    link = Link(0, "carter", serves=True)
+    left = (("AI-15", "c"), ("AI-15.when", "g"))
+    mission = Mission("carter", "mission", None, "{}", None, None, status=Status.RUNNING, sent_on=0, sent=True)
+    once = next(iter(lost(Move(Server(missions=(mission,), links=(link,), left=left)), link)))
+    again = next(iter(lost(once, link)))
+    assert len(once.state.missions[0].clocks) == 1
+    assert again.state.missions == once.state.missions

@@ -279,7 +279,9 @@ WAYS: Mapping[str, tuple[tuple[ScriptStep, ...], ...]] = {
         _running(B).robot(1, B),
         _late(_ended()),
         _late(_timed_out()),
+        _late(_lost().robot(1, A), 1),
         _canceled().submit(A, timeout=LONG).wait().report(0, 2, "running"),
+        _canceled().submit(B, timeout=LONG).wait().report(1, 2, "running"),
     ),
     "running with a queue": _ways(
         _running(A),

@@ -147,9 +147,7 @@ def _of_line(server: Server, heard: Incoming, refs: Refs, link: Link) -> tuple[s
         return (_of_name(server, heard.what, link),)
     if heard.kind == NAME:
         return ("a name on another channel",)
-    return (
-        {BAD: "a line that is no message", FOREIGN: "a message of another type"}.get(heard.kind, "a message to nobody"),
-    )
+    return (_NO_MESSAGES.get(heard.kind, "a message to nobody"),)
 
 
 def _of_name(server: Server, text: str, link: Link) -> str:

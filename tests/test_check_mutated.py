@@ -5,18 +5,15 @@
 
 from __future__ import annotations
 
-import copy
 import gzip
-import os
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import orjson
 import pytest
+from mutated import MANY, SECONDS, limited, mutated
 from traffic import MISSION, one_more, walk
 
 from missionfsm.app.recorded import check_file
@@ -24,53 +21,6 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.systems import system
 from missionfsm.tools.reference.subject import ReferenceSubject
-
-MANY = int(os.environ.get("MISSIONFSM_MUTATED", "30"))
-"""How many lines of each form are mutated."""
-SECONDS = 60
-"""After so many seconds a file counts as one that hangs."""
-JUNK: tuple[Any, ...] = (
-    *(
-        None,
-        True,
-        False,
-        0,
-        -1,
-        1,
-        2**31,
-        2**53 + 1,
-        2**63,
-        -(2**63),
-        1e308,
-        1.5,
-        -0.0,
-        "",
-        "0",
-        "NaN",
-        "\x00",
-        "\ud7ff",
-    ),
-    *(
-        "STATE_RUNNING",
-        "missionfsm",
-        "mission-2",
-        "\u2028\u202e",
-        "x" * 5_000,
-        [],
-        {},
-        [[]],
-        [{}],
-        {"": {}},
-        {"seconds": "1"},
-    ),
-)
-
-
-def _nested(depth: int) -> Any:
-    found: Any = 1
-    for _ in range(depth):
-        found = [found]
-    return found
 
 
 def history(name: str, seed: int = 3) -> list[Any]:
@@ -95,6 +45,20 @@ def messages() -> list[Any]:
     return [line["message"] for line in walk(3, 8).lines if "message" in line]
 
 
+def statuses() -> list[Any]:
+    """The bare messages of a subscription to all that a robot says of itself."""
+    of = system("bear.status")
+    alphabet, random, reference = of.alphabet({}, Bounds()), Random(5), ReferenceSubject(of)
+    reference.exchange("reset", {"world": alphabet.worlds[0]})
+    opened = reference.exchange("SubscribeRobotStatus", {"selector": {"robotIds": {"ids": ["r1"]}}})
+    assert opened.error is None
+    reports = [one for one in (*alphabet.core_drives, *alphabet.drives) if one.get("event") == "report"]
+    exchanges = [opened, *(reference.exchange("drive", random.choice(reports)) for _ in range(40))]
+    found = [one.params["message"] for exchange in exchanges for one in exchange.after if one.method == "message"]
+    assert len(found) > 5
+    return found
+
+
 def bodies() -> list[Any]:
     """The bodies of a webhook."""
     return [
@@ -115,63 +79,11 @@ FORMS: dict[str, Callable[[], list[Any]]] = {
         name: lambda name=name: history(name) for name in ("bear.mission", "bear.status", "isaac.server", "isaac.robot")
     },
     "bare messages": messages,
+    "bare statuses": statuses,
     "webhook": bodies,
     "fleet": fleet,
     "anywhere": lambda: [{**(lines := history("bear.mission"))[0], "begins": "anywhere", "others": True}, *lines[4:]],
 }
-
-
-def mutated(random: Random, line: Any) -> bytes:
-    """A line with something wrong in it, as JSON or as bytes."""
-    sort = random.randrange(4)
-    if sort == 0:
-        raw = bytearray(orjson.dumps(line))
-        for _ in range(random.randrange(1, 4)):
-            at = random.randrange(len(raw))
-            raw[at : at + random.randrange(3)] = bytes(random.randrange(256) for _ in range(random.randrange(3)))
-        return bytes(raw).replace(b"\n", b" ")
-    line = copy.deepcopy(line)
-    holder, key = random.choice(list(_places(line)))
-    if sort == 1:
-        holder[key] = random.choice(JUNK)
-    elif sort == 2:
-        del holder[key]
-    else:
-        holder[key] = random.choice(
-            [[holder[key], holder[key]], {"value": holder[key]}, str(holder[key]), _nested(random.choice((50, 500)))]
-        )
-    return orjson.dumps(line, default=str, option=orjson.OPT_NON_STR_KEYS) if sort != 3 else _dumped(line)
-
-
-def _dumped(line: Any) -> bytes:
-    try:
-        return orjson.dumps(line)
-    except orjson.JSONEncodeError:  # too deep for it to write
-        return b"[" * 500 + b"]" * 500
-
-
-def _places(value: Any) -> Iterator[tuple[Any, Any]]:
-    """Every member and every item, with what holds it."""
-    for key in list(value) if isinstance(value, dict) else range(len(value)):
-        yield value, key
-        if isinstance(value[key], dict | list):
-            yield from _places(value[key])
-
-
-@contextmanager
-def limited(seconds: int) -> Iterator[None]:
-    """Raise TimeoutError after so many seconds."""
-
-    def late(*_: object) -> None:
-        raise TimeoutError
-
-    before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from commandline import CommandLine
 
+from missionfsm.kernel.codec import Codec, Malformed, UnreadableError
+
 PAGE = Path(__file__).parent.parent / "docs" / "your-own-system.md"
 
 
@@ -47,6 +49,23 @@ def test_what_is_written_works_at_once(
         '{"call": 1, "method": "Switch", "params": {}}\n{"return": 1, "result": {"light": "off"}}\n'
     )
     assert command_line("check", history).status == 1
+
+
+def test_what_the_language_fills_in_refuses_what_there_is_not() -> None:
+    """A codec that leaves everything out reads its own methods and drives, and says of others what there are."""
+    codec = Codec(methods=("Switch",), events=("burnOut",))
+    event, names = codec.read_drive({"event": "burnOut"})
+    assert (codec.read_request("Switch", {}), names, codec.write_drive(event, names)) == (
+        "Switch",
+        (),
+        {"event": "burnOut"},
+    )
+    with pytest.raises(UnreadableError, match="'Blink' is not a method; those are Switch"):
+        codec.read_request("Blink", {})
+    with pytest.raises(UnreadableError, match="'blink' is not a drive; those are burnOut"):
+        codec.read_drive({"event": "blink"})
+    answer, _ = codec.read_answer("Switch", {"light": "on"})
+    assert isinstance(answer.shape, Malformed)
 
 
 @pytest.mark.parametrize("name", ["Lamp", "my-lamp", "../lamp", "class", "taken"])

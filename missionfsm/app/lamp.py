@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from attrs import frozen
-
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
-from missionfsm.kernel.codec import JSON, Codec, Malformed, UnreadableError
-from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.rules import FAILED_PRECONDITION, OK, Document, Operation, decide, refusal
-from missionfsm.kernel.spec import Delivery, Drive, Spec
-from missionfsm.kernel.step import Mismatch, Step
-from missionfsm.kernel.system import System
+from missionfsm.kernel.language import (
+    FAILED_PRECONDITION,
+    JSON,
+    OK,
+    Alphabet,
+    Ambiguity,
+    Answer,
+    Codec,
+    Document,
+    Drive,
+    Happening,
+    Input,
+    Malformed,
+    Operation,
+    Spec,
+    Step,
+    System,
+    decide,
+    refusal,
+)
 
 NAME = "lamp"
 PAGE = Document("Lamp", "The lamp's manual")
@@ -58,39 +68,23 @@ def outcomes(state: str, request: str, _names: object) -> tuple[Step, ...]:
     return tuple(steps)
 
 
-@frozen
-class Event:
-    """Something that happens to the lamp, by the name of its drive."""
-
-    name: str
-
-
-BURN_OUT = Event("burnOut")
-
-
-def burns_out(state: str, _event: Event, _names: object) -> tuple[Step, ...]:
+def burns_out(state: str, _event: Happening, _names: object) -> tuple[Step, ...]:
     """The one thing that a tester can make happen; it may happen by itself as well."""
     return () if state == "burnt out" else (Step("burnt out", label="burns out"),)
 
 
 SPEC = Spec(
-    system=NAME,
+    NAME,
     title="a lamp",
     initial=lambda _world: "off",
     operations=OPERATIONS,
     outcomes=outcomes,
-    drives={"burnOut": Drive("burnOut", burns_out, by_itself=(BURN_OUT,))},
-    urgent=lambda _state: (),
-    matches=lambda view, content: Mismatch("lamp/no-messages", f"{content} is not {view}"),
-    delivery=lambda _topic: Delivery(),
-    sequence=lambda _relation: (),
-    names=lambda _state: 0,
-    request_operation=str,
+    drives=[Drive("burnOut", burns_out, by_itself=(Happening("burnOut"),))],
     ambiguities=(DIM_OFF,),
-    describe=str,
+    describe=lambda one: one.name if isinstance(one, Happening) else str(one),
 )
 
-# Its JSON.
+# Its JSON: a request is its method, a drive its name.
 
 
 def read_answer(_method: str, result: JSON) -> tuple[Answer, tuple[()]]:
@@ -99,36 +93,15 @@ def read_answer(_method: str, result: JSON) -> tuple[Answer, tuple[()]]:
     return Answer(OK, light if isinstance(light, str) else Malformed("it does not say how the light is")), ()
 
 
-def read_drive(given: JSON) -> tuple[Event, tuple[()]]:
-    """``{"event": "burnOut"}``."""
-    if not isinstance(given, dict) or given.get("event") != "burnOut":
-        raise UnreadableError("drive.event: a lamp has burnOut only")
-    return BURN_OUT, ()
-
-
 CODEC = Codec(
     methods=tuple(OPERATIONS),
-    streams=(),
-    read_world=lambda _given: None,
-    split_request=lambda _method, params: ((), params),
-    read_request=lambda method, _params: method,
+    events=tuple(SPEC.drives),
     read_answer=read_answer,
-    split_message=lambda message: (((), (), message),),
-    read_content=str,
-    read_drive=read_drive,
-    write_request=lambda _request, _names: {},
     write_answer=lambda _method, answer, _names: {"light": answer.shape},
-    write_message=lambda view, _names, _choice, _number, _seconds: view,
-    write_world=lambda _world: {},
-    write_drive=lambda event, _names: {"event": event.name},
 )
 
+# What is worth trying: each call, each drive.
 
-def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
-    """What is worth trying."""
-    calls = tuple(Input(name, {}) for name in OPERATIONS)
-    drives = ({"event": "burnOut"},)
-    return Alphabet(inputs=calls, core_inputs=calls, drives=drives, core_drives=drives, worlds=({},))
+CALLS = tuple(Input(name, {}) for name in OPERATIONS)
 
-
-SYSTEM = System(NAME, SPEC, CODEC, alphabet)
+SYSTEM = System(NAME, SPEC, CODEC, lambda _world, _bounds: Alphabet(CALLS, drives=({"event": "burnOut"},)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from attrs import frozen
+from attrs import Factory, field, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Name
@@ -110,6 +110,7 @@ class Alphabet:
     Attributes:
         inputs: calls, malformed ones included.
         core_inputs: those that bring the system on: few, well-formed, each with a meaning of its own; for exploration.
+            All of them, where nothing is said; so for drives.
         drives: what to make happen, as JSON.
         core_drives: those among them that bring the system on.
         worlds: the worlds to try it in, as JSON, the usual one first.
@@ -118,11 +119,11 @@ class Alphabet:
         look: a call that shows where things stand and changes nothing; systematic conversations ask it again and again.
     """
 
-    inputs: tuple[Input, ...]
-    core_inputs: tuple[Input, ...]
-    drives: tuple[JSON, ...]
-    core_drives: tuple[JSON, ...]
-    worlds: tuple[JSON, ...]
+    inputs: tuple[Input, ...] = ()
+    core_inputs: tuple[Input, ...] = field(default=Factory(lambda self: self.inputs, takes_self=True))
+    drives: tuple[JSON, ...] = ()
+    core_drives: tuple[JSON, ...] = field(default=Factory(lambda self: self.drives, takes_self=True))
+    worlds: tuple[JSON, ...] = ({},)
     wrong_names: tuple[str, ...] = ()
     look: Input | None = None
     scripts: tuple[tuple[ScriptStep, ...], ...] = ()

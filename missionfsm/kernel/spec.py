@@ -17,7 +17,7 @@ The laws that every `Spec` obeys (``tests/test_laws.py`` holds the shipped ones 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 
 from attrs import field, frozen
 
@@ -184,28 +184,37 @@ class Middle:
     undriven: frozenset[str] = frozenset()
 
 
+def _operations(given: Mapping[str, Operation] | Iterable[Operation]) -> Mapping[str, Operation]:
+    return given if isinstance(given, Mapping) else {one.name: one for one in given}
+
+
+def _drives(given: Mapping[str, Drive] | Iterable[Drive]) -> Mapping[str, Drive]:
+    return given if isinstance(given, Mapping) else {one.name: one for one in given}
+
+
 @frozen(eq=False)
 class Spec:
     """A system as a nondeterministic labelled transition system.
 
-    Every system has the first twelve; the others have a default, which says that there is nothing of the kind.
+    Every system has the first three; the others have a default, which says that there is nothing of the kind.
 
     Attributes:
         system: its name on the command line.
         title: what it is, in a few words.
         initial: the state in a world (the parameters that `reset` is given, as a value of the system).
-        operations: what callers may ask, by name.
+        operations: what callers may ask, by name; made from the operations alone, if those are given.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
             are the positions of the request's names among those of the state, None for one that the state has not, or
             `ONCE_HAD` for one that it had once, if the spec `recalls` names.
-        drives: what a tester may make happen, by name.
+        drives: what a tester may make happen, by name; made from the drives alone, if those are given.
         urgent: what must have happened once things have settled.
-        matches: (view, content) to the ways in which the message shows the view, or why it does not.
+        matches: (view, content) to the ways in which the message shows the view, or why it does not; where nothing is
+            said, nothing is shown.
         delivery: topic to how its messages travel.
         sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
             `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
         names: how many names a state has.
-        request_operation: request to the name of its operation.
+        request_operation: request to the name of its operation: its attribute ``operation``, or itself.
         ambiguities: the questions that its documents leave open; an assumption is a set of their readings.
         failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated among
             the outcomes.
@@ -260,15 +269,15 @@ class Spec:
     system: str
     title: str
     initial: Callable[[World], State]
-    operations: Mapping[str, Operation]
-    outcomes: Callable[[State, Request, Refs], tuple[Step, ...]]
-    drives: Mapping[str, Drive]
-    urgent: Callable[[State], tuple[Step, ...]]
-    matches: Callable[[View, Content], tuple[Match, ...] | Mismatch]
-    delivery: Callable[[Topic], Delivery]
-    sequence: Callable[[str], tuple[Assumption, ...] | Mismatch]
-    names: Callable[[State], int]
-    request_operation: Callable[[Request], str]
+    operations: Mapping[str, Operation] = field(default=(), converter=_operations)
+    outcomes: Callable[[State, Request, Refs], tuple[Step, ...]] = lambda _state, _request, _refs: ()
+    drives: Mapping[str, Drive] = field(default=(), converter=_drives)
+    urgent: Callable[[State], tuple[Step, ...]] = lambda _: ()
+    matches: Callable[[View, Content], tuple[Match, ...] | Mismatch] = lambda _, __: Mismatch("", "nothing is shown")
+    delivery: Callable[[Topic], Delivery] = lambda _: Delivery()
+    sequence: Callable[[str], tuple[Assumption, ...] | Mismatch] = lambda _: ()
+    names: Callable[[State], int] = lambda _: 0
+    request_operation: Callable[[Request], str] = lambda request: str(getattr(request, "operation", request))
     ambiguities: tuple[Ambiguity, ...] = ()
     failing: Callable[[Request, str], Failure | None] = lambda _, __: None
     remembered: Callable[[View, Content], Hashable] = lambda _, __: None

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from lift.spec import ARRIVAL, FLOORS, OPERATIONS, Asked, Event, Lift
-from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
-from missionfsm.kernel.history import Answer
-from missionfsm.kernel.rules import OK
+from lift.spec import FLOORS, SPEC, Asked, Lift
+from missionfsm.kernel.language import JSON, OK, Answer, Codec, Malformed, Part, UnreadableError
 
 # What an implementation says is read whatever it is; what is no ride or no floor becomes `Malformed`.
 
@@ -23,8 +21,8 @@ def ride_name(ride: str) -> Names:
 
 def split_request(method: str, params: JSON) -> tuple[Names, JSON]:
     """The name of a ride is taken out of a request."""
-    if method not in OPERATIONS:
-        raise UnreadableError(f"{method} is not a method of a lift; those are {', '.join(OPERATIONS)}")
+    if method not in SPEC.operations:
+        raise UnreadableError(f"{method} is not a method of a lift; those are {', '.join(SPEC.operations)}")
     ride = params.get("ride") if isinstance(params, dict) else None
     return (ride_name(ride), {**params, "ride": "-"}) if method == "Cancel" and isinstance(ride, str) else ((), params)
 
@@ -91,26 +89,16 @@ def write_message(view: Lift, names: Names, _choice: int, _number: int, _seconds
     return {"rides": rides, "moving": view.moving}
 
 
-def read_drive(given: JSON) -> tuple[Event, Names]:
-    """``{"event": "arrive"}``."""
-    if not isinstance(given, dict) or given.get("event") != ARRIVAL.name:
-        raise UnreadableError("drive.event: a lift has arrive only")
-    return ARRIVAL, ()
-
-
 CODEC = Codec(
-    methods=tuple(OPERATIONS),
+    methods=tuple(SPEC.operations),
     streams=("Watch",),
-    read_world=lambda _given: None,
+    events=tuple(SPEC.drives),
     split_request=split_request,
     read_request=read_request,
     read_answer=read_answer,
     split_message=split_message,
     read_content=read_content,
-    read_drive=read_drive,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
-    write_world=lambda _world: {},
-    write_drive=lambda event, _names: {"event": event.name},
 )

@@ -4,24 +4,33 @@ from __future__ import annotations
 
 from attrs import evolve, frozen
 
-from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.rules import (
+from missionfsm.kernel.language import (
     DEADLINE_EXCEEDED,
     FAILED_PRECONDITION,
     INVALID_ARGUMENT,
     NOT_FOUND,
     OK,
     RESOURCE_EXHAUSTED,
+    Ambiguity,
+    Answer,
     Decision,
+    Delivery,
     Document,
+    Drive,
+    Emission,
+    Failure,
+    Happening,
+    Invariant,
+    Match,
+    Mismatch,
+    Opening,
     Operation,
+    Spec,
+    Step,
     decide,
     promise,
     refusal,
 )
-from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
-from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 
 NAME = "lift"
 PAGE = Document("Lift", "The lift's manual")
@@ -210,17 +219,7 @@ def departs(lift: Lift) -> tuple[Step, ...]:
     return (Step(after, emits=shown(after), rules=(DEPARTS.id,), label="departs"),)
 
 
-@frozen
-class Event:
-    """Something that happens to the lift, by the name of its drive."""
-
-    name: str
-
-
-ARRIVAL = Event("arrive")
-
-
-def arrives(lift: Lift, _event: Event, _refs: object) -> tuple[Step, ...]:
+def arrives(lift: Lift, _event: Happening, _refs: object) -> tuple[Step, ...]:
     """The lift arrives at the floor of the ride that is under way."""
     if not lift.moving:
         return ()
@@ -247,7 +246,7 @@ def describe(thing: object) -> str:
     if isinstance(thing, Asked):
         return thing.operation if thing.operation != "Call" else f"Call({'?' if thing.floor is None else thing.floor})"
     if not isinstance(thing, Lift):
-        return thing.name if isinstance(thing, Event) else str(thing)
+        return thing.name if isinstance(thing, Happening) else str(thing)
     rides = ", ".join(f"to {floor}" for floor in thing.floors) or "none"
     return f"rides {rides}; the lift is {'moving' if thing.moving else 'idle'}"
 
@@ -258,13 +257,11 @@ SPEC = Spec(
     initial=lambda _world: Lift(),
     operations=OPERATIONS,
     outcomes=outcomes,
-    drives={"arrive": Drive("arrive", arrives, by_itself=(ARRIVAL,))},
+    drives=[Drive("arrive", arrives, by_itself=(Happening("arrive"),))],
     urgent=departs,
     matches=matches,
     delivery=lambda _topic: Delivery(unowed=(SHOWN.id,), named=(SHOWN.id,)),
-    sequence=lambda _relation: (),
     names=lambda lift: len(lift.floors),
-    request_operation=lambda asked: asked.operation,
     failing=fails,
     ambiguities=(UNDER_WAY, SAME_FLOOR),
     describe=describe,

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from lift.codec import CODEC
-from lift.spec import ARRIVAL, NAME, SPEC
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, ScriptStep, pick
-from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import System
+from lift.spec import NAME, SPEC
+from missionfsm.kernel.language import JSON, Alphabet, Bounds, Input, ScriptStep, System, pick
 
 
 def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
     """What is worth trying."""
     calls = tuple(Input("Call", {"floor": floor}) for floor in (0, 1, 2))
     cancel, watch = Input("Cancel", {"ride": pick("ride")}), Input("Watch", {})
-    drives = ({"event": ARRIVAL.name},)
     full = (*(ScriptStep("Call", {"floor": floor}) for floor in (0, 1, 2, 3)), ScriptStep("settle"))
     return Alphabet(
         inputs=(*calls, Input("Call", {"floor": 4}), Input("Call", {"floor": "one"}), cancel, watch),
         core_inputs=(*calls[:2], cancel),
-        drives=drives,
-        core_drives=drives,
-        worlds=({},),
+        drives=({"event": "arrive"},),
         wrong_names=("no-such-ride",),
         look=watch,
         scripts=(

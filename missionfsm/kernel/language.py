@@ -1,0 +1,99 @@
+"""The whole language behind one door, for those who write a system: ``from missionfsm.kernel.language import Spec``.
+
+What each name means is said where it is defined.
+"""
+
+from __future__ import annotations
+
+from missionfsm.kernel.abstraction import Abstraction
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming, ScriptStep, as_text, new, pick, upcoming
+from missionfsm.kernel.chart import Chart
+from missionfsm.kernel.codec import JSON, Codec, Happening, Malformed, Part, UnreadableError
+from missionfsm.kernel.history import Answer, Name
+from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.picture import Plan, Sketch
+from missionfsm.kernel.readings import Ambiguity, Assumption, declared, meet, to_the_letter
+from missionfsm.kernel.rules import (
+    DEADLINE_EXCEEDED,
+    FAILED_PRECONDITION,
+    INVALID_ARGUMENT,
+    NOT_FOUND,
+    OK,
+    RESOURCE_EXHAUSTED,
+    Citation,
+    Decision,
+    Document,
+    Operation,
+    Rule,
+    decide,
+    promise,
+    refusal,
+)
+from missionfsm.kernel.shapes import Shapes, record
+from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
+from missionfsm.kernel.system import MessageMutation, StepMutation, System, breaks
+from missionfsm.kernel.terms import Refs
+from missionfsm.kernel.text import brief
+
+__all__ = [
+    "DEADLINE_EXCEEDED",
+    "FAILED_PRECONDITION",
+    "INVALID_ARGUMENT",
+    "JSON",
+    "NOT_FOUND",
+    "OK",
+    "RESOURCE_EXHAUSTED",
+    "Abstraction",
+    "Alphabet",
+    "Ambiguity",
+    "Answer",
+    "Assumption",
+    "Bounds",
+    "Chart",
+    "Citation",
+    "Codec",
+    "Decision",
+    "Delivery",
+    "Document",
+    "Drive",
+    "Emission",
+    "Failure",
+    "Happening",
+    "Input",
+    "Invariant",
+    "Malformed",
+    "Match",
+    "Matrix",
+    "MessageMutation",
+    "Mismatch",
+    "Name",
+    "Naming",
+    "Opening",
+    "Operation",
+    "Part",
+    "Plan",
+    "Refs",
+    "Rule",
+    "ScriptStep",
+    "Shapes",
+    "Sketch",
+    "Spec",
+    "Step",
+    "StepMutation",
+    "System",
+    "UnreadableError",
+    "as_text",
+    "breaks",
+    "brief",
+    "decide",
+    "declared",
+    "meet",
+    "new",
+    "pick",
+    "promise",
+    "record",
+    "refusal",
+    "to_the_letter",
+    "upcoming",
+]

@@ -116,6 +116,7 @@ class Alphabet:
         worlds: the worlds to try it in, as JSON, the usual one first.
         wrong_names: names that nothing has.
         scripts: conversations worth having in the usual world, whole.
+        apart: others that are worth having in this world, and in worlds like it alone.
         look: a call that shows where things stand and changes nothing; systematic conversations ask it again and again.
     """
 
@@ -127,3 +128,4 @@ class Alphabet:
     wrong_names: tuple[str, ...] = ()
     look: Input | None = None
     scripts: tuple[tuple[ScriptStep, ...], ...] = ()
+    apart: tuple[tuple[ScriptStep, ...], ...] = ()

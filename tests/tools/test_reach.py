@@ -217,6 +217,20 @@ def test_a_mission_that_arrives_again_counts_as_such() -> None:
     }
 
 
+def test_a_conversation_is_had_in_the_world_that_it_needs() -> None:
+    """A Carti is led round its patrols: what only robots like it run is asked of it, once, and accepted."""
+    begun: list[str] = []
+
+    def watch(run: Run) -> None:
+        conversation = run.conversation
+        if any("traversePatrolMission" in str(action.params) for action in conversation.actions):
+            begun.append(conversation.world["family"])
+            assert "INVALID_ARGUMENT" not in str(conversation.heard)
+
+    assert play(Run.against(MISSION, ReferenceSubject(MISSION), progress=watch))
+    assert begun == ["carti"] * 7
+
+
 def test_where_a_situation_is_not_sure_time_passes_once() -> None:
     """Of a robot that dropped during a mission nobody knows at first whether it goes on: a run waits, once."""
     run = Run.against(CODELET, ReferenceSubject(CODELET))

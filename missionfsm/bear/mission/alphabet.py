@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from missionfsm.bear.mission.events import PLAIN_EVENTS
 from missionfsm.bear.mission.samples import COMMANDS, TABLES, auto, base, goals_at, of_family
-from missionfsm.bear.mission.scripts import CREATED, SCRIPTS
+from missionfsm.bear.mission.scripts import APART, CREATED, SCRIPTS
 from missionfsm.kernel.alphabet import ANY_NAME, Alphabet, Bounds, Input, ScriptStep
 from missionfsm.kernel.codec import JSON
 
@@ -272,4 +272,5 @@ def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
         worlds=_WORLDS,
         wrong_names=("no-such-mission",),
         scripts=(*SCRIPTS, *_refused()),
+        apart=APART.get(family, ()),
     )

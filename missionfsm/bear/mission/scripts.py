@@ -35,8 +35,8 @@ _SINGLE: JSON = {"mission": base({"destinationId": TABLES[0]})}
 _AUTO: JSON = {"mission": auto(*TABLES)}
 
 
-def _several(which: str) -> JSON:
-    return {"mission": of_family("servi", which, *TABLES)}
+def _several(which: str, family: str = "servi") -> JSON:
+    return {"mission": of_family(family, which, *TABLES)}
 
 
 _BEGUN = (_SUBSCRIBE, *call("CreateMission", _several("deliveryMission")))
@@ -71,10 +71,10 @@ def _commands() -> Iterator[tuple[ScriptStep, ...]]:
             yield (*way, *call("CreateMission", _SINGLE), *commanded(0, command), *drive("goalReached"))
 
 
-def _patrols() -> Iterator[tuple[ScriptStep, ...]]:
+def _patrols(family: str, *kinds: str) -> Iterator[tuple[ScriptStep, ...]]:
     """A patrol goes round until it is told otherwise, and what is appended waits for that."""
-    for which in ("deliveryPatrolMission", "bussingPatrolMission"):
-        begun = (_SUBSCRIBE, *call("CreateMission", _several(which)))
+    for which in kinds:
+        begun = (_SUBSCRIBE, *call("CreateMission", _several(which, family)))
         round_once = (*drive("goalReached"), *drive("goalReached"), *drive("goalReached"))
         yield (*begun, *round_once, *drive("goalReached"), *call("SkipGoal"), *call("SkipGoal"))
         yield (*begun, *APPENDED, *round_once, *call("SkipGoal"), *round_once, *commanded(0, FINISH))
@@ -95,9 +95,9 @@ def _choices() -> Iterator[tuple[ScriptStep, ...]]:
         yield (_SUBSCRIBE, *behind, *occupied, *drive("missionSucceeded"), *call("SkipGoal"))
 
 
-def _again() -> Iterator[tuple[ScriptStep, ...]]:
+def _again(family: str, which: str) -> Iterator[tuple[ScriptStep, ...]]:
     """What was done once is done once more: pauses, skips, and calls that fail on the way."""
-    four = of_family("servi", "deliveryMission", *TABLES, TABLES[0])
+    four = of_family(family, which, *TABLES, TABLES[0])
     begun = (_SUBSCRIBE, *call("CreateMission", {"mission": four}))
     pause, resume, skip, reached = commanded(0, PAUSE), commanded(0, RESUME), call("SkipGoal"), drive("goalReached")
     yield (*begun, *pause, *resume, *pause, *resume, *reached, *pause, *resume, *reached, *reached, *reached)
@@ -135,4 +135,12 @@ def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
         )
 
 
-SCRIPTS = (*_choices(), *_commands(), *_patrols(), *_again(), *_impossible())
+SCRIPTS = (
+    *_choices(),
+    *_commands(),
+    *_patrols("servi", "deliveryPatrolMission", "bussingPatrolMission"),
+    *_again("servi", "deliveryMission"),
+    *_impossible(),
+)
+APART = {"carti": (*_patrols("carti", "traversePatrolMission"), *_again("carti", "traverseMission"))}
+"""Of a family that is not the usual one: its robots, too, go round and do again what was done once."""

@@ -23,7 +23,7 @@ from missionfsm.tools.conform.distinguish import proposed
 from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.shortening import beside_others, shorten, shorten_evidence
-from missionfsm.tools.conform.tour import fill, play, some, tour
+from missionfsm.tools.conform.tour import fill, play, some, tour, written
 from missionfsm.tools.explore.undriven import Missed, missed_without
 
 DRAWN, TOURS, STEPS = 100, 60, 40
@@ -92,7 +92,8 @@ class Plan:
 
     def conversations(self, system: System) -> int:
         """How many there are of a system at most, where nothing is found."""
-        return len(some(system.alphabet({}, BOUNDS).scripts, self.scripts)) + sum(self.led(system)) + self.drawn
+        alphabets = [system.alphabet(world, BOUNDS) for world in system.alphabet({}, BOUNDS).worlds]
+        return len(some(written(alphabets), self.scripts)) + sum(self.led(system)) + self.drawn
 
 
 def conform(  # noqa: PLR0913 - every one has a default

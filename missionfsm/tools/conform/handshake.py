@@ -141,6 +141,7 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
             worlds=worlds,
             look=whole.look if whole.look and whole.look.method in methods else None,
             scripts=tuple(script for one in whole.scripts if (script := _possible(one, drives, has))),
+            apart=tuple(script for one in whole.apart if (script := _possible(one, drives, has))),
         )
 
     streams = tuple(one for one in system.codec.streams if one in methods)

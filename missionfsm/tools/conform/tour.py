@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from attrs import define
 
-from missionfsm.kernel.alphabet import ScriptStep
+from missionfsm.kernel.alphabet import Alphabet, ScriptStep
 from missionfsm.tools.conform.actions import WRONG_NAME, NameRef
 from missionfsm.tools.conform.guide import Proposal
 from missionfsm.tools.conform.reach import Reach
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.placeholders import kind_of, slots
 
-Scripts = tuple[tuple[ScriptStep, ...], ...]
+Scripts = tuple[tuple[int, tuple[ScriptStep, ...]], ...]
+"""Conversations that are written down, each with the world that it begins in."""
 
 SETTLED = 0.6
 """How often a tour waits for everything to settle after a step."""
@@ -26,6 +27,17 @@ FAVOURED = 0.5
 """How often a tour that has a favourite turns to it."""
 
 
+def written(alphabets: Sequence[Alphabet]) -> Scripts:
+    """Those of the usual world, which is the first, and of each world what is worth having nowhere before it."""
+    found = [(0, script) for script in alphabets[0].scripts]
+    apart: list[tuple[ScriptStep, ...]] = []
+    for world, alphabet in enumerate(alphabets):
+        more = [script for script in alphabet.apart if script not in apart]
+        found += ((world, script) for script in more)
+        apart += more
+    return tuple(found)
+
+
 def some(scripts: Scripts, most: int | None) -> Scripts:
     """All, or at most so many from everywhere among them."""
     if most is None or most >= len(scripts):
@@ -34,15 +46,15 @@ def some(scripts: Scripts, most: int | None) -> Scripts:
 
 
 def play(run: Run, most: int | None = None) -> bool:
-    """Have the conversations that the system's alphabet has written down; whether all could be explained.
+    """Have the conversations that the alphabets have written down; whether all could be explained.
 
     Args:
         most: how many of them, from everywhere among them; all by default.
     """
-    for script in some(run.guide.alphabets[0].scripts, most):
+    for world, script in some(written(run.guide.alphabets), most):
         if run.enough():
             break
-        run.start(run.guide.worlds[0])
+        run.start(run.guide.worlds[world])
         for line in script:
             if run.enough():
                 break

@@ -35,6 +35,9 @@ RUN_SQL = re.compile(r"<!-- run: sql -->\n```sql\n(.*?)```", re.DOTALL)
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#\s]*)(#[^)\s]*)?\)")
 
 
+HOUSE = ROOT / "docs" / "architecture.md"
+
+
 def named(path: Path) -> str:
     return path.name
 
@@ -256,6 +259,37 @@ def test_the_servers_that_share_robots_are_those_of_the_simulation() -> None:
     assert [row.split("|")[-2].strip() for row in rows[2:]] == ["yes"] * len(scale["SHARDS"])
 
 
+def robot_row() -> str:
+    """What `docs/glue.py` counts for `isaac.robot`."""
+    glue = runpy.run_path(str(ROOT / "docs" / "glue.py"))
+    return str(glue["rows"](glue["texts"]([*glue["ROOMS"]], None))[-1])
+
+
+def test_what_a_system_costs_is_counted() -> None:
+    """The page says of `isaac.robot` what is counted, and at most a tenth of it says nothing about the system."""
+    row = robot_row()
+    assert f"\n{row}\n" in HOUSE.read_text(), f"python {Path(__file__).name} writes it"
+    assert float(row.partition("(")[2].partition("%")[0]) <= 10
+
+
+def test_glue_is_told_from_what_says_something() -> None:
+    """Imports, what is put together, listings and forwarding are glue, and nothing else is."""
+    glue = runpy.run_path(str(ROOT / "docs" / "glue.py"))["glue"]
+    text = (
+        "import a\n"  # 1: glue
+        "X = 3\n"
+        "SPEC = Spec(\n"  # 3: glue
+        "    one,\n"  # 4: glue
+        "    title='a lamp',\n"
+        ")\n"  # 6: glue
+        "BOTH = (a, X)\n"  # 7: glue
+        "def passed(it):\n    return a(it)\n"  # 8, 9: glue
+        "def said(it):\n    return a(it + 1)\n"
+    )
+    assert glue(text) == {1, 3, 4, 6, 7, 8, 9}
+
+
 if __name__ == "__main__":
     for path in PAGES:
         path.write_text(regenerate(path.read_text()))
+    HOUSE.write_text(re.sub(r"\| all \| .*", robot_row(), HOUSE.read_text()))

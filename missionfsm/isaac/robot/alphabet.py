@@ -9,8 +9,7 @@ from missionfsm.isaac.robot.inputs import USABLE, Arrives
 from missionfsm.isaac.robot.scripts import EVENTS, SCRIPTS, mission
 from missionfsm.isaac.shared.line import new_uuid
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, new, pick
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.language import JSON, Alphabet, Bounds, as_text, new, pick
 
 _CONFIGS = ('{"goals.path":{"FollowPath":{"tolerance":0.25}}}', "{}", '{"a":{"b":{"c":[1,2.5,null,"é"]}}}')
 _UNUSABLE = ("no json", "[1,2]", "{", "17", '{"a":1}')
@@ -45,8 +44,6 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         "line": CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))["line"],
     }
     return Alphabet(
-        inputs=(),
-        core_inputs=(),
         drives=tuple(_drives(here.channel, here.status_channel)),
         core_drives=(plain, *EVENTS[:2], EVENTS[5], *EVENTS[6:]),
         worlds=_WORLDS,

@@ -4,22 +4,10 @@ from __future__ import annotations
 
 import json
 
-from missionfsm.isaac.robot.inputs import (
-    NULL,
-    ODD,
-    SHALLOW,
-    UNUSABLE,
-    USABLE,
-    Arrives,
-    Connection,
-    Event,
-    Passes,
-    Stops,
-)
+from missionfsm.isaac.robot.inputs import NAMED_ONLY, NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives, Event
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
-from missionfsm.isaac.robot.spec import SPEC
 from missionfsm.isaac.robot.state import Introduction, Report, World
-from missionfsm.isaac.shared.drives import seconds, text_line
+from missionfsm.isaac.shared.drives import Passes, seconds, text_line
 from missionfsm.isaac.shared.line import MICROSECONDS, from_json, new_uuid, see, stamp, to_json, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
@@ -32,10 +20,7 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.kernel.codec import JSON, Codec, Part, UnreadableError
-from missionfsm.kernel.history import Answer, Name
-from missionfsm.kernel.readings import meet
-from missionfsm.kernel.text import brief
+from missionfsm.kernel.language import JSON, Codec, Happening, Name, Part, UnreadableError, brief, meet
 
 ANY_NAME = "robot"
 """What a robot is called of which the world tells no name."""
@@ -103,10 +88,8 @@ def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     event = given.get("event") if isinstance(given, dict) else None
     if event == "line":
         return _arrives(text_line(given))
-    if event in ("behaviorSucceeded", "behaviorFailed"):
-        return Stops(event), ()
-    if event in ("connect", "disconnect"):
-        return Connection(event), ()
+    if event in NAMED_ONLY:
+        return Happening(event), ()
     if event == "advance":
         return Passes(seconds(given.get("seconds"))), ()
     raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.robot")
@@ -119,7 +102,7 @@ def write_drive(event: Event, names: tuple[Name, ...]) -> JSON:
     """The JSON of an event; of a line the essence."""
     if isinstance(event, Passes):
         return {"event": "advance", "seconds": event.time / MICROSECONDS}
-    if isinstance(event, Stops | Connection):
+    if isinstance(event, Happening):
         return {"event": event.name}
     if event.foreign:
         return {"event": "line", "line": encode(Message(Header(event.channel), TextProto(""))).decode().rstrip()}
@@ -143,53 +126,33 @@ def split_message(line: JSON) -> tuple[Part, ...]:
 def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
     """The line that shows a report, or the name."""
     time = round(at * 1e9)
+    statuses = [one.value for one in WireStatus]
     # An event may cause several messages, each with an identifier of its own: those differ in what they say or of what.
-    says = 0 if isinstance(view, Introduction) else 1 + [one.value for one in WireStatus].index(view.status)
+    says = 0 if isinstance(view, Introduction) else 1 + statuses.index(view.status)
     about = names[0][1] << 40 if names else 0  # type: ignore[index]
     own = Uuid.of(new_uuid(4 * number + says + about)[1])  # type: ignore[index]
+    uuid = Uuid.of(names[0][1]) if names and meet(choice, (AI_10["b"],)) else None  # type: ignore[index]
+    header = Header(view.channel, time, time, uuid if uuid and meet(choice, (AI_27_UUID["b"],)) else own)
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     if isinstance(view, Introduction):
-        named = Message(Header(view.channel, time, time, own), TextProto(view.name or ANY_NAME))
-        return encode(named, header_uuid_as_numbers=bare).decode().removesuffix("\n")
-    uuid = Uuid.of(names[0][1]) if names and meet(choice, (AI_10["b"],)) else None  # type: ignore[index]
-    if uuid is not None and meet(choice, (AI_27_UUID["b"],)):
-        own = uuid
-    header = Header(view.channel, time, time, own)
-    line = encode(Message(header, MissionStatusProto(uuid, WireStatus(view.status))), header_uuid_as_numbers=bare)
-    message = json.loads(line)
+        named = encode(Message(header, TextProto(view.name or ANY_NAME)), header_uuid_as_numbers=bare)
+        return named.decode().removesuffix("\n")
+    reported = Message(header, MissionStatusProto(uuid, WireStatus(view.status)))
+    message = json.loads(encode(reported, header_uuid_as_numbers=bare))
     if meet(choice, (AI_28_STATUS["c"],)):
         message["payload"]["missionStatus"] = view.status.upper()
     elif meet(choice, (AI_28_STATUS["e"],)):
-        message["payload"]["missionStatus"] = [one.value for one in WireStatus].index(view.status)
+        message["payload"]["missionStatus"] = statuses.index(view.status)
     return strictjson.compact(message)
 
 
-def _no_calls(method: str, *_: object) -> UnreadableError:
-    return UnreadableError(f"{brief(method)} is not a method of isaac.robot, which has none")
-
-
-def _split(method: str, _: JSON) -> tuple[tuple[Name, ...], JSON]:
-    raise _no_calls(method)
-
-
-def _answer(method: str, _: JSON) -> tuple[Answer, tuple[Name, ...]]:
-    raise _no_calls(method)
-
-
 CODEC = Codec(
-    methods=tuple(SPEC.operations),
-    streams=(),
     measured=("seconds",),
     read_world=read_world,
-    split_request=_split,
-    read_request=_split,
-    read_answer=_answer,
+    write_world=write_world,
+    read_drive=read_drive,
+    write_drive=write_drive,
     split_message=split_message,
     read_content=from_json,
-    read_drive=read_drive,
-    write_request=lambda *_: {},
-    write_answer=lambda *_: {},
     write_message=write_message,
-    write_world=write_world,
-    write_drive=write_drive,
 )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives, Connection, Passes, Stops
+from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
-from missionfsm.kernel.codec import Malformed
+from missionfsm.kernel.language import Happening, Malformed
 
 _CONFIGURED = dict(
     zip(
@@ -45,7 +46,7 @@ def describe(value: object) -> str:
         return _arrives(value)
     if isinstance(value, Passes):
         return f"{value.time / MICROSECONDS:g} s pass"
-    return _HAPPENS[value.name] if isinstance(value, Stops | Connection) else str(value)
+    return _HAPPENS[value.name] if isinstance(value, Happening) else str(value)
 
 
 def _said(line: LineContent) -> str:
@@ -59,8 +60,3 @@ def _arrives(event: Arrives) -> str:
         return f"{_CONFIGURED[event.mission]} arrives on {event.channel}"
     where = f" on {event.channel}" if event.channel else ""
     return f"a message that is no mission arrives{where}" if event.channel else "a line arrives that is no message"
-
-
-def later(event: Passes) -> str:
-    """Time that passes, in words that stand before what comes next."""
-    return f"{event.time / MICROSECONDS:g} s later"

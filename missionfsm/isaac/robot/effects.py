@@ -13,22 +13,10 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives, Connection, Passes, Stops
-from missionfsm.isaac.robot.state import (
-    LIFECYCLE,
-    NAME_BOUND,
-    RUNNING_BOUND,
-    TICK,
-    Codelet,
-    Introduction,
-    Report,
-    Waiting,
-    World,
-)
-from missionfsm.kernel.readings import Ambiguity, Assumption
-from missionfsm.kernel.rules import Rule
-from missionfsm.kernel.step import Emission, Opening, Step
-from missionfsm.kernel.terms import Refs
+from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives
+from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet, Introduction, Report, Waiting, World
+from missionfsm.isaac.shared.drives import Passes
+from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Happening, Opening, Refs, Rule, Step
 
 STATUSES, NAMES = "statuses", "names"
 """The two topics of the one connection: statuses and names come in any order among one another."""
@@ -58,17 +46,14 @@ def _emission(world: World, status: str, about: int | None, *, offer: bool = Fal
     return Emission(STATUSES, view, () if about is None else (about,), stays=offer, certain=not offer)
 
 
+def _offer(here: Codelet, about: int | None) -> Emission:
+    """RUNNING that may be said."""
+    return _emission(here.world, "running", about, offer=True)
+
+
 def introduction(world: World, *, offer: bool = False) -> Emission:
     """The name that is owed, or may be said."""
     return Emission(NAMES, Introduction(world.name, world.name_channel), (), stays=offer, certain=not offer)
-
-
-def moved(here: Codelet, trigger: str) -> Codelet:
-    """A codelet moves on its chart."""
-    state = LIFECYCLE.after(trigger, here.state)
-    assert state is not None, f"{trigger} is no move from {here.state}"  # noqa: S101 - the caller has looked
-    runs = state == "RUNNING"
-    return evolve(here, running=runs, named=here.named and runs, used=True, quiet=0)
 
 
 def _kept_names(here: Codelet) -> tuple[int, ...]:
@@ -77,17 +62,13 @@ def _kept_names(here: Codelet) -> tuple[int, ...]:
     return tuple(at for at, one in enumerate(named) if one.kept)
 
 
-def _waiting_names(here: Codelet) -> tuple[int, ...]:
-    return tuple(range(here.identifiers - len(here.mission)))
-
-
 def waiting_statuses(here: Codelet) -> Iterator[Emission]:
     """The statuses that waited, in order."""
     at = 0
     for one in here.waiting:
         about = at if one.report.named else None
         if one.offered:
-            yield _emission(here.world, "running", about, offer=True)
+            yield _offer(here, about)
         yield _emission(here.world, one.report.status, about)
         at += one.report.named
 
@@ -114,9 +95,9 @@ def _concluded(
         emits = (
             *(waiting_statuses(here) if flushed else ()),
             *_sent(here, now),
-            *((_emission(here.world, "running", mission, offer=True),) if after.running and not waiting else ()),
+            *((_offer(here, mission),) if after.running and not waiting else ()),
         )
-        names = (*(() if flushed else _waiting_names(here)), *_names_in(later), *runs)
+        names = (*(() if flushed else here.waits), *_names_in(later), *runs)
         conclusion = evolve(after, waiting=waiting, waited=waited)
         yield Step(conclusion, names=names, emits=emits, rules=ids, assumes=assumes)
 
@@ -133,7 +114,7 @@ def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due,
 def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
     for one in due:
         if one.offered:
-            yield _emission(here.world, "running", one.about, offer=True)
+            yield _offer(here, one.about)
         yield _emission(here.world, one.status, one.about)
 
 
@@ -149,7 +130,7 @@ def _unconnected(
     here: Codelet, after: Codelet, runs: tuple[int, ...], due: tuple[Due, ...], ids: tuple[str, ...]
 ) -> Iterator[Step]:
     ids = (*ids, rules.LINKED.id)
-    before = _waiting_names(here)
+    before = here.waits
     yield Step(
         evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(readings.AI_15_STATUS["a"],)
     )
@@ -220,7 +201,7 @@ def _old(here: Codelet) -> int | None:
 def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     """A mission arrives that can be run."""
     new = NEW if event.named else None
-    after = moved(evolve(here, named=event.named), "a mission arrives")
+    after = evolve(here, named=event.named).moved("a mission arrives")
     because: tuple[Rule, ...] = (rules.STARTS,)
     due: tuple[Due, ...] = ()
     if here.running:
@@ -237,11 +218,11 @@ def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
     for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
         failure = Due("failure", new, readings.AI_31_UNUSABLE, offered)
         if not here.running:
-            after = moved(evolve(here, named=False), "an unusable mission arrives")
+            after = evolve(here, named=False).moved("an unusable mission arrives")
             because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
             yield from _all(_concluded(here, after, None, (failure,), because), (said,))
             continue
-        ended = moved(here, "an unusable mission arrives")
+        ended = here.moved("an unusable mission arrives")
         due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True), failure)
         preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
         yield from _all(preempts, (said, readings.AI_33_PREEMPTS["a"]))
@@ -258,13 +239,13 @@ _STOPS = {
 
 
 @functools.lru_cache(maxsize=20_000)
-def stops(here: Codelet, event: Stops, _: Refs) -> tuple[Step, ...]:
+def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
     if not here.running:
         return ()
     due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
-    return tuple(_concluded(here, moved(here, trigger), None, due, (FINAL[status],)))
+    return tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
 
 
 def ticks(here: Codelet) -> tuple[Step, ...]:
@@ -272,7 +253,7 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     if not (here.connected and here.waiting):
         return ()
     because = dict.fromkeys(FINAL[one.report.status].id for one in here.waiting)
-    offers = (_emission(here.world, "running", _old(here), offer=True),) if here.running else ()
+    offers = (_offer(here, _old(here)),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
     return (Step(after, names=here.mission, emits=(*waiting_statuses(here), *offers), rules=tuple(because)),)
 
@@ -318,7 +299,7 @@ def _reports(step: Step, about: int | None, time: int) -> Iterator[Step]:
     if not here.running or here.waiting:
         yield step
         return
-    said = (_emission(here.world, "running", about), _emission(here.world, "running", about, offer=True))
+    said = (_emission(here.world, "running", about), _offer(here, about))
     reported = evolve(here, quiet=0)
     yield evolve(step, after=reported, emits=step.emits + said, rules=(*step.rules, rules.RUNNING.id))
     if here.quiet + time < RUNNING_BOUND and not step.emits:
@@ -340,7 +321,7 @@ def _introduces(step: Step, time: int) -> Iterator[Step]:
 
 
 @functools.lru_cache(maxsize=20_000)
-def connection(here: Codelet, event: Connection, _: Refs) -> tuple[Step, ...]:
+def connection(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The connection drops, with all that was on its way, or is there again."""
     if event.name == "connect":
         return () if here.connected else (_connected(here),)
@@ -367,16 +348,15 @@ def _forgetful(gone: Step) -> Step:
 def _given_up(gone: Step) -> Step:
     """The mission that runs is given up with the connection (AI-15.mission b)."""
     here: Codelet = gone.after
-    names = tuple(range(here.identifiers - len(here.mission)))
-    after = moved(here, "the connection drops")
-    return evolve(gone, after=after, names=names, assumes=(*gone.assumes, readings.AI_15_MISSION["b"]))
+    after = here.moved("the connection drops")
+    return evolve(gone, after=after, names=here.waits, assumes=(*gone.assumes, readings.AI_15_MISSION["b"]))
 
 
 def _failed(gone: Step) -> Step:
     """The mission that runs fails with the connection, and its FAILURE waits with what waits (AI-15.mission c)."""
     here: Codelet = gone.after
     failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False, kept=True)
-    after = evolve(moved(here, "the connection drops"), waiting=(*here.waiting, failure))
+    after = evolve(here.moved("the connection drops"), waiting=(*here.waiting, failure))
     names = tuple(range(here.identifiers)) if gone.names is None else gone.names
     return evolve(gone, after=after, names=names, assumes=(*gone.assumes, readings.AI_15_MISSION["c"]))
 
@@ -385,7 +365,7 @@ def _connected(here: Codelet) -> Step:
     after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
     emits = [introduction(here.world, offer=True)]
     if here.running and not here.waiting:
-        emits.append(_emission(here.world, "running", _old(here), offer=True))
+        emits.append(_offer(here, _old(here)))
     return Step(after, emits=tuple(emits), rules=(rules.NAMED.id,))
 
 

@@ -1,8 +1,11 @@
-"""What happens to a robot, as values: lines that arrive, the behavior tree that stops, the connection, time."""
+"""What happens to a robot, as values: lines that arrive, time, and what has a name only (`NAMED_ONLY`)."""
 
 from __future__ import annotations
 
 from attrs import frozen
+
+from missionfsm.isaac.shared.drives import Passes
+from missionfsm.kernel.codec import Happening
 
 USABLE, NULL, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = ("usable", "null", "shallow", "odd", "unusable")
 """What a configuration is: an object of nodes; ``null``, or none at all; an object in which something is no node with
@@ -24,26 +27,7 @@ class Arrives:
     name: str = "line"
 
 
-@frozen(cache_hash=True)
-class Stops:
-    """The behavior tree stops, as ``behaviorSucceeded`` or ``behaviorFailed``."""
+NAMED_ONLY = ("behaviorSucceeded", "behaviorFailed", "disconnect", "connect")
+"""The drives of which there is nothing to say but the name."""
 
-    name: str
-
-
-@frozen(cache_hash=True)
-class Passes:
-    """Time passes, in microseconds."""
-
-    time: int
-    name: str = "advance"
-
-
-@frozen(cache_hash=True)
-class Connection:
-    """The connection drops (``disconnect``) or is there again (``connect``)."""
-
-    name: str
-
-
-Event = Arrives | Stops | Passes | Connection
+Event = Arrives | Passes | Happening

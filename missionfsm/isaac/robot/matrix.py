@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from missionfsm.isaac.robot.inputs import Arrives, Connection, Event, Passes, Stops
+from missionfsm.isaac.robot.inputs import Arrives, Event
 from missionfsm.isaac.robot.scripts import script
 from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet
-from missionfsm.kernel.alphabet import Bounds, ScriptStep
-from missionfsm.kernel.matrix import Matrix
-from missionfsm.kernel.terms import Refs
+from missionfsm.isaac.shared.drives import Passes
+from missionfsm.kernel.language import Bounds, Happening, Matrix, Refs, ScriptStep
 
 
 def situation(here: Codelet, _: object = ()) -> str:
@@ -25,7 +24,7 @@ def columns(here: Codelet, _: object, event: Event, refs: Refs) -> tuple[str, ..
     """The kind of action that an event is an example of."""
     if isinstance(event, Passes):
         return (_of_time(event.time),)
-    if isinstance(event, Stops | Connection):
+    if isinstance(event, Happening):
         return (event.name,)
     return (_of_line(here, event, refs),)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 from attrs import evolve
@@ -10,8 +11,7 @@ from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.isaac.shared.mutations import changed, line_mutations, mission_type, swapped, unsigned_type
-from missionfsm.kernel.step import Emission, Step
-from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
+from missionfsm.kernel.language import Emission, MessageMutation, Step, StepMutation, breaks
 
 StepMutator = Callable[[Codelet, Step], Step | None]
 
@@ -37,16 +37,24 @@ def _final(emission: Emission) -> bool:
     return isinstance(emission.view, Report) and emission.view.status != "running"
 
 
-def _without_running(_: Codelet, step: Step) -> Step:
-    return evolve(step, emits=tuple(one for one in step.emits if one.topic != STATUSES))
+def _is_status(emission: Emission) -> bool:
+    return emission.topic == STATUSES
 
 
-def _without_name(_: Codelet, step: Step) -> Step:
-    return evolve(step, emits=tuple(one for one in step.emits if one.topic != NAMES))
+def _is_name(emission: Emission) -> bool:
+    return emission.topic == NAMES
 
 
-def _nameless_while_running(before: Codelet, step: Step) -> Step:
-    return _without_name(before, step) if before.running else step
+def _without(which: Callable[[Emission], bool], when: Callable[[Codelet], bool] = lambda _: True) -> StepMutator:
+    """What is said is left out, if the codelet was in such a state before."""
+    return lambda before, step: (
+        evolve(step, emits=tuple(itertools.filterfalse(which, step.emits))) if when(before) else step
+    )
+
+
+def _each(change: Callable[[Emission], Emission]) -> StepMutator:
+    """Everything that is said is changed."""
+    return lambda _, step: evolve(step, emits=tuple(map(change, step.emits)))
 
 
 def _speaks_up(before: Codelet, step: Step) -> Step:
@@ -54,17 +62,9 @@ def _speaks_up(before: Codelet, step: Step) -> Step:
     return evolve(step, emits=(*step.emits, introduction(before.world)))
 
 
-def _with_another_name(_: Codelet, step: Step) -> Step:
-    """The name is another one while a mission runs."""
-    emits = tuple(
-        evolve(one, view=evolve(one.view, name=f"{one.view.name}-2")) if isinstance(one.view, Introduction) else one
-        for one in step.emits
-    )
-    return evolve(step, emits=emits)
-
-
-def _without_final(_: Codelet, step: Step) -> Step:
-    return evolve(step, emits=tuple(one for one in step.emits if not _final(one)))
+def _renamed(emission: Emission) -> Emission:
+    view = emission.view
+    return evolve(emission, view=evolve(view, name=f"{view.name}-2")) if isinstance(view, Introduction) else emission
 
 
 def _final_twice(_: Codelet, step: Step) -> Step:
@@ -79,12 +79,7 @@ def _final_first(_: Codelet, step: Step) -> Step:
 
 def _said_as(status: str) -> StepMutator:
     """Final statuses are another one."""
-
-    def mutate_step(_: Codelet, step: Step) -> Step:
-        emits = tuple(evolve(one, view=evolve(one.view, status=status)) if _final(one) else one for one in step.emits)
-        return evolve(step, emits=emits)
-
-    return mutate_step
+    return _each(lambda one: evolve(one, view=evolve(one.view, status=status)) if _final(one) else one)
 
 
 def _running_after(_: Codelet, step: Step) -> Step:
@@ -110,30 +105,30 @@ STEP_MUTATIONS = (
     *breaks(
         rules.PREEMPTS,
         is_not_run=_never_run,
-        drops_the_old_one_silently=_without_final,
+        drops_the_old_one_silently=_without(_final),
         says_that_the_old_one_succeeded=_said_as("success"),
         reports_the_old_one_last=_final_first,
     ),
-    *breaks(rules.UNUSABLE, is_not_reported=_without_final, is_reported_as_a_success=_said_as("success")),
+    *breaks(rules.UNUSABLE, is_not_reported=_without(_final), is_reported_as_a_success=_said_as("success")),
     *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
-    *breaks(rules.RUNNING, is_never_reported=_without_running),
+    *breaks(rules.RUNNING, is_never_reported=_without(_is_status)),
     StepMutation(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
     *breaks(
         rules.NAMED,
-        is_never_said=_without_name,
-        is_not_said_during_a_mission=_nameless_while_running,
-        is_another_one=_with_another_name,
+        is_never_said=_without(_is_name),
+        is_not_said_during_a_mission=_without(_is_name, lambda before: before.running),
+        is_another_one=_each(_renamed),
     ),
     *breaks(rules.LINKED, is_forgotten=_speaks_up),
     *breaks(
         rules.SUCCESS,
-        is_not_reported=_without_final,
+        is_not_reported=_without(_final),
         is_reported_twice=_final_twice,
         is_reported_as_a_failure=_said_as("failure"),
     ),
     *breaks(
         rules.FAILURE,
-        is_not_reported=_without_final,
+        is_not_reported=_without(_final),
         is_reported_twice=_final_twice,
         is_reported_as_a_success=_said_as("success"),
     ),

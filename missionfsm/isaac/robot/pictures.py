@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.robot.inputs import UNUSABLE, Arrives, Event, Passes
+from missionfsm.isaac.robot.inputs import UNUSABLE, Arrives, Event
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
-from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.picture import Sketch
-from missionfsm.kernel.terms import Refs
+from missionfsm.isaac.shared.drives import Passes
+from missionfsm.kernel.language import JSON, Refs, Sketch
 
 _MISSION = '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"%s"}}}'
 _DRIVES: tuple[JSON, ...] = (

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.robot.state import SYSTEM_NAME
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
-from missionfsm.kernel.readings import declared
-from missionfsm.kernel.rules import Citation, Rule, promise
+from missionfsm.kernel.language import Citation, Rule, declared, promise
 
 CODELET = PAGE["Mission Codelet"]
 CLIENT = PAGE["JsonTcpClient Codelet"]
@@ -65,10 +64,7 @@ FAILURE = _promise(
     PAGE["Mission Codelet", "step 4"],
 )
 ABOUT = _promise(
-    "status",
-    "a-status-is-about-its-mission",
-    "A status that names a mission names the one that it is about.",
-    CODELET,
+    "status", "a-status-is-about-its-mission", "A status that names a mission names the one that it is about.", CODELET
 )
 CHANNEL = _promise(
     "status",

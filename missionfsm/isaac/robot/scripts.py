@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed
-from missionfsm.kernel.alphabet import ScriptStep, as_text, new, pick
-from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.language import JSON, ScriptStep, as_text, new, pick
 
 _HEADER_UUID = {"lower": "12297829382473034411", "upper": "6148914691236517206"}
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from missionfsm.isaac.robot import rules
-from missionfsm.isaac.robot.describe import describe, later
+from missionfsm.isaac.robot.describe import describe
 from missionfsm.isaac.robot.effects import arrives, begins, connection, passes, stops, ticks
-from missionfsm.isaac.robot.inputs import Stops
 from missionfsm.isaac.robot.readings import AMBIGUITIES
 from missionfsm.isaac.robot.rules import RULES
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
 from missionfsm.isaac.robot.stream import delivery, matches, sequence
-from missionfsm.kernel.abstraction import Abstraction
-from missionfsm.kernel.spec import Drive, Invariant, Spec
+from missionfsm.isaac.shared.drives import later
+from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec
 
 _SAYS: Callable[[str], Invariant] = lambda state: Invariant(  # noqa: E731 - one line of a table
     f"the-codelet-is-{state.lower()}", f"Some codelet is {state}.", lambda here: here.state == state
@@ -26,29 +25,23 @@ def _canonical(here: Codelet) -> Codelet:
 
 
 SPEC = Spec(
-    system=SYSTEM_NAME,
+    SYSTEM_NAME,
     title="a robot's mission codelet",
     initial=Codelet,
-    operations={},
-    outcomes=lambda *_: (),
-    drives={
-        one.name: one
-        for one in (
-            Drive("line", arrives, impossible=(rules.LINKED.id,)),
-            Drive("behaviorSucceeded", stops, (Stops("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
-            Drive("behaviorFailed", stops, (Stops("behaviorFailed"),), impossible=(rules.STARTS.id,)),
-            Drive("advance", passes, later=later),
-            Drive("disconnect", connection, ends=True, impossible=(rules.LINKED.id,)),
-            Drive("connect", connection, impossible=(rules.LINKED.id,)),
-        )
-    },
+    drives=(
+        Drive("line", arrives, impossible=(rules.LINKED.id,)),
+        Drive("behaviorSucceeded", stops, (Happening("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
+        Drive("behaviorFailed", stops, (Happening("behaviorFailed"),), impossible=(rules.STARTS.id,)),
+        Drive("advance", passes, later=later),
+        Drive("disconnect", connection, ends=True, impossible=(rules.LINKED.id,)),
+        Drive("connect", connection, impossible=(rules.LINKED.id,)),
+    ),
     urgent=begins,
     spontaneous=ticks,
     matches=matches,
     delivery=delivery,
     sequence=sequence,
     names=lambda here: here.identifiers,
-    request_operation=str,
     ambiguities=AMBIGUITIES,
     describe=describe,
     rules=RULES,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
@@ -113,12 +113,24 @@ class Codelet:
         """Where it is on the chart."""
         return "RUNNING" if self.running else "IDLE"
 
+    def moved(self, trigger: str) -> Codelet:
+        """It, once it has moved on the chart."""
+        state = LIFECYCLE.after(trigger, self.state)
+        assert state is not None, f"{trigger} is no move from {self.state}"  # noqa: S101 - the caller has looked
+        runs = state == "RUNNING"
+        return evolve(self, running=runs, named=self.named and runs, used=True, quiet=0)
+
     @property
     def mission(self) -> tuple[int, ...]:
         """The position of the identifier of the mission that runs, among the names: none where it has none."""
-        return (sum(one.report.named for one in self.waiting),) if self.running and self.named else ()
+        return (len(self.waits),) if self.running and self.named else ()
+
+    @property
+    def waits(self) -> tuple[int, ...]:
+        """The positions of the identifiers of the statuses that wait."""
+        return tuple(range(sum(one.report.named for one in self.waiting)))
 
     @property
     def identifiers(self) -> int:
         """How many identifiers it has: those of the statuses that wait, then that of the mission that runs."""
-        return sum(one.report.named for one in self.waiting) + len(self.mission)
+        return len(self.waits) + len(self.mission)

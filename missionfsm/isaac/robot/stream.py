@@ -11,10 +11,7 @@ from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Report
 from missionfsm.isaac.shared.line import LineContent
-from missionfsm.kernel.codec import Malformed
-from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.spec import Delivery
-from missionfsm.kernel.step import Match, Mismatch
+from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch
 
 RULES = {"running": rules.RUNNING, **FINAL}
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}

@@ -10,11 +10,8 @@ from missionfsm.isaac.robot.pictures import SKETCHES
 from missionfsm.isaac.robot.shapes import shapes
 from missionfsm.isaac.robot.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
-from missionfsm.isaac.shared.profiles import AS_SHIPPED, DOCUMENTED, SHIPPED_ROBOT
-from missionfsm.kernel.readings import to_the_letter
+from missionfsm.isaac.shared.profiles import SHIPPED_ROBOT, profiles
 from missionfsm.kernel.system import System
-
-PROFILES = {DOCUMENTED: to_the_letter(SPEC.ambiguities), AS_SHIPPED: SHIPPED_ROBOT}
 
 SYSTEM = System(
     SPEC.system,
@@ -26,6 +23,6 @@ SYSTEM = System(
     step_mutations=STEP_MUTATIONS,
     sketches=SKETCHES,
     shapes=shapes,
-    profiles=PROFILES,
+    profiles=profiles(SPEC.ambiguities, SHIPPED_ROBOT),
     matrix=MATRIX,
 )

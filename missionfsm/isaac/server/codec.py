@@ -18,14 +18,13 @@ from missionfsm.isaac.server.inputs import (
     Connects,
     Drops,
     Incoming,
-    Passes,
     Statuses,
     Submission,
 )
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Sends, World
-from missionfsm.isaac.shared.drives import in_microseconds, seconds, text_line
+from missionfsm.isaac.shared.drives import Passes, in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import (
     MICROSECONDS,
     LineContent,

@@ -12,11 +12,11 @@ from missionfsm.isaac.server.inputs import (
     Connects,
     Drops,
     Incoming,
-    Passes,
     Statuses,
     Submission,
 )
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
+from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.codec import Malformed
 
@@ -73,8 +73,3 @@ def _heard(heard: Incoming) -> str:
         return f"a robot reports {heard.what.upper()} {about} on {heard.channel}"
     kinds = {NOISE: "a message for nobody", BAD: "a line that is no message", FOREIGN: "a message with buffers"}
     return f"a robot sends {kinds[heard.kind]}"
-
-
-def later(event: Passes) -> str:
-    """Time that passes, in words that stand before what comes next."""
-    return f"{event.time / MICROSECONDS:g} s later"

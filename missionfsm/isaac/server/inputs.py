@@ -64,14 +64,6 @@ class Statuses:
 
 
 @value(cache_hash=True)
-class Passes:
-    """Time passes, in microseconds."""
-
-    time: int
-    name: str = "advance"
-
-
-@value(cache_hash=True)
 class Connects:
     """A robot connects; the event's name is the connection's."""
 

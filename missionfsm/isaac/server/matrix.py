@@ -14,12 +14,12 @@ from missionfsm.isaac.server.inputs import (
     Connects,
     Drops,
     Incoming,
-    Passes,
     Statuses,
     Submission,
 )
 from missionfsm.isaac.server.scripts import PAUSE, A, B, Script
 from missionfsm.isaac.server.state import ENDED, FAILURES, PASS_PERIOD, UNDER_WAY, Link, Mission, Server, Status
+from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.alphabet import Bounds, ScriptStep
 from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.terms import Refs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Statuses, Submission
 from missionfsm.isaac.server.readings import AI_10_FROM, AMBIGUITIES
 from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, robot_line
 from missionfsm.isaac.server.state import (
@@ -17,6 +17,7 @@ from missionfsm.isaac.server.state import (
     first_link_ref,
     mission_of_uuid,
 )
+from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
 from missionfsm.kernel.alphabet import Input, pick
 from missionfsm.kernel.codec import JSON

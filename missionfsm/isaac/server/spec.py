@@ -15,10 +15,10 @@ from missionfsm.isaac.server.abstraction import canonical, explore_size, idle_se
 from missionfsm.isaac.server.clocks import started, zero_means
 from missionfsm.isaac.server.connections import connects, drops, hears
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
-from missionfsm.isaac.server.describe import describe, later
+from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.dispatch import urgent
 from missionfsm.isaac.server.independence import Part, concerned, parts
-from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Passes, Statuses, Submission
+from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed
 from missionfsm.isaac.server.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.isaac.server.readings import (
@@ -51,6 +51,7 @@ from missionfsm.isaac.server.state import (
 )
 from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
 from missionfsm.isaac.server.time import calmed, nothing_open_happened, passes, unseen
+from missionfsm.isaac.shared.drives import Passes, later
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
@@ -327,15 +328,12 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         initial=lambda world: _begins(Server(world.name_channel, left=left, tolerance=world.tolerance)),
         operations=operations,
         outcomes=functools.partial(_outcomes, operations),
-        drives={
-            one.name: one
-            for one in (
-                Drive("connect", _connect),
-                Drive("line", _line, impossible=(rules.NAMED.id,)),
-                Drive("disconnect", _disconnect, ends=True, impossible=(rules.DROPPED.id,)),
-                Drive("advance", _advance, later=later),
-            )
-        },
+        drives=(
+            Drive("connect", _connect),
+            Drive("line", _line, impossible=(rules.NAMED.id,)),
+            Drive("disconnect", _disconnect, ends=True, impossible=(rules.DROPPED.id,)),
+            Drive("advance", _advance, later=later),
+        ),
         urgent=_urgent,
         spontaneous=_spontaneous,
         silent_for=_silent_for,
@@ -347,7 +345,6 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         unowed=_unowed,
         sequence=sequence,
         names=_names,
-        request_operation=lambda request: str(request.operation),
         ambiguities=AMBIGUITIES,
         describe=describe,
         rules=RULES,

@@ -11,11 +11,8 @@ from missionfsm.isaac.server.plans import PLANS
 from missionfsm.isaac.server.shapes import shapes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
-from missionfsm.isaac.shared.profiles import AS_SHIPPED, DOCUMENTED, SHIPPED_SERVER
-from missionfsm.kernel.readings import to_the_letter
+from missionfsm.isaac.shared.profiles import SHIPPED_SERVER, profiles
 from missionfsm.kernel.system import System
-
-PROFILES = {DOCUMENTED: to_the_letter(SPEC.ambiguities), AS_SHIPPED: SHIPPED_SERVER}
 
 SYSTEM = System(
     SPEC.system,
@@ -28,7 +25,7 @@ SYSTEM = System(
     sketches=SKETCHES,
     plans=PLANS,
     shapes=shapes,
-    profiles=PROFILES,
+    profiles=profiles(SPEC.ambiguities, SHIPPED_SERVER),
     matrix=MATRIX,
     minutes_at=2,
 )

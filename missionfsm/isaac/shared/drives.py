@@ -7,9 +7,23 @@ import math
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.text import brief
+from missionfsm.kernel.values import value
 
 MAX_SECONDS = 1e300
 """Of what is longer the microseconds are more than a float can be."""
+
+
+@value(cache_hash=True)
+class Passes:
+    """Time passes, in microseconds."""
+
+    time: int
+    name: str = "advance"
+
+
+def later(event: Passes) -> str:
+    """Time that passes, in words that stand before what comes next."""
+    return f"{event.time / MICROSECONDS:g} s later"
 
 
 def seconds(given: JSON, where: str = "drive.seconds") -> int:

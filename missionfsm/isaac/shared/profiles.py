@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from missionfsm.kernel.readings import Ambiguity, to_the_letter
+
 DOCUMENTED, AS_SHIPPED = "documented", "as-shipped"
 """The names of the profiles: nothing departs from the text, or all is as the shipped software does it."""
 
@@ -51,3 +53,8 @@ SHIPPED_ROBOT: Mapping[str, str] = {
     "AI-33.unusable": "a",
 }
 """The mission codelet: FAILURE of the old mission first; `null` runs, a node without a component object fails."""
+
+
+def profiles(ambiguities: tuple[Ambiguity, ...], shipped: Mapping[str, str]) -> Mapping[str, Mapping[str, str]]:
+    """The profiles of a system by name."""
+    return {DOCUMENTED: to_the_letter(ambiguities), AS_SHIPPED: shipped}

@@ -108,7 +108,7 @@ class Rule:
         code: the gRPC status of a refusal; None for a promise.
         holds: the condition of a refusal.
         assumes: the reading that makes the condition refuse, or None where no reading matters.
-        sort: what a refusal looks at, where readings rank that (the form of a request before the state).
+        looks_at: what a refusal looks at, where readings rank that (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
     """
 
@@ -119,7 +119,7 @@ class Rule:
     code: str | None = None
     holds: Condition | None = field(default=None, eq=False, repr=False)
     assumes: Assumption | None = None
-    sort: str = ""
+    looks_at: str = ""
     id: str = ""
 
     def __call__(self, state: State, call: Request) -> bool:
@@ -142,7 +142,7 @@ def _words(function: Condition) -> tuple[str, str, str]:
 
 
 def refusal(
-    code: str, *, cite: Citation, assumes: Assumption | None = None, sort: str = ""
+    code: str, *, cite: Citation, assumes: Assumption | None = None, looks_at: str = ""
 ) -> Callable[[Condition], Rule]:
     """Make a refusal of a condition: its name is the name, its docstring the message and the argument.
 
@@ -150,12 +150,12 @@ def refusal(
         code: the gRPC status that the document gives.
         cite: where it stands.
         assumes: the reading that makes the condition refuse.
-        sort: what it looks at, for readings that rank that (the form before the state, say).
+        looks_at: what it looks at, for readings that rank that (the form before the state, say).
     """
 
     def register(condition: Condition) -> Rule:
         name, says, argues = _words(condition)
-        return Rule(name, says, argues, cite, code, condition, assumes, sort)
+        return Rule(name, says, argues, cite, code, condition, assumes, looks_at)
 
     return register
 

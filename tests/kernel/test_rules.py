@@ -108,7 +108,7 @@ def test_decide_without_rules_lets_the_operation_take_effect() -> None:
     assert decide(()) == (Decision(None, (), ()),)
 
 
-@refusal("BAD", cite=PAGE["Create", "Errors"], assumes=SHAPE["a"], sort="shape")
+@refusal("BAD", cite=PAGE["Create", "Errors"], assumes=SHAPE["a"], looks_at="shape")
 def _the_number_is_odd(state: int, call: int) -> bool:
     """The number is odd.
 

@@ -105,7 +105,7 @@ def _outcomes(operation: Operation, robot: Situation, call: Call) -> Iterator[Ou
         else:
             rules = tuple(rule.id for rule in decision.rules)
             found.append(Outcome(decision.code, assumes=decision.assumes, rules=rules))
-        if robot.world.blocked and operation.name in AM_53 and all(rule.sort == ABILITY for rule in decision.rules):
+        if robot.world.blocked and operation.name in AM_53 and all(rule.looks_at == ABILITY for rule in decision.rules):
             # The request was accepted, and a robot that is unable to start does not confirm.
             late = (*decision.assumes, AM_53[operation.name]["t"])
             found.append(Outcome(DEADLINE_EXCEEDED, assumes=late, applied=False))

@@ -202,7 +202,7 @@ def _at_home(name: str, one: Rule) -> Rule:
     Whether a robot is able to start is a question of one table alone; where it refuses other calls as well, that table
     is what it is cited from.
     """
-    if one.cite.headings[1:] != ("Errors",) or one.sort == ABILITY:
+    if one.cite.headings[1:] != ("Errors",) or one.looks_at == ABILITY:
         return one
     unlisted = one.code == INVALID_ARGUMENT and name in INVALID_UNLISTED
     return evolve(one, cite=evolve(one.cite, headings=(name, "Request" if unlisted else "Errors")))
@@ -358,7 +358,7 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     INVALID_ARGUMENT whatever is looked at first, since there is no request to look at anything for.
     """
     forbidding = tuple(_forbidding(operation, holding))
-    invalid = {one.sort for one in holding if one.code == INVALID_ARGUMENT}
+    invalid = {one.looks_at for one in holding if one.code == INVALID_ARGUMENT}
     if not forbidding or not invalid:
         yield from ((code, ()) for code in _codes(holding))
         return
@@ -382,25 +382,25 @@ def _format_first(ambiguity: Ambiguity, *, early: bool) -> Assumption:
 def _of_the_family(holding: tuple[Rule, ...]) -> Ranked:
     """AM-41: what is told by the family of the robot is neither the format nor the state of its missions."""
     yield from (
-        (code, ()) for code in _codes(one for one in holding if one.sort == EITHER and one.code != INVALID_ARGUMENT)
+        (code, ()) for code in _codes(one for one in holding if one.looks_at == EITHER and one.code != INVALID_ARGUMENT)
     )
 
 
 def _forbidding(operation: str, holding: tuple[Rule, ...]) -> Iterator[tuple[str, Ambiguity]]:
     """The codes by which a state forbids the call, each with the part of AM-01 that ranks it against the format."""
-    for sort, ambiguity in ((STATE, AM_01[operation]), (ABILITY, AM_01_BLOCKED.get(operation))):
+    for looked_at, ambiguity in ((STATE, AM_01[operation]), (ABILITY, AM_01_BLOCKED.get(operation))):
         if ambiguity is not None:
-            yield from ((code, ambiguity) for code in _codes(one for one in holding if one.sort == sort))
+            yield from ((code, ambiguity) for code in _codes(one for one in holding if one.looks_at == looked_at))
 
 
 def _rank_update(situation: str, holding: tuple[Rule, ...]) -> Ranked:
     """AM-04: the command or the id is answered for."""
     about = AM_04_NO_ID if situation == AM_04_NO_ID.id.partition(".")[2] else AM_04.get(situation)
-    for code, sort in dict.fromkeys((str(one.code), one.sort) for one in holding):
-        if about is None or sort == FORM:
+    for code, looked_at in dict.fromkeys((str(one.code), one.looks_at) for one in holding):
+        if about is None or looked_at == FORM:
             yield code, ()
         else:
-            yield code, (about["a"] if sort == SHAPE else about.besides("a"),)
+            yield code, (about["a"] if looked_at == SHAPE else about.besides("a"),)
 
 
 _BUSY = {
@@ -416,7 +416,7 @@ that is missing, and each may be read in several ways already.
 
 def _rank_charge(holding: tuple[Rule, ...]) -> Ranked:
     """AM-38: the mission is answered for, or what is missing."""
-    left = tuple(one for one in holding if one.sort != FORM)
+    left = tuple(one for one in holding if one.looks_at != FORM)
     late: tuple[Assumption, ...] = ()
     if left != holding:
         yield INVALID_ARGUMENT, ()
@@ -426,9 +426,9 @@ def _rank_charge(holding: tuple[Rule, ...]) -> Ranked:
 
 def _rank_busy(holding: tuple[Rule, ...]) -> Ranked:
     busy = {_BUSY[one.name]: str(one.code) for one in holding if one.name in _BUSY}
-    missing = {_missing(one): str(one.code) for one in holding if one.sort == GOALS}
+    missing = {_missing(one): str(one.code) for one in holding if one.looks_at == GOALS}
     ranked = busy and missing
-    others = [one for one in holding if not (ranked and (one.sort == GOALS or one.name in _BUSY))]
+    others = [one for one in holding if not (ranked and (one.looks_at == GOALS or one.name in _BUSY))]
     yield from ((code, ()) for code in _codes(others))
     if ranked:
         yield from _busy_or_missing(busy, missing)

@@ -70,19 +70,19 @@ def _wanted(call: Call) -> tuple[Wanted, ...]:
 # The request by itself.
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=SHAPE)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=SHAPE)
 def the_request_is_empty(_: Situation, call: Call) -> bool:
     """The request does not say which mission it wants."""
     return Defect.EMPTY in call.request.defects
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=FORM)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=FORM)
 def the_request_is_malformed(_: Situation, call: Call) -> bool:
     """The request is not of the documented form: a wrong type, an unknown name, two members of a oneof."""
     return Defect.FORMAT in call.request.defects
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["SubscribeMissionStatus", "Errors"], sort=FORM)
+@refusal(INVALID_ARGUMENT, cite=MISSION["SubscribeMissionStatus", "Errors"], looks_at=FORM)
 def a_field_is_unknown(_: Situation, call: Call) -> bool:
     """The request has a field that is not documented, and such a request is taken for malformed.
 
@@ -91,13 +91,13 @@ def a_field_is_unknown(_: Situation, call: Call) -> bool:
     return Defect.FIELD in call.request.defects
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=EITHER)
 def a_goal_is_invalid(_: Situation, call: Call) -> bool:
     """A goal is neither a destination nor a pose, its destination is empty, or its pose is not finite."""
     return Defect.GOAL in call.request.defects
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=EITHER)
 def the_goals_do_not_match_the_mission_type(_: Situation, call: Call) -> bool:
     """A mission that needs a goal has none.
 
@@ -110,13 +110,13 @@ def _occurs_twice(wanted: Wanted) -> bool:
     return len(set(wanted.goals)) < len(wanted.goals)
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=EITHER)
 def a_goal_occurs_twice(_: Situation, call: Call) -> bool:
     """A goal occurs twice in one mission, and that is taken for invalid (AM-44)."""
     return any(wanted.kind not in AUTOMATIC and _occurs_twice(wanted) for wanted in _wanted(call))
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Errors"], looks_at=EITHER)
 def a_goal_occurs_twice_in_the_list(_: Situation, call: Call) -> bool:
     """A goal occurs twice in the list of a NavigateAuto mission, and that is taken for invalid (AM-44)."""
     return any(wanted.kind in AUTOMATIC and _occurs_twice(wanted) for wanted in _wanted(call))
@@ -125,7 +125,7 @@ def a_goal_occurs_twice_in_the_list(_: Situation, call: Call) -> bool:
 # The request and the world.
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], sort=GOALS)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], looks_at=GOALS)
 def a_destination_is_not_on_the_map(robot: Situation, call: Call) -> bool:
     """A destination_id is not the display name of a destination on the robot's map.
 
@@ -138,7 +138,7 @@ def _is_for_another_family(robot: Situation, kind: Kind | None) -> bool:
     return kind is not None and is_foreign(robot.world, kind)
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], looks_at=EITHER)
 def the_mission_is_for_another_family(robot: Situation, call: Call) -> bool:
     """The mission is specific to a family that the robot is not of.
 
@@ -147,13 +147,13 @@ def the_mission_is_for_another_family(robot: Situation, call: Call) -> bool:
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Request"], sort=EITHER)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Request"], looks_at=EITHER)
 def the_robot_is_of_another_family(robot: Situation, call: Call) -> bool:
     """The robot is not of the family that the mission is for (AM-41 read as a matter of state)."""
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMissionWorkflow", "Errors"], sort=EITHER)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMissionWorkflow", "Errors"], looks_at=EITHER)
 def the_workflow_is_for_another_family(robot: Situation, call: Call) -> bool:
     """The robot's family does not have this workflow."""
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
@@ -166,13 +166,13 @@ def _no_goal_is_free(robot: Situation, call: Call) -> bool:
     )
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], sort=GOALS)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=GOALS)
 def no_goal_is_free(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is checked when it is created (AM-45)."""
     return _no_goal_is_free(robot, call)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], sort=GOALS)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=GOALS)
 def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is a state that forbids to create it (AM-45)."""
     return _no_goal_is_free(robot, call)
@@ -181,7 +181,7 @@ def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
 # The robot.
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "Errors"], looks_at=STATE)
 def another_mission_is_active_or_queued(robot: Situation, _: Call) -> bool:
     """A mission is running, paused or waiting, so a first mission cannot be created.
 
@@ -190,44 +190,44 @@ def another_mission_is_active_or_queued(robot: Situation, _: Call) -> bool:
     return robot.active is not None or robot.queued
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], looks_at=STATE)
 def another_mission_is_running_or_queued(robot: Situation, _: Call) -> bool:
     """A mission is running or waiting, so a first batch cannot be created."""
     running = robot.active is not None and robot.active.state is State.STATE_RUNNING
     return running or robot.queued
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], assumes=AM_06["a"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], assumes=AM_06["a"], looks_at=STATE)
 def a_paused_mission_counts_as_running(robot: Situation, _: Call) -> bool:
     """A mission is paused, which counts as running (AM-06)."""
     return _is_paused(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], sort=ABILITY)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], looks_at=ABILITY)
 def the_robot_is_unable_to_start(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission."""
     return robot.world.blocked
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], sort=ABILITY)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], looks_at=ABILITY)
 def the_robot_is_unable_to_start_any_mission(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission, which forbids every call that creates a first one (AM-53)."""
     return robot.world.blocked
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], sort=ABILITY)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionBatch", "Errors"], looks_at=ABILITY)
 def the_robot_is_unable_to_start_charging(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission, and charging is one (AM-53)."""
     return robot.world.blocked
 
 
-@refusal(INTERNAL, cite=MISSION["CreateMissionBatch", "Errors"], sort=ABILITY)
+@refusal(INTERNAL, cite=MISSION["CreateMissionBatch", "Errors"], looks_at=ABILITY)
 def the_mission_system_cannot_start_a_mission(robot: Situation, _: Call) -> bool:
     """The robot is unable to start a mission, which is taken for a failure of the mission system (AM-53)."""
     return robot.world.blocked
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], looks_at=STATE)
 def another_mission_is_active(robot: Situation, _: Call) -> bool:
     """A mission is running or paused, so a workflow cannot be created."""
     return robot.active is not None
@@ -273,13 +273,13 @@ def _nothing_listed(robot: Situation) -> bool:
     return robot.active is None and not robot.queued and not robot.ended
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], looks_at=STATE)
 def the_mission_queue_is_empty(robot: Situation, _: Call) -> bool:
     """No mission is listed, so there is nothing to append to."""
     return _nothing_listed(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], looks_at=STATE)
 def every_mission_has_ended(robot: Situation, _: Call) -> bool:
     """Every listed mission has ended, and those are not in the queue any more (AM-11)."""
     return robot.active is None and not robot.queued and robot.ended
@@ -289,13 +289,13 @@ def _is_paused(robot: Situation) -> bool:
     return robot.active is not None and robot.active.state is State.STATE_PAUSED
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], looks_at=STATE)
 def no_mission_is_running(robot: Situation, _: Call) -> bool:
     """The active mission is paused, and only a running one can be appended to (AM-12)."""
     return _is_paused(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["AppendMission", "Errors"], looks_at=STATE)
 def the_queue_is_halted(robot: Situation, _: Call) -> bool:
     """The queue is halted, and only a running mission can be appended to (AM-12)."""
     return robot.active is None and robot.queued and robot.halted
@@ -304,13 +304,13 @@ def the_queue_is_halted(robot: Situation, _: Call) -> bool:
 # ChargeRobot.
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], looks_at=STATE)
 def a_mission_is_running(robot: Situation, _: Call) -> bool:
     """A mission is running and must be cancelled first."""
     return robot.active is not None and robot.active.state is State.STATE_RUNNING
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], assumes=AM_37_PAUSED["a"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["ChargeRobot", "Errors"], assumes=AM_37_PAUSED["a"], looks_at=STATE)
 def a_mission_is_paused(robot: Situation, _: Call) -> bool:
     """A mission is paused and must be cancelled first (AM-37)."""
     return _is_paused(robot)
@@ -326,7 +326,7 @@ CHARGING_WHILE_WAITING = _about_waiting(
 
 
 def _charger_rule(code: str, letter: str) -> Rule:
-    @refusal(code, cite=MISSION["ChargeRobot"], assumes=AM_38_DOCK[letter], sort=GOALS)
+    @refusal(code, cite=MISSION["ChargeRobot"], assumes=AM_38_DOCK[letter], looks_at=GOALS)
     def the_robot_has_no_contact_dock(robot: Situation, _: Call) -> bool:
         """The robot has no contact-based charging dock.
 
@@ -349,7 +349,7 @@ NO_DOCK = tuple(
 )
 
 
-@refusal(NOT_FOUND, cite=MISSION["ChargeRobot", "Errors"], sort=GOALS)
+@refusal(NOT_FOUND, cite=MISSION["ChargeRobot", "Errors"], looks_at=GOALS)
 def the_map_has_no_charging_location(robot: Situation, _: Call) -> bool:
     """The robot's map has no contact charger."""
     return not robot.world.charging_location
@@ -358,31 +358,33 @@ def the_map_has_no_charging_location(robot: Situation, _: Call) -> bool:
 # ClearMissionStatus and SkipGoal.
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], looks_at=STATE)
 def a_mission_is_running_or_paused(robot: Situation, _: Call) -> bool:
     """A mission is running or paused and must end first."""
     return robot.active is not None
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["b"], sort=STATE)
+@refusal(
+    FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["b"], looks_at=STATE
+)
 def nothing_is_listed(robot: Situation, _: Call) -> bool:
     """There is nothing left to clear (AM-33)."""
     return _nothing_listed(robot) and not robot.fresh
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["c"], sort=SHAPE)
+@refusal(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["cleared"]["c"], looks_at=SHAPE)
 def there_is_nothing_to_clear(robot: Situation, _: Call) -> bool:
     """There is nothing left to clear, so the request means nothing (AM-33)."""
     return _nothing_listed(robot) and not robot.fresh
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["b"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["b"], looks_at=STATE)
 def nothing_was_ever_listed(robot: Situation, _: Call) -> bool:
     """There never was anything to clear (AM-33)."""
     return robot.fresh
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["c"], sort=SHAPE)
+@refusal(INVALID_ARGUMENT, cite=MISSION["ClearMissionStatus", "Errors"], assumes=AM_33["fresh"]["c"], looks_at=SHAPE)
 def there_never_was_anything_to_clear(robot: Situation, _: Call) -> bool:
     """There never was anything to clear, so the request means nothing (AM-33)."""
     return robot.fresh
@@ -397,13 +399,13 @@ CLEARING_WHILE_WAITING = _about_waiting(
 )
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], looks_at=STATE)
 def the_robot_is_not_on_a_mission(robot: Situation, _: Call) -> bool:
     """No mission is running or paused, so there is no goal to skip."""
     return robot.active is None
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], assumes=AM_16["a"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["SkipGoal", "Errors"], assumes=AM_16["a"], looks_at=STATE)
 def the_mission_is_paused(robot: Situation, _: Call) -> bool:
     """The mission is paused, not actively running (AM-16)."""
     return _is_paused(robot)
@@ -429,25 +431,25 @@ CHARGING = {
 # UpdateMission.
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], sort=SHAPE)
+@refusal(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], looks_at=SHAPE)
 def the_command_is_not_set(_: Situation, call: Call) -> bool:
     """The command is COMMAND_UNKNOWN, a number without a name, or missing."""
     return Defect.COMMAND in call.request.defects
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], sort=SHAPE)
+@refusal(INVALID_ARGUMENT, cite=MISSION["UpdateMission", "Errors"], looks_at=SHAPE)
 def the_mission_id_is_missing(_: Situation, call: Call) -> bool:
     """The request does not say which mission it is about."""
     return Defect.EMPTY in call.request.defects
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_04_NO_ID["c"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_04_NO_ID["c"], looks_at=STATE)
 def the_robot_is_on_no_mission(robot: Situation, call: Call) -> bool:
     """No mission is active, and the request does not say readably which one it is about (AM-04)."""
     return call.target is None and robot.active is None
 
 
-@refusal(NOT_FOUND, cite=MISSION["UpdateMission", "Errors"], sort=STATE)
+@refusal(NOT_FOUND, cite=MISSION["UpdateMission", "Errors"], looks_at=STATE)
 def the_mission_is_still_queued(robot: Situation, call: Call) -> bool:
     """The mission still waits behind the active one, and waiting missions cannot be updated."""
     return call.target is Target.QUEUED and robot.active is not None
@@ -568,25 +570,25 @@ def _asks(call: Call, command: Command) -> bool:
     return call.target is Target.ACTIVE and call.request.command is command
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["pause"]["a"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["pause"]["a"], looks_at=STATE)
 def the_mission_is_already_paused(robot: Situation, call: Call) -> bool:
     """The mission is paused already (AM-29)."""
     return _asks(call, Command.COMMAND_PAUSE) and _is_paused(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["resume"]["a"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_29["resume"]["a"], looks_at=STATE)
 def the_mission_is_not_paused(robot: Situation, call: Call) -> bool:
     """The mission is not paused, so it cannot be resumed (AM-29)."""
     return _asks(call, Command.COMMAND_RESUME) and not _is_paused(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_31["b"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_31["b"], looks_at=STATE)
 def a_paused_mission_cannot_be_finished(robot: Situation, call: Call) -> bool:
     """The mission is paused and must be resumed before it can be finished (AM-31)."""
     return _asks(call, Command.COMMAND_FINISH) and _is_paused(robot)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_40["c"], sort=STATE)
+@refusal(FAILED_PRECONDITION, cite=MISSION["UpdateMission", "Errors"], assumes=AM_40["c"], looks_at=STATE)
 def charging_cannot_be_paused(robot: Situation, call: Call) -> bool:
     """The robot is charging, which cannot be paused (AM-40)."""
     charging = robot.active is not None and robot.active.kind is Kind.CHARGE

@@ -83,5 +83,5 @@ def test_the_page_shows_what_is_written() -> None:
     """Every piece of code on the page about it is in the file."""
     source = (Path(__file__).parent.parent / "missionfsm" / "app" / "lamp.py").read_text()
     pieces = re.findall(r"<!-- run: lamp -->\n```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(pieces) == 3
+    assert len(pieces) == 4
     assert [piece for piece in pieces if piece not in source] == []

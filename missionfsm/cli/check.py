@@ -33,10 +33,10 @@ from missionfsm.cli.options import (
     finite,
 )
 from missionfsm.cli.overgrpc import Beginning
-from missionfsm.cli.pages import HtmlFile, write_report
+from missionfsm.cli.pages import HtmlFile
 from missionfsm.cli.printing import JsonFile, say_verdict, stamped
 from missionfsm.cli.progress import Bar
-from missionfsm.cli.reports import annotate, known_violations, write_junit
+from missionfsm.cli.reports import Finding, Reports, known_violations
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.text import printable
 from missionfsm.tools.check.verdict import Verdict
@@ -45,9 +45,6 @@ if TYPE_CHECKING:
     from missionfsm.app.many import Judged
     from missionfsm.cli.summary import Told
     from missionfsm.tools.check.baseline import Baseline
-
-Finding = tuple[str, str | None, Verdict]
-"""A file, a robot if it names one, and the verdict."""
 
 MANY = 20
 """Files, or robots of one, of which each verdict is told unless it is asked otherwise; more are summed up."""
@@ -113,7 +110,7 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Baseline(known_violations(expect_violations))
-    reports = _Reports(json=json, html=html, junit=junit, parquet=parquet, github=github)
+    reports = _Tables(json=json, html=html, junit=junit, parquet=parquet, github=github)
     with one_line_errors():
         found = histories(files)
         reports.refuse_impossible((*found, expect_violations))
@@ -127,7 +124,7 @@ def check(  # noqa: PLR0913 - options of the command
     telling.end(told)
     reached, troubles = telling.reached, telling.troubles
     if reached:
-        reports.write(reached, telling.seconds, telling.stale, troubles, many=many)
+        reports.write_all(reached, telling.seconds, telling.stale, troubles, many=many)
     conform = not telling.stale and all(verdict.conforms for _, _, verdict in reached)
     troubles.end(DONE if conform else FAILED)
 
@@ -211,25 +208,20 @@ def _judged(
 
 
 @frozen
-class _Reports:
-    """What is written beside what is told: the files that options name, and annotations for GitHub."""
+class _Tables(Reports):
+    """The reports, with those of many verdicts at once: all as JSON, and a table of them."""
 
-    json: str | None
-    html: str | None
-    junit: str | None
     parquet: str | None
-    github: bool | None
 
     def refuse_impossible(self, inputs: Iterable[str | None]) -> None:
         """Bad input, before anything is judged, where one of them cannot be written. Raises UnreadableError too."""
-        outputs = {"--json": self.json, "--html": self.html, "--junit": self.junit, "--parquet": self.parquet}
-        refuse_outputs(outputs, inputs)
+        refuse_outputs({**self.outputs, "--parquet": self.parquet}, inputs)
         if self.parquet is not None:
             from missionfsm.adapters.parquet import refuse_without_parquet  # noqa: PLC0415 - loaded where it is needed
 
             refuse_without_parquet()
 
-    def write(
+    def write_all(
         self, reached: list[Finding], seconds: list[float], stale: tuple[str, ...], troubles: Troubles, *, many: bool
     ) -> None:
         """Write all that are wanted; what goes wrong with one is kept, and the others are written.
@@ -243,13 +235,7 @@ class _Reports:
             self._write_json(reached, stale, many=many)
         with troubles.kept():
             self._write_parquet(reached, seconds)
-        with troubles.kept():
-            annotate(self.github, [(path, robot or "", verdict) for path, robot, verdict in reached], self.json)
-        with troubles.kept():
-            write_report(self.html, *reached)
-        with troubles.kept():
-            named = [(f"{path} {robot}" if robot else path, verdict) for path, robot, verdict in reached]
-            write_junit(self.junit, named)
+        self.write(reached, troubles)
 
     def _write_json(self, reached: list[Finding], stale: tuple[str, ...], *, many: bool) -> None:
         if self.json is None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import math
 import secrets
 import sys
@@ -52,10 +51,10 @@ from missionfsm.cli.overgrpc import (
     Wire,
     WorldFile,
 )
-from missionfsm.cli.pages import HtmlFile, write_report
+from missionfsm.cli.pages import HtmlFile
 from missionfsm.cli.printing import JsonFile, print_result
 from missionfsm.cli.progress import Bar
-from missionfsm.cli.reports import annotate, known_violations, write_junit, write_record
+from missionfsm.cli.reports import Reports, known_violations, write_record
 from missionfsm.kernel.system import System
 
 if TYPE_CHECKING:
@@ -194,8 +193,8 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
     readings = profiled(profile, choice(reading), judged)
     calls = {option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))}
     known = known_violations(expect_violations, judged=judged)
-    outputs = {"--record": record, "--json": json, "--html": html, "--junit": junit, "--trace": trace}
-    refuse_outputs(outputs, (expect_violations, missions))
+    reports = Reports(json=json, html=html, junit=junit, github=github)
+    refuse_outputs({"--record": record, **reports.outputs, "--trace": trace}, (expect_violations, missions))
     sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
     over_grpc = {
         "world": world,
@@ -238,14 +237,9 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
         finally:
             reached.subject.close()
     troubles = print_result(verdict, json, verbose=verbose)
-    for write in (
-        functools.partial(annotate, github, [(None, "", verdict)], json),
-        functools.partial(write_report, html, ("", None, verdict)),
-        functools.partial(write_junit, junit, [(verdict.implementation or system, verdict)]),
-        functools.partial(write_record, record, judged, verdict),
-    ):
-        with troubles.kept():
-            write()
+    reports.write([("", None, verdict)], troubles)
+    with troubles.kept():
+        write_record(record, judged, verdict)
     status = DONE if verdict.conforms else FAILED
     troubles.end(INTERRUPTED if interruption.asked and verdict.violation is None else status)
 

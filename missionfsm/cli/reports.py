@@ -5,31 +5,65 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from missionfsm.cli.common import BAD_INPUT, one_line_errors, stop, the_system
+from attrs import frozen
+
+from missionfsm.cli.common import BAD_INPUT, Troubles, one_line_errors, stop, the_system
+from missionfsm.cli.pages import write_report
 from missionfsm.cli.printing import in_github, say_annotations
 from missionfsm.kernel.system import System
 from missionfsm.systems import names
 from missionfsm.tools.check.verdict import Verdict
 
-
-def annotate(wanted: bool | None, judged: list[tuple[str | None, str, Verdict]], json: str | None) -> None:
-    """Write what GitHub shows beside the files, where it is wanted: each verdict with its file and its robot."""
-    if not in_github(wanted):
-        return
-    from missionfsm.tools.check.github import workflow_commands  # noqa: PLC0415 - commands load what they need
-
-    named = ((path, robot or verdict.implementation or verdict.system, verdict) for path, robot, verdict in judged)
-    say_annotations(list(workflow_commands(named)), json=json)
+Finding = tuple[str, str | None, Verdict]
+"""A file, empty where there is none; a robot, if the file names one; and the verdict."""
 
 
-def write_junit(path: str | None, named: list[tuple[str, Verdict]]) -> None:
-    """Write verdicts for build servers, if that is wanted."""
-    if path is None:
-        return
-    from missionfsm.adapters.outputs import write_whole  # noqa: PLC0415 - commands load what they need
-    from missionfsm.tools.check.junit import junit  # noqa: PLC0415
+@frozen
+class Reports:
+    """What a command that judges writes beside its verdicts: files that options name, and annotations for GitHub."""
 
-    write_whole(path, junit(named))
+    json: str | None
+    html: str | None
+    junit: str | None
+    github: bool | None
+
+    @property
+    def outputs(self) -> dict[str, str | None]:
+        """The options to the files that they name."""
+        return {"--json": self.json, "--html": self.html, "--junit": self.junit}
+
+    def write(self, reached: list[Finding], troubles: Troubles) -> None:
+        """Write all that are wanted but for the JSON; what goes wrong with one is kept, and the others are written."""
+        with troubles.kept():
+            self._annotate(reached)
+        with troubles.kept():
+            write_report(self.html, *reached)
+        with troubles.kept():
+            self._write_junit(reached)
+
+    def _annotate(self, reached: list[Finding]) -> None:
+        if not in_github(self.github):
+            return
+        from missionfsm.tools.check.github import workflow_commands  # noqa: PLC0415 - commands load what they need
+
+        named = ((path or None, robot or _subject(verdict), verdict) for path, robot, verdict in reached)
+        say_annotations(list(workflow_commands(named)), json=self.json)
+
+    def _write_junit(self, reached: list[Finding]) -> None:
+        if self.junit is None:
+            return
+        from missionfsm.adapters.outputs import write_whole  # noqa: PLC0415 - commands load what they need
+        from missionfsm.tools.check.junit import junit  # noqa: PLC0415
+
+        named = [
+            (f"{path} {robot}" if robot else path or _subject(verdict), verdict) for path, robot, verdict in reached
+        ]
+        write_whole(self.junit, junit(named))
+
+
+def _subject(verdict: Verdict) -> str:
+    """What was judged, where no file says so."""
+    return verdict.implementation or verdict.system
 
 
 def write_record(path: str | None, system: System, verdict: Verdict) -> None:

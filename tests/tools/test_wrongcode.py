@@ -54,6 +54,14 @@ def test_a_busy_robot_that_does_it_all_the_same_breaks_that_row() -> None:
     assert accused([*BUSY, *call(2, "CreateMission", navigate(), result={"missionId": "m2"})]) == [NO_FIRST]
 
 
+@pytest.mark.parametrize("settled", [(), (SETTLED,)], ids=["at once", "settled"])
+def test_what_starts_at_once_has_started(settled: tuple[JSON, ...]) -> None:
+    """A robot that was just told to charge is busy: that it may be about to start comes after that, if at all."""
+    lines = [*call(1, "ChargeRobot", {}, result={"missionId": "m1"}), *settled]
+    lines += call(2, "ClearMissionStatus", {}, error=refused("INVALID_ARGUMENT"))
+    assert accused(lines)[0] == "ClearMissionStatus/FAILED_PRECONDITION/a-mission-is-running-or-paused"
+
+
 def test_a_row_that_held_a_while_ago_is_the_first() -> None:
     """An idle robot that says it is busy: the row that held before, then what should have been done."""
     lines = [*ENDED, *call(2, "CreateMission", navigate(), error=refused("FAILED_PRECONDITION"))]

@@ -84,6 +84,7 @@ class Candidate:
         passing: whether it is a message that need not come.
         unseen: ids of the rules of what has happened unseen before it would have come.
         owed: the channel and what it owes, where it is a message that is due.
+        early: whether something that happens at once has still to happen where it would have come.
         unusual: how many readings it assumes that are not those of the reference, though those could be followed.
         code: of an answer, its code.
     """
@@ -96,6 +97,7 @@ class Candidate:
     passing: bool = False
     unseen: tuple[str, ...] = ()
     owed: tuple[Channel, Owed] | None = None
+    early: bool = False
     unusual: int = 0
     code: str = ""
 

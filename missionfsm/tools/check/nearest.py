@@ -141,6 +141,7 @@ class Nearest:
             problems=tuple(problems),
             allowed=allowed,
             unseen=successor.rules,
+            early=not self.at_rest(here),
             unusual=unusual,
             code=answer.code,
         )

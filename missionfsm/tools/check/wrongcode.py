@@ -1,11 +1,11 @@
 """An answer with a code that nothing allows: which rules it breaks, the nearest first.
 
 Two things can be wrong: what should have been answered is not, and what was answered has no reason. What should have
-been answered is what needs least to have happened unseen and the fewest readings that are not usual. Of the rows of the
-Errors table with the code that came none holds, so that one is named only where it held for this request a while ago,
-as for whoever looks at a state that is no more, or where nothing but a row of that code can be what is wrong: the call
-should have taken effect. Then it is the row that is nearest to hold: one that held a while ago, or would if the call
-were about another thing.
+been answered is what needs least to have happened unseen, but for what happens at once, and the fewest readings that
+are not usual. Of the rows of the Errors table with the code that came none holds, so that one is named only where it
+held for this request a while ago, as for whoever looks at a state that is no more, or where nothing but a row of that
+code can be what is wrong: the call should have taken effect. Then it is the row that is nearest to hold: one that
+held a while ago, or would if the call were about another thing.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ def _succeeds(candidate: Candidate) -> bool:
     return candidate.code == OK
 
 
-def _likely(candidate: Candidate) -> tuple[int, int, int]:
-    return len(candidate.unseen), candidate.unusual, candidate.weight
+def _likely(candidate: Candidate) -> tuple[bool, int, int, int]:
+    return candidate.early, len(candidate.unseen), candidate.unusual, candidate.weight
 
 
 def _once_each(rules: Iterable[str]) -> list[str]:

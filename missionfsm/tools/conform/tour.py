@@ -39,10 +39,13 @@ def written(alphabets: Sequence[Alphabet]) -> Scripts:
 
 
 def some(scripts: Scripts, most: int | None) -> Scripts:
-    """All, or at most so many from everywhere among them."""
+    """All, or at most so many: from everywhere among those of the usual world, then of the others."""
     if most is None or most >= len(scripts):
         return scripts
-    return tuple(scripts[at * len(scripts) // most] for at in range(most))
+    usual = tuple(one for one in scripts if one[0] == 0)
+    if most >= len(usual):
+        return scripts[:most]
+    return tuple(usual[at * len(usual) // most] for at in range(most))
 
 
 def play(run: Run, most: int | None = None) -> bool:

@@ -440,7 +440,7 @@ def _carried(explanation: Explanation, step: Step, pool: Names) -> tuple[Names, 
     names, gone = explanation.names, explanation.gone
     if step.names is not None:
         names = tuple([pool[ref] for ref in step.names])
-        lapsed = [name for name in explanation.names if name > GONE and name not in names]
+        lapsed = [name for name in set(explanation.names).difference(names) if name > GONE]
         if lapsed:
             gone = outlived(explanation, lapsed)
     if step.ends:

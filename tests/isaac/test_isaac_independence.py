@@ -13,9 +13,9 @@ from test_isaac_runtime_profiles import Live
 
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
 from missionfsm.isaac.server.independence import Part, concerned, parts
-from missionfsm.isaac.server.inputs import Passes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Link, Mission, Server, Status
+from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.focus import DRIVEN, RECEIVED, Focus
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.belief import Belief

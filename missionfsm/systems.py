@@ -19,24 +19,18 @@ from missionfsm.kernel.text import brief
 GROUP = "missionfsm.systems"
 """The entry-point group of systems that are in other packages."""
 
-_SHIPPED = {
-    "bear.mission": "one robot's missions",
-    "bear.status": "the status of an account's fleet",
-    "isaac.server": "a mission server",
-    "isaac.robot": "a robot's mission codelet",
-}
-"""Name to title. A system is put together in the module ``system`` of the package of its name, and loaded when it is
-asked for; its title stands here too, so that a list of all systems loads none."""
+_NAMES = ("bear.mission", "bear.status", "isaac.server", "isaac.robot")
+"""A system is put together in the module ``system`` of the package of its name, and loaded when it is asked for."""
 
 
 def _others() -> dict[str, EntryPoint]:
     """The systems of other packages; a name that is taken stays what it is."""
-    return {one.name: one for one in sorted(entry_points(group=GROUP)) if one.name not in _SHIPPED}
+    return {one.name: one for one in sorted(entry_points(group=GROUP)) if one.name not in _NAMES}
 
 
 def names() -> tuple[str, ...]:
     """The names of all systems: those that are here, and those of packages that are installed."""
-    return (*_SHIPPED, *_others())
+    return (*_NAMES, *_others())
 
 
 def system(name: str) -> System:
@@ -45,7 +39,7 @@ def system(name: str) -> System:
     Raises:
         UnreadableError: there is none, and those that exist are listed; or that of another package cannot be loaded.
     """
-    if name in _SHIPPED:
+    if name in _NAMES:
         shipped: System = importlib.import_module(f"missionfsm.{name}.system").SYSTEM
         return shipped
     entry = _others().get(name)
@@ -61,8 +55,3 @@ def system(name: str) -> System:
         message = f"the system {name} cannot be loaded from {entry.value}: that is a {type(found).__name__}, no System"
         raise UnreadableError(message)
     return found
-
-
-def title(name: str) -> str:
-    """What a system is, in a few words; those of other packages are loaded for it. Raises as `system` does."""
-    return _SHIPPED.get(name) or system(name).spec.title

@@ -11,7 +11,7 @@ from __future__ import annotations
 import io
 import sys
 from pathlib import Path
-from typing import Annotated, cast
+from typing import Annotated
 
 import typer
 
@@ -80,8 +80,7 @@ def main() -> None:
         sys.stdout.reconfigure(errors="replace")
     try:
         with ended_like_ctrl_c():
-            program = cast(Program, typer.main.get_command(app))  # as `app()` makes it anew: once is enough
-            program(default_map=defaults(program, Path.cwd()))
+            app(default_map=defaults(typer.main.get_group(app), Path.cwd()))
     except KeyboardInterrupt:
         sys.exit(130)
     except UnreadableError as error:

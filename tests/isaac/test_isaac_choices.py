@@ -116,6 +116,22 @@ def test_timeouts_that_are_looked_at_now_and_then() -> None:
     assert not sent().waits(4.9).settles.shows("FAILED_TIMEDOUT").judged(readings=EXACT).conforms
 
 
+@pytest.mark.parametrize("letter", ["b", "d"])
+def test_run_timeouts_from_the_sending_that_are_looked_at_now_and_then(letter: str) -> None:
+    """AI-39.limits b: with AI-06 b or d too they may be noticed up to a second late, and not before or later."""
+    known = {**EXACT, "AI-06": letter, "AI-31": "b"}
+
+    def begin() -> History:
+        return sent(timeout=20).waits(2).reports(1, 1, "running").settles.waits(17.5).settles.shows("RUNNING")
+
+    late = begin().waits(1.4).settles.shows("RUNNING")
+    assert late.judged(readings=known).conforms
+    assert not late.judged(readings={**known, "AI-39.limits": "a"}).conforms
+    assert late.waits(0.2).settles.shows("FAILED_TIMEDOUT").judged(readings=known).conforms
+    assert not begin().waits(1.6).settles.shows("RUNNING").judged(readings=known).conforms
+    assert not begin().waits(0.4).settles.shows("FAILED_TIMEDOUT").judged(readings=known).conforms
+
+
 def test_texts_that_a_server_sends() -> None:
     """To greet a robot or to confirm its name; one that is no message as documented is a violation all the same."""
     line = encode(Message(Header("name", 1, 1, Uuid(3, 4)), TextProto(""))).decode().strip()

@@ -25,6 +25,7 @@ from missionfsm.isaac.server.state import (
     SILENT,
     START,
     START_COUNTS_FROM,
+    WAITS,
     Clock,
     Move,
     Server,
@@ -34,14 +35,20 @@ from missionfsm.isaac.shared.line import MICROSECONDS
 Moves = Iterator[Move]
 
 
-def by(state: Server, due: int) -> int:
-    """When something that is due at a moment is noticed at the latest, in microseconds."""
-    return state.tolerance + (state.next_pass(due) if _looks(state) else due)
+def _noticed_by(clock: Clock, state: Server, due: int) -> int:
+    """When a timeout that is over at a moment is noticed at the latest, in microseconds."""
+    late = state.letters(AI_39) == "b" or state.letters(AI_39_LIMITS) == "b" or _left_open(clock, state)
+    return state.tolerance + (state.next_pass(due) if late else due)
 
 
-def _looks(state: Server) -> bool:
-    """Whether it is known that timeouts are noticed when the server looks, about once a second."""
-    return state.letters(AI_39) == "b" or state.letters(AI_39_LIMITS) == "b"
+def _left_open(clock: Clock, state: Server) -> bool:
+    """Whether a clock strikes at its moment or when a server looks, and nobody asks which of the two.
+
+    AI-39.limits b allows all that a does. Of a clock that counts as documented a is tried first, so that what follows
+    is known to the moment; of one that counts from the sending too it would be asked of every mission twice. What
+    waits in a queue and counts from another moment has no clock of either kind: there may be many, all due at once.
+    """
+    return clock.kind == RUN and clock.since in ("send", WAITS) and "b" in state.letters(AI_39_LIMITS)
 
 
 def with_later_clocks(move: Move) -> Move:
@@ -55,7 +62,7 @@ def with_later_clocks(move: Move) -> Move:
 
 def _later(state: Server, clock: Clock) -> Clock:
     """The clock of a server that looks now and then; whole seconds are looked at so anyway."""
-    in_a_pass = clock.whole or clock.kind in (DROP, DOOM)
+    in_a_pass = clock.whole or clock.kind in (DROP, DOOM) or _left_open(clock, state)
     return clock if clock.hi is None or in_a_pass else evolve(clock, hi=state.next_pass(clock.hi))
 
 
@@ -68,8 +75,8 @@ def started(move: Move, index: int, kind: str, since: str) -> Move:
     (low, high), tolerance = move.at, move.state.tolerance
     clocks = [one for one in mission.clocks if (one.kind, one.since) != (kind, since)]
     if counts(move.state, kind, since, whole=False):
-        hi = None if kind == SILENT else by(move.state, time + high)
-        clocks.append(Clock(kind, since, max(low, time + low - tolerance), hi))
+        clock = Clock(kind, since, max(low, time + low - tolerance), None)
+        clocks.append(clock if kind == SILENT else evolve(clock, hi=_noticed_by(clock, move.state, time + high)))
     seconds = time // MICROSECONDS + 1
     if kind != SILENT and seconds < DAY and counts(move.state, kind, since, whole=True):
         whole = seconds * MICROSECONDS

@@ -7,11 +7,16 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Literal
 
 import pytest
+from attrs import evolve, frozen
 from commandline import CommandLine
 
-from missionfsm.kernel.codec import Codec, Malformed, UnreadableError
+from missionfsm.app.lamp import SYSTEM
+from missionfsm.kernel.codec import NAMED, Codec, Malformed, UnreadableError
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.typed import reads
 
 PAGE = Path(__file__).parent.parent / "docs" / "your-own-system.md"
 
@@ -41,12 +46,12 @@ def test_what_is_written_works_at_once(
     (about / "entry_points.txt").write_text(f"[missionfsm.systems]\n{name} = {place}\n")
     monkeypatch.syspath_prepend(str(root))
     assert command_line("explore", "desk_lamp").status == 0
-    assert "The lamp is burnt out." in command_line("rules", "desk_lamp").out
+    assert "The light is off, and only light can be dimmed." in command_line("rules", "desk_lamp").out
     assert "desk_lamp" in command_line("readings", "desk_lamp", "--json").out
     history = root / "one.jsonl"
     history.write_text(
-        '{"missionfsm": 1, "system": "desk_lamp", "drives": ["burnOut"]}\n'
-        '{"call": 1, "method": "Switch", "params": {}}\n{"return": 1, "result": {"light": "off"}}\n'
+        '{"missionfsm": 1, "system": "desk_lamp", "drives": ["timeIsUp"]}\n'
+        '{"call": 1, "method": "Dim", "params": {}}\n{"return": 1, "result": {}}\n'
     )
     assert command_line("check", history).status == 1
 
@@ -68,6 +73,67 @@ def test_what_the_language_fills_in_refuses_what_there_is_not() -> None:
     assert isinstance(answer.shape, Malformed)
 
 
+def test_what_the_language_fills_in_goes_by_what_a_changed_codec_has() -> None:
+    """Whoever makes a codec of another one has its readers look at the new methods, streams, drives and names."""
+    codec = evolve(Codec(methods=("Switch",)), methods=("Call", "Watch"), streams=("Watch",), answers={"Call": "ride"})
+    assert codec.read_request("Call", {}) == "Call"
+    assert codec.read_answer("Call", {"ride": "r1"}) == (Answer("OK"), (("ride", "r1"),))
+    assert codec.read_answer("Watch", {"stream": 3}) == (Answer("OK"), (("stream", 3),))
+    assert isinstance(codec.read_answer("Watch", {"stream": True})[0].shape, Malformed)
+    happened = evolve(evolve(codec, events=("burnOut",)), read_drive=lambda _: ("all", ()))
+    assert happened.read_drive_result({}) == ("all", ())
+
+
+def test_a_system_fills_in_the_calls_and_drives_of_its_codec() -> None:
+    """What the specification has need not be said again; a partner that has fewer keeps fewer."""
+    methods = ("Switch", "Dim", "Watch")
+    assert (SYSTEM.codec.methods, SYSTEM.codec.streams, SYSTEM.codec.events) == (methods, ("Watch",), ("timeIsUp",))
+    assert evolve(SYSTEM, codec=evolve(SYSTEM.codec, methods=())).codec.methods == ()
+
+
+def test_names_stand_beside_what_is_left_of_a_message() -> None:
+    """The texts under the keys of names are taken out of JSON, wherever they stand, and put back."""
+    message = {"rides": [{"ride": "r1", "floor": 2}, {"ride": "r2", "floor": 0}], "ride": 7}
+    codec = Codec(names=("ride",))
+    ((names, marks, rest),) = codec.split_message(message)
+    assert (names, marks) == ((("ride", "r1"), ("ride", "r2")), ())
+    assert rest == {"rides": [{"ride": NAMED, "floor": 2}, {"ride": NAMED, "floor": 0}], "ride": 7}
+    assert codec.write_message(rest, names, 0, 1, 0.0) == message
+
+
+@frozen
+class _Goal:
+    name: str
+    at: int
+    note: str | None = None
+
+
+@frozen
+class _Tour:
+    goals: tuple[_Goal, ...]
+    state: Literal["idle", "busy"]
+    speed: float = 1.0
+
+
+@pytest.mark.parametrize(
+    ("message", "content"),
+    [
+        ({"goals": [{"name": "a", "at": 1}], "state": "idle"}, _Tour((_Goal("a", 1),), "idle")),
+        ({"goals": [], "state": "busy", "speed": 2, "more": []}, _Tour((), "busy", 2)),
+        (
+            {"goals": [{"name": "a", "at": True}], "state": "on"},
+            Malformed("True is no int @ $.goals.at; 'on' is none of idle, busy @ $.state"),
+        ),
+        ({"goals": "ab"}, Malformed("'ab' is no list @ $.goals; state is missing @ $.state")),
+        ({"goals": [7], "state": []}, Malformed("7 is no object @ $.goals; [] is none of idle, busy @ $.state")),
+        (None, Malformed("None is no object @ $")),
+    ],
+)
+def test_a_class_says_what_is_right(message: object, content: object) -> None:
+    """JSON is read as the annotations say, strictly; whatever else it is, is told in one line."""
+    assert reads(_Tour)(message) == content
+
+
 @pytest.mark.parametrize("name", ["Lamp", "my-lamp", "../lamp", "class", "taken"])
 def test_a_name_that_will_not_do_is_bad_input(
     command_line: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
@@ -83,5 +149,5 @@ def test_the_page_shows_what_is_written() -> None:
     """Every piece of code on the page about it is in the file."""
     source = (Path(__file__).parent.parent / "missionfsm" / "app" / "lamp.py").read_text()
     pieces = re.findall(r"<!-- run: lamp -->\n```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(pieces) == 4
+    assert len(pieces) == 6
     assert [piece for piece in pieces if piece not in source] == []

@@ -67,8 +67,9 @@ def fields_left_out(path: Path) -> list[str]:
         if isinstance(found, ast.ClassDef) and "Attributes:" in says:
             described = re.findall(r"^ {4}([a-z_, ]+):", says.partition("Attributes:")[2], re.MULTILINE)
             names = {name.strip() for line in described for name in line.split(",")}
-            fields = (one.target for one in found.body if isinstance(one, ast.AnnAssign))
-            left += [f"{found.name}.{one.id}" for one in fields if isinstance(one, ast.Name) and one.id not in names]
+            targets = (one.target for one in found.body if isinstance(one, ast.AnnAssign))
+            fields = (one.id.removeprefix("_") for one in targets if isinstance(one, ast.Name))  # as they are given
+            left += [f"{found.name}.{one}" for one in fields if one not in names]
     return left
 
 

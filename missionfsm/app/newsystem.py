@@ -34,7 +34,10 @@ _INIT = '"""The system NAME."""\n'
 _TESTS = '''\
 """The system NAME: it holds together, and the oracle that is made from it tells right from wrong."""
 
+import itertools
+
 from missionfsm import conform, explore
+from missionfsm.kernel.subject import Exchange
 
 from NAME.system import SYSTEM
 
@@ -49,19 +52,21 @@ def test_the_reference_conforms():
     assert conform(SYSTEM, examples=15).conforms
 
 
-def test_a_wrong_answer_is_found():
-    """A lamp that is switched on and says that it is off is found out."""
-    assert conform(SYSTEM, Wrong(), examples=15).violation is not None
+def test_a_lamp_that_shows_nothing_is_found():
+    """Whoever opens a stream is shown the light."""
+    assert conform(SYSTEM, Dark(), examples=15).violation is not None
 
 
-class Wrong:
-    """An implementation that always says that the light is off."""
+class Dark:
+    """An implementation that refuses nothing and shows nothing."""
+
+    def __init__(self):
+        self.streams = itertools.count(1)
 
     def exchange(self, method, params):
-        from missionfsm.kernel.subject import Exchange
-
-        own = {"initialize": {"implementation": {"name": "wrong"}, "drives": []}, "reset": {}, "settle": {}}
-        return Exchange(result=own.get(method, {"light": "off"}))
+        if method == "initialize":
+            return Exchange(result={"implementation": {"name": "dark"}, "drives": []})
+        return Exchange(result={"stream": next(self.streams)} if method == "Watch" else {})
 
     def close(self):
         pass

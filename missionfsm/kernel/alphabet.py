@@ -40,6 +40,11 @@ def _plainly(name: Name) -> JSON:
     return name[1] if isinstance(name, tuple) else name
 
 
+def _made_up(kind: str, serial: int) -> Name:
+    """Streams and connections have numbers, whatever a system names has a text."""
+    return kind, serial if kind in ("stream", "connection") else f"{kind}-{serial}"
+
+
 @frozen
 class Naming:
     """How a tester writes names into params, and what names it may make up.
@@ -54,7 +59,7 @@ class Naming:
     """
 
     write: Callable[[Name], JSON] = _plainly
-    make: Callable[[str, int], Name] = lambda kind, serial: (kind, serial)
+    make: Callable[[str, int], Name] = _made_up
     in_message: Callable[[int], Name] = lambda serial: f"n{serial}"
     given: Callable[[int], Name] = lambda serial: f"name-{serial}"
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming, ScriptStep, as_text, new, pick, upcoming
 from missionfsm.kernel.chart import Chart
-from missionfsm.kernel.codec import JSON, Codec, Happening, Malformed, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, NAMED, Codec, Happening, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.matrix import Matrix
-from missionfsm.kernel.picture import Plan, Sketch
+from missionfsm.kernel.picture import Plan, Sketch, every_state
 from missionfsm.kernel.readings import Ambiguity, Assumption, declared, meet, to_the_letter
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
@@ -35,12 +35,15 @@ from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 from missionfsm.kernel.system import MessageMutation, StepMutation, System, breaks
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.text import brief
+from missionfsm.kernel.typed import reads
+from missionfsm.kernel.whole import shown_whole
 
 __all__ = [
     "DEADLINE_EXCEEDED",
     "FAILED_PRECONDITION",
     "INVALID_ARGUMENT",
     "JSON",
+    "NAMED",
     "NOT_FOUND",
     "OK",
     "RESOURCE_EXHAUSTED",
@@ -88,12 +91,15 @@ __all__ = [
     "brief",
     "decide",
     "declared",
+    "every_state",
     "meet",
     "new",
     "pick",
     "promise",
+    "reads",
     "record",
     "refusal",
+    "shown_whole",
     "to_the_letter",
     "upcoming",
 ]

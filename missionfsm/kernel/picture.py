@@ -8,6 +8,7 @@ from attrs import field, frozen
 
 from missionfsm.kernel.alphabet import Input
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.terms import Incident, Refs, Request, State, View
 
 
@@ -59,6 +60,20 @@ class Sketch:
     world: JSON = field(factory=dict)
     contrasts: tuple[str, ...] = ()
     parts: tuple[Part, ...] = ()
+
+
+def every_state(spec: Spec) -> Sketch:
+    """A picture in which each state is a node, of a system that has few: what can be asked without saying more is."""
+    return Sketch(
+        "states",
+        f"every state of {spec.title}",
+        node=spec.describe,
+        label=lambda _state, asked, _refs: spec.describe(asked),
+        within=lambda _state: True,
+        shows=spec.describe,
+        inputs=tuple(Input(method, {}) for method in spec.operations),
+        drives=tuple({"event": name} for name in spec.drives),
+    )
 
 
 @frozen

@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from attrs import evolve, field, frozen
 
+from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, Assumption, meet
-from missionfsm.kernel.terms import Request, State
+from missionfsm.kernel.step import Step
+from missionfsm.kernel.terms import Refs, Request, State
 
 OK = "OK"
 UNKNOWN = "UNKNOWN"
@@ -165,27 +167,37 @@ def promise(name: str, says: str, *, cite: Citation, argues: str = "") -> Rule:
     return Rule(name, says, argues, cite)
 
 
+Effect = Callable[[State, Request, Refs], Iterable[Step]]
+"""Of a state, a request and the places of its names: the ways in which it takes effect."""
+
+
+def _unchanged(state: State, _request: Request, _refs: Refs) -> Iterable[Step]:
+    return (Step(state),)
+
+
 @frozen(eq=False)
 class Operation:
     """What a caller may ask, with the rules of its Errors table in the order in which a reader meets them.
 
     Attributes:
         name: what the document calls it.
-        system: whose it is.
         cite: where the document describes it.
-        refusals: rules with a code, registered under this operation.
+        refusals: rules with a code.
+        promises: rules that its effects are justified by.
+        effect: what takes effect where nothing refuses; by default nothing changes.
         failures: codes that may come at any time without anybody's doing (INTERNAL, DEADLINE_EXCEEDED).
         streaming: whether the answer opens a stream.
-        promises: rules that its effects are justified by.
+        system: whose it is; set when it is registered, and its rules under its name.
     """
 
     name: str
-    system: str
     cite: Citation
-    refusals: tuple[Rule, ...] = ()
-    promises: tuple[Rule, ...] = ()
-    failures: tuple[str, ...] = ()
+    refusals: tuple[Rule, ...] = field(default=(), converter=tuple[Rule, ...])
+    promises: tuple[Rule, ...] = field(default=(), converter=tuple[Rule, ...])
+    effect: Effect = _unchanged
+    failures: tuple[str, ...] = field(default=(), converter=tuple[str, ...])
     streaming: bool = False
+    system: str = ""
 
     @classmethod
     def with_rules(  # noqa: PLR0913 - one line of a table
@@ -199,16 +211,39 @@ class Operation:
         failures: Iterable[str] = (),
         streaming: bool = False,
     ) -> Operation:
-        """An operation whose rules are registered under its name."""
-        return cls(
-            name,
-            system,
-            cite,
-            tuple(rule.registered(system, name) for rule in refusals),
-            tuple(rule.registered(system, name) for rule in promises),
-            tuple(failures),
-            streaming,
+        """An operation that is registered at once, for those who name the ids of its rules."""
+        return cls(name, cite, refusals, promises, failures=failures, streaming=streaming).registered(system)
+
+    def registered(self, system: str) -> Operation:
+        """This operation with its rules as those of a system, under its name; itself if they are that already."""
+        if self.system:
+            return self
+        refusals, promises = (
+            tuple(rule.registered(system, self.name) for rule in rules) for rules in (self.refusals, self.promises)
         )
+        return evolve(self, refusals=refusals, promises=promises, system=system)
+
+    def outcomes(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
+        """Every answer that its rules allow: what refuses, and under other readings what takes effect.
+
+        A step of the effect that has no answer is answered OK; one that names no rules is justified by all promises.
+        """
+        promised = tuple(rule.id for rule in self.promises)
+        steps: list[Step] = []
+        for decision in decide(self.blocking(state, request)):
+            if decision.code is not None:
+                steps.append(decision.refused(state))
+                continue
+            steps += (
+                evolve(
+                    step,
+                    answer=step.answer or Answer(OK),
+                    rules=step.rules or promised,
+                    assumes=(*decision.assumes, *step.assumes),
+                )
+                for step in self.effect(state, request, refs)
+            )
+        return tuple(steps)
 
     def blocking(self, state: State, call: Request) -> tuple[Rule, ...]:
         """The refusals whose condition holds."""
@@ -223,6 +258,11 @@ class Decision:
     code: str | None
     rules: tuple[Rule, ...]
     assumes: tuple[Assumption, ...]
+
+    def refused(self, state: State, assumes: tuple[Assumption, ...] = ()) -> Step:
+        """The answer with its code, which changes nothing; `assumes` was assumed before."""
+        rules = tuple(rule.id for rule in self.rules)
+        return Step(state, answer=Answer(str(self.code)), rules=rules, assumes=(*assumes, *self.assumes))
 
 
 Ranking = Callable[[tuple[Rule, ...]], Iterable[tuple[str, tuple[Assumption, ...]]]]

@@ -19,7 +19,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Hashable, Iterable, Mapping
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.chart import Chart
@@ -205,7 +205,9 @@ class Spec:
         operations: what callers may ask, by name; made from the operations alone, if those are given.
         outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
             are the positions of the request's names among those of the state, None for one that the state has not, or
-            `ONCE_HAD` for one that it had once, if the spec `recalls` names.
+            `ONCE_HAD` for one that it had once, if the spec `recalls` names. Where nothing is given, those of the
+            operations, by their refusals and effects.
+        placed: (request, refs) to the request as those see it; itself, unless they have to know where its names stand.
         drives: what a tester may make happen, by name; made from the drives alone, if those are given.
         urgent: what must have happened once things have settled.
         matches: (view, content) to the ways in which the message shows the view, or why it does not; where nothing is
@@ -270,12 +272,13 @@ class Spec:
     title: str
     initial: Callable[[World], State]
     operations: Mapping[str, Operation] = field(default=(), converter=_operations)
-    outcomes: Callable[[State, Request, Refs], tuple[Step, ...]] = lambda _state, _request, _refs: ()
+    _outcomes: Callable[[State, Request, Refs], tuple[Step, ...]] | None = None
     drives: Mapping[str, Drive] = field(default=(), converter=_drives)
     urgent: Callable[[State], tuple[Step, ...]] = lambda _: ()
     matches: Callable[[View, Content], tuple[Match, ...] | Mismatch] = lambda _, __: Mismatch("", "nothing is shown")
     delivery: Callable[[Topic], Delivery] = lambda _: Delivery()
     sequence: Callable[[str], tuple[Assumption, ...] | Mismatch] = lambda _: ()
+    placed: Callable[[Request, Refs], Request] = lambda request, _: request
     names: Callable[[State], int] = lambda _: 0
     request_operation: Callable[[Request], str] = lambda request: str(getattr(request, "operation", request))
     ambiguities: tuple[Ambiguity, ...] = ()
@@ -286,7 +289,7 @@ class Spec:
     calmed: Callable[[State], State] = lambda state: state
     closing: Callable[[State, Topic], tuple[Step, ...]] | None = None
     concerns: Callable[[Topic, Topic], bool] = operator.eq
-    describe: Callable[[object], str] = repr
+    describe: Callable[[object], str] = str
     rules: tuple[Rule, ...] = ()
     charts: tuple[Chart[State], ...] = ()
     invariants: tuple[Invariant, ...] = ()
@@ -310,6 +313,26 @@ class Spec:
     anywhere: bool = False
     others: bool = False
     used: Callable[[World], State] | None = None
+
+    def __attrs_post_init__(self) -> None:
+        registered = {name: one.registered(self.system) for name, one in self.operations.items()}
+        object.__setattr__(self, "operations", registered)
+
+    def outcomes(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
+        """Every answer that the documents allow to a request, each with the state after it."""
+        if self._outcomes is not None:
+            return self._outcomes(state, request, refs)
+        operation = self.operations[self.request_operation(request)]
+        return operation.outcomes(state, self.placed(request, refs), refs)
+
+    @property
+    def follows_operations(self) -> bool:
+        """Whether other operations would make it do other things."""
+        return self._outcomes is None or self.rebuilt is not None
+
+    def with_operations(self, operations: Mapping[str, Operation]) -> Spec:
+        """The same system with those operations instead of its own."""
+        return evolve(self, operations=operations) if self.rebuilt is None else self.rebuilt(operations)
 
     def search_size(self, state: State) -> int:
         """How large a state is for a search."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from attrs import field, frozen
 
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Naming
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.picture import Plan, Sketch
@@ -55,8 +55,8 @@ class System:
     Attributes:
         name: what the command line calls it.
         spec: what it does.
-        codec: how its JSON is read and written.
-        alphabet: (world, bounds) to what is worth trying.
+        codec: how its JSON is read and written; where it names no methods, it has those of the spec.
+        alphabet: (world, bounds) to what is worth trying; by default each call with nothing in it, and each drive.
         naming: how its names are made up and written.
         message_mutations, step_mutations: how an implementation may break its promises, besides the ways that fit
             any system.
@@ -71,8 +71,8 @@ class System:
 
     name: str
     spec: Spec
-    codec: Codec
-    alphabet: Callable[[JSON, Bounds], Alphabet]
+    codec: Codec = field(factory=Codec)
+    _alphabet: Callable[[JSON, Bounds], Alphabet] | None = None
     naming: Naming = Naming()
     message_mutations: tuple[MessageMutation, ...] = ()
     step_mutations: tuple[StepMutation, ...] = ()
@@ -83,6 +83,18 @@ class System:
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
     matrix: Matrix | None = None
     minutes_at: int | None = None
+
+    def __attrs_post_init__(self) -> None:
+        operations = self.spec.operations
+        streams = tuple(name for name, one in operations.items() if one.streaming)
+        object.__setattr__(self, "codec", self.codec.completed(tuple(operations), streams, tuple(self.spec.drives)))
+
+    def alphabet(self, world: JSON, bounds: Bounds) -> Alphabet:
+        """What is worth trying in a world, within bounds."""
+        if self._alphabet is not None:
+            return self._alphabet(world, bounds)
+        calls = tuple(Input(method, {}) for method in self.codec.methods)
+        return Alphabet(calls, drives=tuple({"event": name} for name in self.codec.events))
 
     def chosen(self, profile: str | None, readings: Mapping[str, str]) -> Mapping[str, str]:
         """The readings of a profile, if one is named, but for those that are given. ValueError for one that is not."""

@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from attrs import evolve, frozen
 
 from missionfsm.kernel.language import (
     DEADLINE_EXCEEDED,
     FAILED_PRECONDITION,
     INVALID_ARGUMENT,
+    NAMED,
     NOT_FOUND,
-    OK,
     RESOURCE_EXHAUSTED,
     Ambiguity,
-    Answer,
-    Decision,
-    Delivery,
     Document,
     Drive,
-    Emission,
     Failure,
     Happening,
     Invariant,
-    Match,
-    Mismatch,
-    Opening,
     Operation,
+    Refs,
     Spec,
     Step,
-    decide,
     promise,
     refusal,
+    shown_whole,
 )
 
 NAME = "lift"
@@ -50,21 +46,29 @@ SAME_FLOOR = Ambiguity(
     "a",
 )
 
-# The state: the floors of all rides, the first called first, and whether the first of them is under way. The names of
-# the rides are not in it; they are referred to by their places.
+# The state, which is also what a message shows. The names of the rides are not in it: they stand beside it, and are
+# referred to by their places.
+
+
+@frozen
+class Ride:
+    """One ride: `NAMED` in the place of its name, and the floor that it goes to."""
+
+    ride: str
+    floor: int
 
 
 @frozen
 class Lift:
     """Rides in the order of their calls; `moving` says that the first is under way."""
 
-    floors: tuple[int, ...] = ()
-    moving: bool = False
+    rides: tuple[Ride, ...]
+    moving: bool
 
     @property
-    def waiting(self) -> tuple[int, ...]:
-        """The floors of the rides that are not under way."""
-        return self.floors[self.moving :]
+    def waiting(self) -> tuple[Ride, ...]:
+        """The rides that are not under way."""
+        return self.rides[self.moving :]
 
 
 @frozen
@@ -103,129 +107,78 @@ def the_ride_is_under_way(lift: Lift, asked: Asked) -> bool:
     return lift.moving and asked.at == 0
 
 
-QUEUED = promise("a-ride-is-queued", "A ride that is called is the last of those that wait.", cite=PAGE["Call"])
+QUEUED = promise(
+    "a-ride-is-queued", "A ride that is called is the last of those that wait.", cite=PAGE["Call"]
+).registered(NAME, "Call")
 SHARED = promise(
     "a-ride-is-shared", "A second call to a floor is answered with the ride there (L-02).", cite=PAGE["Call"]
-)
+).registered(NAME, "Call")
 TAKEN_OFF = promise("a-ride-is-cancelled", "A ride that is cancelled is there no more.", cite=PAGE["Cancel"])
 WATCHED = promise(
     "the-rides-are-shown", "Whoever watches is shown all rides at once, then every change.", cite=PAGE["Watch"]
 )
-SHOWN = promise(
-    "rides-are-shown-in-order", "Rides are shown as they are, in the order of calls.", cite=PAGE["Watch"]
-).registered(NAME)
+SHOWN = promise("rides-are-shown-in-order", "Rides are shown as they are, in the order of calls.", cite=PAGE["Watch"])
 DEPARTS = promise(
     "the-lift-departs", "An idle lift departs at once for the ride that waits longest.", cite=PAGE["Rides"]
 ).registered(NAME)
 ARRIVES = promise("a-ride-ends", "With the arrival at its floor a ride ends.", cite=PAGE["Rides"]).registered(NAME)
 
-OPERATIONS = {
-    operation.name: operation
-    for operation in (
-        Operation.with_rules(
-            "Call",
-            NAME,
-            PAGE["Call"],
-            refusals=[there_is_no_such_floor, enough_rides_wait],
-            promises=[QUEUED, SHARED],
-            failures=[DEADLINE_EXCEEDED],
-        ),
-        Operation.with_rules(
-            "Cancel",
-            NAME,
-            PAGE["Cancel"],
-            refusals=[there_is_no_such_ride, the_ride_is_under_way],
-            promises=[TAKEN_OFF],
-            failures=[DEADLINE_EXCEEDED],
-        ),
-        Operation.with_rules("Watch", NAME, PAGE["Watch"], promises=[WATCHED], streaming=True),
-    )
-}
-
-# What happens where nothing refuses. Every change is owed to all who watch: the view, and the names of all rides.
+# What happens where nothing refuses.
 
 
-def shown(lift: Lift) -> tuple[Emission, ...]:
-    """The message that a change owes."""
-    return (Emission("rides", lift),)
-
-
-def called(lift: Lift, asked: Asked, one: Decision) -> tuple[Step, ...]:
+def called(lift: Lift, asked: Asked, _: Refs) -> Iterator[Step]:
     """A ride is added; or, as L-02 can be read, the one to that floor is found."""
-    floor = asked.floor if asked.floor is not None else FLOORS[0]  # one without a floor is refused
-    after = evolve(lift, floors=(*lift.floors, floor))
-    names = tuple(range(len(after.floors)))
-    waits = floor in lift.waiting
-    added = Step(
-        after,
-        names=names,
-        emits=shown(after),
-        answer=Answer(OK),
-        refs=names[-1:],
-        rules=(f"{NAME}/Call/{QUEUED.name}",),
-        assumes=(*one.assumes, *((SAME_FLOOR["a"],) if waits else ())),
-        kinds=("ride",),
-    )
-    if not waits:
-        return (added,)
-    there = lift.floors.index(floor, int(lift.moving))
-    found = Step(
-        lift,
-        answer=Answer(OK),
-        refs=(there,),
-        rules=(f"{NAME}/Call/{SHARED.name}",),
-        assumes=(*one.assumes, SAME_FLOOR["b"]),
-    )
-    return added, found
+    ride = Ride(NAMED, asked.floor or FLOORS[0])  # one without a floor is refused
+    names = tuple(range(len(lift.rides) + 1))
+    after = evolve(lift, rides=(*lift.rides, ride))
+    waits = ride in lift.waiting
+    assumes = (SAME_FLOOR["a"],) if waits else ()
+    yield Step(after, names=names, refs=names[-1:], rules=(QUEUED.id,), assumes=assumes, kinds=("ride",))
+    if waits:
+        there = lift.rides.index(ride, int(lift.moving))
+        yield Step(lift, refs=(there,), rules=(SHARED.id,), assumes=(SAME_FLOOR["b"],))
 
 
-def cancelled(lift: Lift, asked: Asked, one: Decision) -> tuple[Step, ...]:
+def cancelled(lift: Lift, asked: Asked, _: Refs) -> Iterator[Step]:
     """A ride is taken off; if it was under way, the lift is idle."""
-    kept = tuple(place for place in range(len(lift.floors)) if place != asked.at)
-    after = Lift(tuple(lift.floors[place] for place in kept), lift.moving and asked.at != 0)
-    rules = (f"{NAME}/Cancel/{TAKEN_OFF.name}",)
-    return (Step(after, names=kept, emits=shown(after), answer=Answer(OK), rules=rules, assumes=one.assumes),)
+    kept = tuple(place for place in range(len(lift.rides)) if place != asked.at)
+    yield Step(Lift(tuple(lift.rides[place] for place in kept), lift.moving and asked.at != 0), names=kept)
 
 
-def watched(lift: Lift, _: Asked, one: Decision) -> tuple[Step, ...]:
-    """A stream is opened; its name comes after those of the rides."""
-    stream, rides = len(lift.floors), tuple(range(len(lift.floors)))
-    opens = Opening("rides", stream, (Emission("rides", lift, rides),))
-    rules = (f"{NAME}/Watch/{WATCHED.name}",)
-    return (Step(lift, opens=(opens,), answer=Answer(OK), refs=(stream,), rules=rules, assumes=one.assumes),)
-
-
-EFFECTS = {"Call": called, "Cancel": cancelled, "Watch": watched}
-
-
-def outcomes(lift: Lift, asked: Asked, refs: tuple[int | None, ...]) -> tuple[Step, ...]:
-    """Every answer that the page allows to a call in a state, with the state after it."""
-    asked = evolve(asked, at=refs[0] if refs else None)
-    steps: list[Step] = []
-    for one in decide(OPERATIONS[asked.operation].blocking(lift, asked)):
-        if one.code:
-            rules = tuple(rule.id for rule in one.rules)
-            steps.append(Step(lift, answer=Answer(one.code), rules=rules, assumes=one.assumes))
-        else:
-            steps += EFFECTS[asked.operation](lift, asked, one)
-    return tuple(steps)
+OPERATIONS = (
+    Operation(
+        "Call",
+        PAGE["Call"],
+        refusals=[there_is_no_such_floor, enough_rides_wait],
+        promises=[QUEUED, SHARED],
+        effect=called,
+        failures=[DEADLINE_EXCEEDED],
+    ),
+    Operation(
+        "Cancel",
+        PAGE["Cancel"],
+        refusals=[there_is_no_such_ride, the_ride_is_under_way],
+        promises=[TAKEN_OFF],
+        effect=cancelled,
+        failures=[DEADLINE_EXCEEDED],
+    ),
+    Operation("Watch", PAGE["Watch"], promises=[WATCHED], streaming=True),
+)
 
 
 def departs(lift: Lift) -> tuple[Step, ...]:
     """What must have happened once things have settled: an idle lift has departed if a ride waits."""
-    if lift.moving or not lift.floors:
+    if lift.moving or not lift.rides:
         return ()
-    after = evolve(lift, moving=True)
-    return (Step(after, emits=shown(after), rules=(DEPARTS.id,), label="departs"),)
+    return (Step(evolve(lift, moving=True), rules=(DEPARTS.id,), label="departs"),)
 
 
-def arrives(lift: Lift, _event: Happening, _refs: object) -> tuple[Step, ...]:
+def arrives(lift: Lift, _event: Happening, _refs: Refs) -> tuple[Step, ...]:
     """The lift arrives at the floor of the ride that is under way."""
     if not lift.moving:
         return ()
-    after = Lift(lift.floors[1:])
-    names = tuple(range(1, len(lift.floors)))
-    return (Step(after, names=names, emits=shown(after), rules=(ARRIVES.id,), label="arrives"),)
+    left = tuple(range(1, len(lift.rides)))
+    return (Step(Lift(lift.rides[1:], moving=False), names=left, rules=(ARRIVES.id,), label="arrives"),)
 
 
 def fails(asked: Asked, code: str) -> Failure | None:
@@ -234,47 +187,40 @@ def fails(asked: Asked, code: str) -> Failure | None:
     return Failure(open_ended=True) if late else None
 
 
-def matches(view: Lift, content: object) -> tuple[Match, ...] | Mismatch:
-    """A message shows a state if it says the same of it, ride by ride."""
-    if view == content:
-        return (Match(names=tuple((place, place) for place in range(len(view.floors)))),)
-    return Mismatch(SHOWN.id, f"it shows {describe(content)}, and due is {describe(view)}")
-
-
 def describe(thing: object) -> str:
     """A request, an event or a state in a few words."""
     if isinstance(thing, Asked):
         return thing.operation if thing.operation != "Call" else f"Call({'?' if thing.floor is None else thing.floor})"
     if not isinstance(thing, Lift):
-        return thing.name if isinstance(thing, Happening) else str(thing)
-    rides = ", ".join(f"to {floor}" for floor in thing.floors) or "none"
+        return str(thing)
+    rides = ", ".join(f"to {one.floor}" for one in thing.rides) or "none"
     return f"rides {rides}; the lift is {'moving' if thing.moving else 'idle'}"
 
 
-SPEC = Spec(
+LIFT = Spec(
     system=NAME,
     title="a lift",
-    initial=lambda _world: Lift(),
+    initial=lambda _world: Lift((), moving=False),
     operations=OPERATIONS,
-    outcomes=outcomes,
+    placed=lambda asked, refs: evolve(asked, at=refs[0] if refs else None),
     drives=[Drive("arrive", arrives, by_itself=(Happening("arrive"),))],
     urgent=departs,
-    matches=matches,
-    delivery=lambda _topic: Delivery(unowed=(SHOWN.id,), named=(SHOWN.id,)),
-    names=lambda lift: len(lift.floors),
+    names=lambda lift: len(lift.rides),
     failing=fails,
     ambiguities=(UNDER_WAY, SAME_FLOOR),
     describe=describe,
-    rules=(SHOWN, DEPARTS, ARRIVES),
+    rules=(DEPARTS, ARRIVES),
     invariants=(
         Invariant("no-more-wait-than-may", "At most three rides wait.", lambda lift: len(lift.waiting) <= MAX_WAITING),
         Invariant(
-            "who-moves-has-a-ride", "A lift that moves has a ride.", lambda lift: bool(lift.floors) or not lift.moving
+            "who-moves-has-a-ride", "A lift that moves has a ride.", lambda lift: bool(lift.rides) or not lift.moving
         ),
     ),
     possibilities=(
-        Invariant(
-            "all-may-wait", "Three rides wait and one is under way.", lambda lift: len(lift.floors) > MAX_WAITING
-        ),
+        Invariant("all-may-wait", "Three rides wait and one is under way.", lambda lift: len(lift.rides) > MAX_WAITING),
     ),
 )
+
+# Every change is owed to all who watch, with the names of all rides.
+
+SPEC = shown_whole(LIFT, SHOWN)

@@ -29,6 +29,11 @@ def test_every_state_is_as_it_should_be():
     assert explore(SYSTEM, size=4).holds
 
 
+def test_the_reference_conforms():
+    """What is computed from the specification is what the specification allows."""
+    assert conform(SYSTEM, examples=40, seed=1).conforms
+
+
 def test_the_building_conforms():
     """The building makes a second ride to a floor, and refuses to give up the one under way: both are readings."""
     verdict = conform(SYSTEM, [sys.executable, str(HERE / "building.py")], examples=40, seed=1)

@@ -83,8 +83,7 @@ def outcomes(
                 ways = _latest(fleet, asked) if asked.operation == GET else _opened(fleet, asked, alone)
                 found += (evolve(one, assumes=(*assumes, *one.assumes), rules=rules) for one in ways)
             else:
-                rules = tuple(rule.id for rule in decision.rules)
-                found.append(Step(fleet, answer=Answer(decision.code), assumes=assumes, rules=rules))
+                found.append(decision.refused(fleet, assumed))
     if request.operation == GET and fleet.fault:
         found = [_failed(fleet, one) for one in found]
     found.sort(key=lambda one: one.answer != Answer(OK))

@@ -116,8 +116,7 @@ def _submitted(operation: Operation, server: Server, request: Submission, upstre
     quiet = nothing_open_happened(server, concerned(server, Focus(RETURNED, request, handles)))
     for decision in decide(operation.blocking(server, ask)):
         if decision.code is not None:
-            refusals = tuple(rule.id for rule in decision.rules)
-            found.append(Step(server, answer=Answer(decision.code), assumes=decision.assumes, rules=refusals))
+            found.append(decision.refused(server))
             continue
         for move in _taken(quiet, request, tuple(sorted({one for one in upstream if one is not None}))):
             handle = _names(server)

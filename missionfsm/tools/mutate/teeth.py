@@ -297,7 +297,7 @@ def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
 def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]) -> Iterator[Mutant]:
     choice = {**_in_force(spec, rule.id), **reaching}
     code = next(code for code in _OTHER_CODES if code != rule.code)
-    if spec.rebuilt is None or rule.holds is None:
+    if rule.holds is None or not spec.follows_operations:
         # Its condition is in the effect: what can be broken is what is answered.
         yield Mutant(
             rule.id, "is answered with another code", choice, operation.name, spec, _where(rule.id, _coded(code))
@@ -310,7 +310,8 @@ def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[
         (f"is answered {code}", [evolve(one, code=code) if one is rule else one for one in operation.refusals]),
     ):
         changed = evolve(operation, refusals=tuple(others))
-        yield Mutant(rule.id, kind, choice, operation.name, spec.rebuilt({**spec.operations, operation.name: changed}))
+        broken = spec.with_operations({**spec.operations, operation.name: changed})
+        yield Mutant(rule.id, kind, choice, operation.name, broken)
 
 
 def _always(_: object, __: object) -> bool:

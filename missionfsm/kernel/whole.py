@@ -1,0 +1,67 @@
+"""Streams that show the whole state: once they are opened, and whenever it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from attrs import evolve
+
+from missionfsm.kernel.rules import Operation, Rule
+from missionfsm.kernel.spec import Delivery, Drive, Spec
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
+from missionfsm.kernel.terms import Content, Incident, Refs, Request, State, View
+
+TOPIC = "state"
+"""What all channels of such streams are about."""
+
+
+def shown_whole(spec: Spec, rule: Rule) -> Spec:
+    """The same system, each streaming operation of which opens a stream that shows its states, names and all.
+
+    Every step that changes the state, whatever brings it about, owes it to all who listen. The rule promises that: it
+    becomes one of the system, and whoever shows anything else, or nothing, breaks it.
+    """
+    rule = rule if rule.id else rule.registered(spec.system)
+
+    def seen(before: State, step: Step) -> Step:
+        if step.names is None and step.after == before:
+            return step
+        return evolve(step, emits=(*step.emits, Emission(TOPIC, step.after)), rules=(*step.rules, rule.id))
+
+    def watched(operation: Operation) -> Operation:
+        promised = tuple(one.id for one in operation.promises)
+
+        def effect(state: State, request: Request, refs: Refs) -> Iterable[Step]:
+            for step in operation.effect(state, request, refs):
+                justified = evolve(step, rules=step.rules or promised)
+                yield _opened(state, spec.names(state), justified) if operation.streaming else seen(state, justified)
+
+        return evolve(operation, effect=effect)
+
+    def driven(drive: Drive) -> Drive:
+        def steps(state: State, event: Incident, refs: Refs) -> tuple[Step, ...]:
+            return tuple(seen(state, step) for step in drive.steps(state, event, refs))
+
+        return evolve(drive, steps=steps)
+
+    def matches(view: View, content: Content) -> tuple[Match, ...] | Mismatch:
+        if view == content:
+            return (Match(names=tuple((place, place) for place in range(spec.names(view)))),)
+        return Mismatch(rule.id, f"it shows {spec.describe(content)}, and due is {spec.describe(view)}")
+
+    return evolve(
+        spec,
+        operations=[watched(one) for one in spec.operations.values()],
+        drives=[driven(one) for one in spec.drives.values()],
+        urgent=lambda state: tuple(seen(state, step) for step in spec.urgent(state)),
+        spontaneous=lambda state: tuple(seen(state, step) for step in spec.spontaneous(state)),
+        matches=matches,
+        delivery=lambda _topic: Delivery(unowed=(rule.id,), named=(rule.id,)),
+        rules=(*spec.rules, rule),
+    )
+
+
+def _opened(state: State, names: int, step: Step) -> Step:
+    """The step, with a stream whose name comes after those of the state."""
+    first = Emission(TOPIC, state, tuple(range(names)))
+    return evolve(step, opens=(Opening(TOPIC, names, (first,)),), refs=(names,))

@@ -27,7 +27,6 @@ EXCUSED = {
     "not reported, long after it came",
     "isaac.robot/codelet/an-unusable-configuration-fails-the-mission is not reported": "as before: the next mission is "
     "run, and what is missing is what has to come before it",
-    "isaac.robot/codelet/a-new-mission-preempts is not run": "as before: what is missing is the RUNNING of some tick",
 }
 """Mutants whose rule cannot be told from what is seen, each with the reason."""
 

@@ -369,7 +369,7 @@ SAMPLED = {"bear.mission": 400, "bear.status": 400, "isaac.robot": 4}
 """Of how many mutants of a system one is looked at where not all are; those of a server take too long for that."""
 MANY = {"bear.mission": 90, "bear.status": 90, "isaac.server": 14, "isaac.robot": 2}
 """The same for a run that takes its time."""
-RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.robot": 0.6}
+RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.6, "isaac.robot": 0.95}
 """What part of many violations names the very rule, at least; of the others nobody has said yet why they do not."""
 
 

@@ -259,6 +259,8 @@ class Spec:
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
             are broken by a message that nothing owes; None where those of the topic's `Delivery` say it.
+        undelivered: view to the ids of the rules that are broken where it is owed and does not come; None where those
+            of the topic's `Delivery` say it.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
         restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
         middle: what lets it be judged without its beginning, or None where that cannot be.
@@ -307,6 +309,7 @@ class Spec:
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
     unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...]] | None = None
+    undelivered: Callable[[View], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None
     middle: Middle | None = None

@@ -18,7 +18,7 @@ from missionfsm.pages.report import Judged, report
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
-from missionfsm.tools.check.suspects import suspects
+from missionfsm.tools.check.suspects import suspects, without_effect
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.actions import length
 from missionfsm.tools.conform.conform import Plan, conform, search
@@ -170,6 +170,17 @@ def test_an_answer_that_was_excused_before_is_suspected() -> None:
     assert [one.says for one in suspects(MISSION, lines, readings)][-1:] == [
         "SkipGoal() was answered FAILED_PRECONDITION"
     ]
+
+
+def test_what_had_no_effect_is_told() -> None:
+    """A codelet that never runs the mission that arrives is right but for that: the line had no effect."""
+    robot = system("isaac.robot")
+    broken = next(one for one in mutants(robot) if one.name.endswith("a-mission-starts-the-behavior-tree is not run"))
+    verdict = conform(robot, broken.subject(robot), drawn=2, tours=8, steps=20, seed=1, advice=False)
+    found = without_effect(robot, history(verdict))
+    assert [(one.says, one.rules) for one in found] == [("a mission arrives on mission", (broken.rule,))]
+    assert verdict.violation is not None
+    assert [one.id for one in verdict.violation.rules][-1:] == [broken.rule]
 
 
 def test_the_pytest_function_fails_for_what_was_found(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from missionfsm.isaac.robot.effects import arrives, begins, connection, passes, 
 from missionfsm.isaac.robot.readings import AMBIGUITIES
 from missionfsm.isaac.robot.rules import RULES
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
-from missionfsm.isaac.robot.stream import delivery, matches, sequence
+from missionfsm.isaac.robot.stream import delivery, matches, sequence, undelivered, unowed
 from missionfsm.isaac.shared.drives import later
 from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec
 
@@ -40,6 +40,8 @@ SPEC = Spec(
     spontaneous=ticks,
     matches=matches,
     delivery=delivery,
+    unowed=unowed,
+    undelivered=undelivered,
     sequence=sequence,
     names=lambda here: here.identifiers,
     ambiguities=AMBIGUITIES,

@@ -9,9 +9,9 @@ from attrs import evolve
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
-from missionfsm.isaac.robot.state import Introduction, Report
+from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.isaac.shared.line import LineContent
-from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch
+from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch, Refs
 
 RULES = {"running": rules.RUNNING, **FINAL}
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}
@@ -74,6 +74,20 @@ def _reports(
 def sequence(relation: str) -> tuple[Assumption, ...]:
     """How the uuid in a header compares with the one before: it is another one, or (AI-27.uuid b) the same."""
     return (AI_27_UUID["b"],) if relation == "equal" else ()
+
+
+def undelivered(view: Report | Introduction) -> tuple[str, ...]:
+    """What is broken where a line is owed and does not come."""
+    return (rules.NAMED.id,) if isinstance(view, Introduction) else (RULES[view.status].id,)
+
+
+def unowed(here: Codelet, topic: Hashable, content: LineContent | Malformed, _: Refs) -> tuple[str, ...]:
+    """What is broken by a line that nothing owes: a final status comes once, and nothing without a connection."""
+    if not here.connected and here.begun:
+        return (rules.LINKED.id,)
+    if topic == "names" or not isinstance(content, LineContent) or content.what not in RULES:
+        return ()
+    return (RULES[content.what].id,)
 
 
 _ANY = Delivery(unending=(rules.ENVELOPE.id,), malformed=(rules.ENVELOPE.id,), every_time=True)

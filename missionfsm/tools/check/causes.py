@@ -5,10 +5,12 @@ A rule about how messages come is broken where one does not; the rule of what ha
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Hashable, Iterator
 from typing import Any
 
 from missionfsm.kernel.history import Called, Driven, Received, Settled
+from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation
@@ -17,31 +19,58 @@ MAX_LOOKED_AT = 20
 """In how many explanations of each event it is looked for."""
 
 
-def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...]:
-    """Ids of the rules of the latest step that owes a view to a topic; none where it was long ago."""
+def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | None:
+    """Ids of the rules of the latest step that owes a view to a topic and says why; None where none is known to owe it.
+
+    A step that only says that the view is sent, as it is again and again, does not say why.
+    """
+    found = False
     for symbol, node in belief.walked:
         rules: dict[str, None] = {}
         for here in node.explanations[:MAX_LOOKED_AT]:
             for step in _steps(belief, symbol, here):
                 if any(one.view == view and one.topic == topic for one in step.emits):
-                    rules.update(dict.fromkeys(step.rules))
+                    found = True
+                    delivering = _delivering(belief.spec, step)
+                    rules.update(dict.fromkeys(rule for rule in step.rules if rule not in delivering))
         if rules:
             return tuple(rules)
-    return ()
+    return () if found else None
 
 
-def exercised(belief: Belief) -> tuple[str, ...]:
-    """Ids of the rules that were exercised since things settled last, the latest first.
+def _delivering(spec: Spec, step: Step) -> set[str]:
+    """Ids of the rules that say that something is sent, and not what has made it due."""
+    return {rule for one in step.emits for rule in spec.undelivered(one.view)} if spec.undelivered else set()
+
+
+def latest(belief: Belief) -> tuple[str, ...]:
+    """Ids of the rules of what has happened last since things settled.
 
     Those of messages are left out, and those of refusals: a refusal changes nothing that could be shown.
     """
     known = belief.spec.rules_by_id
-    rules: dict[str, None] = {}
     for (kind, *_), exercises in belief.exercised_last:
         if kind is Settled:
             break
-        if kind is not Received:
-            rules.update(dict.fromkeys(one for one in exercises if one not in known or known[one].code is None))
+        rules = [one for one in exercises if one not in known or known[one].code is None]
+        if rules and kind is not Received:
+            return tuple(rules)
+    return ()
+
+
+def driven(belief: Belief) -> tuple[str, ...]:
+    """Ids of the rules by which what was made happen last has an effect."""
+    successors, spec = belief.automaton.successors, belief.spec
+    successors.reset()
+    rules: dict[str, None] = {}
+    for (kind, *what), node in belief.walked:
+        if kind is Driven:
+            event, names = what
+            for way in itertools.islice(successors.closure(node.explanations, None), MAX_LOOKED_AT):
+                refs = successors.refs(way.explanation, names)
+                for step in spec.drives[event.name].steps(way.explanation.state, event, refs):
+                    rules.update(dict.fromkeys(step.rules))
+            break
     return tuple(rules)
 
 

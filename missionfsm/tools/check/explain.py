@@ -14,7 +14,7 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.oracle.symbols import relations_of
 from missionfsm.tools.check import causes
-from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNOWED, VALUE, Candidate, Circumstances, Problem
+from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNDRIVEN, UNOWED, Candidate, Circumstances, Problem
 from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
@@ -137,9 +137,10 @@ def _alternately(*lists: Sequence[str]) -> list[str]:
 
 def _accused(problem: Problem, candidate: Candidate) -> list[str]:
     """The rules of an answer that contradicts one before: those of this one, and of that one, since either is wrong."""
-    if not problem.since:
-        return [*(problem.rules or candidate.rules)]
-    return _alternately([*candidate.rules, *problem.rules], problem.since)
+    if problem.since:
+        return _alternately(candidate.rules or problem.rules, problem.since)
+    about = [rule for rule in problem.rules if rule in candidate.rules]
+    return about or [*(problem.rules or candidate.rules)]
 
 
 # A message.
@@ -154,8 +155,11 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
         return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _lightest(candidates)
     rules = list(dict.fromkeys(_broken(lightest)))
-    in_form = not any(SHAPE <= problem.weight < UNOWED for problem in lightest[0].problems)
-    if in_form and any(problem.weight >= LEFT_OUT for problem in lightest[0].problems):
+    weights = [problem.weight for problem in lightest[0].problems]
+    if UNDRIVEN in weights:
+        # What has happened last has led to something else; or it has not, and something happened that nobody did.
+        rules = _alternately(causes.latest(nearest.belief), rules)
+    elif max(weights, default=0) >= LEFT_OUT and not any(SHAPE <= weight < UNOWED for weight in weights):
         # What is shown of something that has happened may be wrong in how it is shown, or in what has happened.
         rules = _alternately(rules, _before(nearest, lightest[0]))
     notes = [problem.says for problem in _problems(lightest)]
@@ -193,17 +197,13 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
 
 
 def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
-    """The rules of what has made a message due, then of what has happened last.
-
-    Where a message that is due has come with another value, only the first: something else has hardly happened.
-    """
-    owing: tuple[str, ...] = ()
-    other_value = candidate is not None and any(problem.weight >= VALUE for problem in candidate.problems)
+    """The rules of what has made a message due; where nothing has, those of what has happened last."""
+    owing: tuple[str, ...] | None = None
     if candidate is not None and candidate.owed is not None:
         channel, owed = candidate.owed
         owing = causes.owing(nearest.belief, owed.view, channel.topic)
     unseen = reversed(candidate.unseen) if candidate else ()
-    return list(dict.fromkeys((*unseen, *owing, *(() if owing and other_value else causes.exercised(nearest.belief)))))
+    return list(dict.fromkeys((*unseen, *(causes.latest(nearest.belief) if owing is None else owing))))
 
 
 def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
@@ -228,7 +228,7 @@ def _still_due(nearest: Nearest) -> Accusation:
             delivery = nearest.spec.delivery(channel.topic)
             shows = f"{where} shows {wanted}"
             found.append(Candidate(what=shows, unseen=successor.rules, owed=(channel, owed)))
-            rules += delivery.unowed if channel.last or not delivery.first else delivery.first
+            rules += nearest.missing(delivery, owed.view, at_first=channel.last is None)
             last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
             notes.append(f"{where} did not show {wanted}{last}")
     before = _before(nearest, found[0] if found else None)

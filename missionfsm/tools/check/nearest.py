@@ -19,7 +19,7 @@ from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Mismatch, Step
-from missionfsm.kernel.terms import Content
+from missionfsm.kernel.terms import Content, View
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError, Successor
@@ -210,7 +210,8 @@ class Nearest:
                 says = f"{described(self.spec, before_it[0].view)} has to come before it"
                 other = self.successors.matches(before_it[0], message.content)
                 own = (other.rule,) if isinstance(other, Mismatch) else ()
-                problems.append(Problem(says, (*own, *delivery.unowed), LEFT_OUT))
+                missing = self.missing(delivery, before_it[0].view)
+                problems.append(Problem(says, (*own, *missing), LEFT_OUT))
             problems += self._matched(here, channel, owed, message)
             words = described(self.spec, owed.view)
             possible = not before_it and not self._clash(here, needs)
@@ -221,6 +222,14 @@ class Nearest:
         if not channel.owed:
             again = tuple(self._again(here, channel, delivery, message))
             yield Candidate(problems=(*before, *again), allowed=False)
+
+    def missing(self, delivery: Delivery, view: View, *, at_first: bool = False) -> tuple[str, ...]:
+        """The rules that are broken where a view is owed and does not come, perhaps as the first message of a channel.
+
+        Those of the view itself, if the system says any; else those of the topic.
+        """
+        own = self.spec.undelivered(view) if self.spec.undelivered else ()
+        return own or (at_first and delivery.first) or delivery.unowed
 
     def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
         """Nothing is owed: the message is the last one again, or shows what was never reached."""

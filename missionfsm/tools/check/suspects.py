@@ -1,4 +1,4 @@
-"""Answers before a violation that may be what is wrong: the event that nothing explains only shows it."""
+"""What came before a violation and may be what is wrong: the event that nothing explains only shows it."""
 
 from __future__ import annotations
 
@@ -7,26 +7,31 @@ from collections.abc import Mapping
 from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Driven
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
-from missionfsm.oracle.transcript import head
+from missionfsm.oracle.transcript import Transcript, head
+from missionfsm.tools.check import causes
 from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
-from missionfsm.tools.check.phrases import described, rules_in_words
+from missionfsm.tools.check.phrases import described, event_words, rules_in_words
 from missionfsm.tools.check.verdict import Violation
 
 MAX_SUSPECTS = 2
-"""Of how many answers it is told that everything would be explained without one of them; more of them say nothing."""
+"""Of how many lines it is told that everything would be explained without one of them; more of them say nothing."""
+
+MAX_DRIVES = 12
+"""How many lines of drives are looked at, the last ones."""
 
 
 @frozen
 class Suspect:
-    """An answer without which everything is explained.
+    """An answer, or something that was made happen, without which everything is explained.
 
     Attributes:
-        says: the call and its answer, in words.
-        code: the status name of the answer.
-        rules: ids of the rules by which it was allowed.
+        says: the call and its answer, or what happened, in words.
+        code: the status name of the answer; empty for what happened.
+        rules: ids of the rules by which it was allowed, or by which it has an effect.
     """
 
     says: str
@@ -42,53 +47,94 @@ def suspects(
     A violation shows where the last explanation died. Where an earlier answer was explained by an assumption that only
     the last event refuted, that answer is the one to look at.
     """
-    first, lines = head(history[0]), history[1:]
-    found = []
+    lines = history[1:]
     methods = system.codec.methods
     answered = {line["call"] for line in lines if line.get("method") in methods}
-    for at, line in enumerate(lines[:-1]):
-        if line.get("return") not in answered:
-            continue
-        judge = Judge(system, first, readings=readings, lost=frozenset({line["return"]}))
-        if all(judge.feed(one) for one in (*lines[:at], *lines[at + 1 :])):
-            found.append(_suspect(system, history, at, readings))
-    return tuple(found)
+    return tuple(
+        _of_answer(system, history, at, readings)
+        for at, line in enumerate(lines[:-1])
+        if line.get("return") in answered and _explained_without(system, history, at, readings)
+    )
 
 
-def _suspect(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Suspect:
-    """The answer on a line, with the rules by which it was allowed."""
+def without_effect(
+    system: System, history: tuple[JSON, ...], readings: Mapping[str, str] | None = None
+) -> tuple[Suspect, ...]:
+    """What was made happen before the last event, if everything can be explained had it not: it had no effect."""
+    drives = [at for at, line in enumerate(history[1:-1]) if "drive" in line and not _lets_time_pass(system, line)]
+    return tuple(
+        _of_drive(system, history, at, readings)
+        for at in drives[-MAX_DRIVES:]
+        if _explained_without(system, history, at, readings)
+    )
+
+
+def _lets_time_pass(system: System, line: JSON) -> bool:
+    (event,) = Transcript(system.codec).read(line) or (None,)
+    return isinstance(event, Driven) and system.spec.drives[event.event.name].later is not None  # type: ignore[attr-defined]
+
+
+def _explained_without(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> bool:
+    """Whether all lines but one can be explained; an answer is lost on the way."""
     lines = history[1:]
-    line = lines[at]
-    call = next(one for one in lines if one.get("call") == line["return"])
+    lost = frozenset({lines[at]["return"]}) if "return" in lines[at] else frozenset[int]()
+    judge = Judge(system, head(history[0]), readings=readings, lost=lost)
+    return all(judge.feed(one) for one in (*lines[:at], *lines[at + 1 :]))
+
+
+def _of_answer(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Suspect:
+    """The answer on a line, with the rules by which it was allowed."""
+    line = history[1:][at]
+    call = next(one for one in history[1:] if one.get("call") == line["return"])
     code = OK if "result" in line else line["error"]["status"]
     request = system.codec.read_request(
         call["method"], system.codec.split_request(call["method"], call.get("params", {}))[1]
     )
-    judge = Judge(system, head(history[0]), readings=readings, apart=True)
-    for one in lines[:at]:
-        judge.feed(one)
+    judge = _led_to(system, history, at, readings)
     before = judge.exercised
     judge.feed(line)
     rules = tuple(rule for rule, times in judge.exercised.items() if times > before.get(rule, 0))
     return Suspect(f"{described(system.spec, request)} was answered {code}", code, rules)
 
 
+def _of_drive(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Suspect:
+    """What was made happen on a line, with the rules by which it has an effect."""
+    judge = _led_to(system, history, at, readings)
+    events = judge.transcript.read(history[1:][at])
+    judge.take(events)
+    says = "; ".join(event_words(system.spec, one) for one in events)
+    return Suspect(says, "", causes.driven(judge.belief.of_last_event))
+
+
+def _led_to(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Judge:
+    """A judge of the lines before one of them."""
+    judge = Judge(system, head(history[0]), readings=readings, apart=True)
+    for one in history[1:][:at]:
+        judge.feed(one)
+    return judge
+
+
 def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:
-    """The violation with a note on answers before it that may be the ones that are wrong.
+    """The violation with a note on what came before it and may be what is wrong.
 
     Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
-    nothing to be wrong about. Where it is what is shown, the rules of the only suspect come first. `readings` are those
-    that the implementation has to follow.
+    nothing to be wrong about. Nor is it where something is missing: without what it made nothing would be due. Where it
+    is what is shown, the rules of the only suspect that was refused come first, and those of what had no effect last.
+    `readings` are those that the implementation has to follow.
     """
-    if not violation.history:
+    history = violation.history
+    if not history:
         return violation
-    answered = "return" in violation.history[-1]
-    found = [one for one in suspects(system, violation.history, readings) if not answered or one.code != OK]
-    if not found or len(found) > MAX_SUSPECTS:
-        return violation
-    notes = tuple(f"without this answer everything is explained: {one.says}" for one in found)
+    answered, missing = "return" in history[-1], "settled" in history[-1]
+    found = [one for one in suspects(system, history, readings) if not (answered or missing) or one.code != OK]
+    idle = () if answered else without_effect(system, history, readings)
     rules = violation.rules
-    if len(found) == 1 and not answered:
-        own = rules_in_words(system.spec, found[0].rules)
-        rules = tuple(dict.fromkeys((*own, *rules)))[:MAX_RULES]
-    return evolve(violation, rules=rules, notes=(*violation.notes, *notes))
+    notes: tuple[str, ...] = ()
+    if len(found) in range(1, MAX_SUSPECTS + 1):
+        notes += tuple(f"without this answer everything is explained: {one.says}" for one in found)
+        if len(found) == 1 and not answered:
+            rules = (*rules_in_words(system.spec, found[0].rules), *rules)
+    if len(idle) in range(1, MAX_SUSPECTS + 1):
+        notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
+        rules = (*rules, *rules_in_words(system.spec, idle[-1].rules))
+    return evolve(violation, rules=tuple(dict.fromkeys(rules))[:MAX_RULES], notes=(*violation.notes, *notes))

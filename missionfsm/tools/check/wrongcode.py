@@ -48,8 +48,8 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
     reasons = [*held, *others, *sorted(reasons, key=lambda rule: rule.assumes is not None)]
     note = f"no refusal with {code} is due: of the rows with that code none applies ({_conditions(reasons)})"
     note += "; the first did before" if held else f"; the first would if it were about {about}" if others else ""
-    if is_done:  # what may be done is refused without a reason
-        return [reasons[0].id, *done], [note]
+    if is_done:  # what may be done is refused without a reason; or it is refused for another one, with a wrong code
+        return [reasons[0].id, *refused[:1], *done], [note]
     return [*refused, *(rule.id for rule in held[:1])], [note]  # what has to be refused is refused wrongly
 
 

@@ -1,0 +1,188 @@
+"""The mission server that somebody else made (tests/strangers), with two of its choices about limits at a time.
+
+Each choice by itself is judged by ``missionfsm teeth``; what is accepted alone has to be accepted together.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import random
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from server_history import SETTLED, History
+
+from missionfsm.adapters.stdio import Child
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
+from missionfsm.kernel.subject import Exchange
+
+FOLDER = Path(__file__).parent.parent / "strangers" / "isaac.server"
+
+PROGRAM = """
+import sys
+sys.path.insert(0, ".")
+from adapter import Adapter
+from variants import Variant
+
+class Several(Variant):
+    def __call__(self, name):
+        super().__call__(name)
+        return name in sys.argv[1:]
+
+Adapter("several", sys.stdout, Several()).run(sys.stdin)
+"""
+"""Their server with as many variants as the command names."""
+
+LIMITS = (
+    "limits-every-second",
+    "pass-every-second",
+    "sends-every-second",
+    "limit-strictly-after",
+    "limit-whole-seconds-exceeded",
+    "limit-rounded-up",
+    "limit-zero-waits",
+    "run-limit-from-sending",
+    "held-after-abort",
+    "abort-closes",
+)
+"""The choices about when a limit is over and what that does."""
+PAIRS = tuple(itertools.combinations(LIMITS, 2))
+
+
+class Life(History):
+    """Leads their server and writes down what it does."""
+
+    def __init__(self, subject: Child) -> None:
+        super().__init__()
+        self._subject = subject
+        self.handles: list[int] = []
+        self.open: list[int] = []
+        self.sent: list[tuple[int, Uuid]] = []
+        subject.exchange("initialize", {"protocolVersion": 1, "system": "isaac.server"})
+
+    def mission(self, **mission: Any) -> Life:
+        """A mission is submitted."""
+        self.handles.append(self._asks("submit", {"mission": {"robot": "r", **mission}})["mission"])
+        return self
+
+    def robots(self, name: str = "r") -> Life:
+        """A robot connects."""
+        self.open.append(self._drives(event="connect")["connection"])
+        return self._says(self.open[-1], "name", TextProto(name))
+
+    def tells(self, sent: int, status: str) -> Life:
+        """A status of a mission on the connection that it was sent on, if it was sent and that is there."""
+        if sent >= len(self.sent) or self.sent[sent][0] not in self.open:
+            return self
+        connection, mission = self.sent[sent]
+        return self._says(connection, "mission_status", MissionStatusProto(mission, WireStatus(status)))
+
+    def goes_on(self, seconds: float) -> Life:
+        """Time passes, and the statuses are looked at."""
+        self._drives(event="advance", seconds=seconds)
+        self._asks("statuses", {})
+        return self
+
+    def _says(self, connection: int, channel: str, payload: TextProto | MissionStatusProto) -> Life:
+        line = encode(Message(Header(channel), payload)).decode().strip()
+        self._drives(event="line", connection=connection, line=line)
+        return self
+
+    def _drives(self, **drive: Any) -> Any:
+        exchange = self._subject.exchange("drive", drive)
+        self.drive(**drive, **{name: one for name, one in exchange.result.items() if name != "happened"})
+        self._settled(exchange)
+        return exchange.result
+
+    def _asks(self, method: str, params: Any) -> Any:
+        exchange = self._subject.exchange(method, params)
+        self.calls += 1
+        self.lines.append({"call": self.calls, "method": method, "params": params})
+        self.lines.append({"return": self.calls, "result": exchange.result})
+        self._settled(exchange)
+        return exchange.result
+
+    def _settled(self, last: Exchange) -> None:
+        settled = self._subject.exchange("settle", {})
+        for one in (*last.after, *settled.earlier, *settled.before, *settled.after):
+            if one.method == "closed":
+                self.lines.append({"connection": one.params["connection"], "closed": True})
+                self.open.remove(one.params["connection"])
+            else:
+                self.lines.append(one.params)
+                halves = json.loads(one.params["line"])["payload"]["uuid"]
+                self.sent.append((one.params["connection"], Uuid(int(halves["lower"]), int(halves["upper"]))))
+        self.lines.append(SETTLED)
+
+
+def lives(*choices: str) -> Iterator[Life]:
+    """Their server with some choices, as one that lives."""
+    command = (sys.executable, "-c", PROGRAM, *choices)
+    with closing(Child(command, folder=str(FOLDER))) as subject:
+        yield Life(subject)
+
+
+def watched(life: Life) -> Life:
+    """Missions that are acknowledged, or not, at odd moments, and looked at often around each of their limits."""
+    life.goes_on(0.6).mission().robots().mission(start_timeout=2.5, timeout=3).goes_on(0.9)
+    life.tells(0, "success").goes_on(1.2).tells(1, "running").mission(start_timeout=1.9, timeout=1.5)
+    for step in (1.1, 0.2, 0.2, 0.2, 0.1, 0.2, 0.2, 0.3, 0.3, 0.4, 0.3, 0.5, 0.8, 0.8, 0.8):
+        life.goes_on(step)
+    return life
+
+
+def random_life(life: Life, draw: random.Random) -> Life:
+    """A few missions and a robot; time passes mostly to moments when a limit could be over, or a little later."""
+    now = draw.choice([0.1, 0.3, 0.6, 0.8])
+    life.goes_on(now)
+    limits: list[float] = []
+    moments: list[float] = []
+    for _ in range(16):
+        what = draw.choice("mcrrrwwwwpppp") if life.handles else "m"
+        if what == "m" and len(life.handles) < 4:
+            start, run = draw.choice([0, 0.5, 1.9, 2, 5]), draw.choice([0, 1, 2.5, 3, 7])
+            limits += [start, run]
+            life.mission(start_timeout=start, timeout=run)
+        elif what == "c" and not life.open:
+            life.robots()
+        elif what == "r" and life.sent:
+            life.tells(draw.randrange(len(life.sent)), draw.choice(["running", "running", "success", "failure"]))
+        ahead = [one for one in moments if one > now - 1]
+        if what in "wp":
+            to = draw.choice(ahead) if ahead and what == "w" else now
+            step = round(to - now + draw.choice([-0.1, 0, 0.1, 0.2, 0.4, 0.6, 0.9, 1.2]), 6)
+            if step > 0:
+                life.goes_on(step)
+                now += step
+        else:
+            moments += [now + limit for limit in limits]
+    return life.goes_on(0.1)
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids="+".join)
+def test_two_choices_about_limits_are_accepted_together(pair: tuple[str, str]) -> None:
+    """Whoever may look at limits now and then, or count otherwise, may do both."""
+    for life in lives(*pair):
+        assert watched(life).judged().conforms
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("pair", PAIRS, ids="+".join)
+def test_two_choices_about_limits_are_accepted_together_on_random_lives(pair: tuple[str, str]) -> None:
+    """So they are whatever happens to the missions."""
+    for seed in range(3):
+        for life in lives(*pair):
+            assert random_life(life, random.Random(f"{pair} {seed}")).judged().conforms
+
+
+def test_a_fault_about_limits_is_not_accepted() -> None:
+    """What is led so is looked at closely enough."""
+    for fault in ("run-limit-doubled", "run-limit-ignored", "acknowledged-still-aborted"):
+        for life in lives(fault):
+            assert not watched(life).judged().conforms, fault

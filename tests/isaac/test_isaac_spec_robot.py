@@ -43,11 +43,11 @@ def passes(seconds: float) -> Any:
     return {"drive": {"event": "advance", "seconds": seconds}}
 
 
-def judged(*lines: Any) -> Verdict:
-    """The verdict on a history of a robot whose drives are all commanded."""
+def judged(*lines: Any, **readings: str) -> Verdict:
+    """The verdict on a history of a robot whose drives are all commanded, under these readings."""
     drives = ("line", "behaviorSucceeded", "behaviorFailed", "advance", "disconnect", "connect")
     head = Head("isaac.robot", {}, drives)
-    return check(ROBOT, head, lines)
+    return check(ROBOT, head, lines, readings=readings)
 
 
 def rules(verdict: Verdict) -> list[str]:
@@ -230,6 +230,16 @@ def test_what_cannot_be_used_may_be_passed_over() -> None:
                      passes(1), says("running"), SUCCEEDED, says("success"), SETTLED)  # fmt: skip
     assert verdict.conforms, str(verdict)
     assert "AI-33.unusable=c" in [one.partition(" ")[0] for one in verdict.flagged]
+
+
+def test_what_is_passed_over_may_end_what_runs() -> None:
+    """AI-33.unusable c, AI-33.preempts a: the mission that runs is preempted, and nothing is said of the new one."""
+    passed_over = {"AI-33.unusable": "c"}
+    history = (arrives(ONE), says("running"), arrives(TWO, "no json"), says("failure"), passes(1))
+    verdict = judged(*history, SETTLED, **passed_over)
+    assert verdict.conforms, str(verdict)
+    assert verdict.readings["AI-33.preempts"] == ("a",)
+    assert not judged(*history, says("failure", TWO), SETTLED, **passed_over).conforms
 
 
 def test_every_broken_rule_is_noticed() -> None:

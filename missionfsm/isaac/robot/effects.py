@@ -191,7 +191,19 @@ def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
             continue
         yield from _all(_fails(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["a"]))
         yield from _all(_starts(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["b"]))
-        yield Step(here, rules=(rules.IGNORES.id,), assumes=(*same, *assumes, readings.AI_33_UNUSABLE["c"]))
+        yield from _all(_passed_over(here), (*same, *assumes, readings.AI_33_UNUSABLE["c"]))
+
+
+def _passed_over(here: Codelet) -> Iterator[Step]:
+    """A mission arrives whose configuration cannot be used, and nothing is said of it."""
+    ignored = Step(here, rules=(rules.IGNORES.id,))
+    if not here.running:
+        yield ignored
+        return
+    due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True),)
+    preempts = _concluded(here, here.moved("an unusable mission arrives"), None, due, (rules.PREEMPTS,))
+    yield from _all(preempts, (readings.AI_33_PREEMPTS["a"],))
+    yield evolve(ignored, assumes=(readings.AI_33_PREEMPTS["b"],))
 
 
 def _old(here: Codelet) -> int | None:

@@ -103,7 +103,7 @@ AI_33_UNUSABLE = Ambiguity(
     {
         "a": "it fails at once",
         "b": "it runs with the configuration as it is",
-        "c": "it is passed over: what cannot configure the application is no mission",
+        "c": "it is passed over, and nothing is said of it",
     },
     default="a",
     flagged=frozenset("bc"),

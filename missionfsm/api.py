@@ -153,7 +153,7 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
 
     judged = _system(system)
     expected = tuple(expected)
-    unknown = [rule for rule in expected if rule not in judged.spec.rules_by_id]
+    unknown = [rule for rule in expected if rule not in {**judged.spec.rules_by_id, **judged.spec.implied}]
     if unknown:
         message = f"expected: {judged.name} has no rule {unknown[0]!r}"
         raise ValueError(message)

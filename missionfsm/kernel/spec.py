@@ -26,7 +26,7 @@ from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
-from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver
+from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver, promise
 from missionfsm.kernel.step import Match, Mismatch, Step
 from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, Topic, View, World
 
@@ -344,6 +344,25 @@ class Spec:
     def explore_size(self, state: State) -> int:
         """How large a state is for an exploration."""
         return (self.abstraction.explore_size or self.names)(state)
+
+    @property
+    def implied(self) -> Mapping[str, Rule]:
+        """What goes without saying of each operation and each drive, by its id: named where no other rule is broken."""
+        answered = (
+            promise("it-answers-as-documented", f"{one.name} is answered as its page says.", cite=one.cite)
+            for one in self.operations.values()
+        )
+        happens = (
+            promise(
+                "it-happens-only-where-it-can",
+                f"{one.name} happens only where it can.",
+                cite=one.cite or Citation(self.system, ()),
+            )
+            for one in self.drives.values()
+        )
+        places = (*self.operations, *self.drives)
+        rules = (rule.registered(self.system, name) for name, rule in zip(places, (*answered, *happens), strict=True))
+        return {rule.id: rule for rule in rules}
 
     @property
     def all_rules(self) -> tuple[Rule, ...]:

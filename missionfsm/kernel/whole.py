@@ -57,6 +57,8 @@ def shown_whole(spec: Spec, rule: Rule) -> Spec:
         spontaneous=lambda state: tuple(seen(state, step) for step in spec.spontaneous(state)),
         matches=matches,
         delivery=lambda _topic: Delivery(unowed=(rule.id,), named=(rule.id,)),
+        undelivered=lambda _view: (rule.id,),
+        unopened=(rule.id,),
         rules=(*spec.rules, rule),
     )
 

@@ -31,14 +31,14 @@ def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | No
             for step in _steps(belief, symbol, here):
                 if any(one.view == view and one.topic == topic for one in step.emits):
                     found = True
-                    delivering = _delivering(belief.spec, step)
-                    rules.update(dict.fromkeys(rule for rule in step.rules if rule not in delivering))
+                    sent = delivering(belief.spec, step)
+                    rules.update(dict.fromkeys(rule for rule in step.rules if rule not in sent))
         if rules:
             return tuple(rules)
     return () if found else None
 
 
-def _delivering(spec: Spec, step: Step) -> set[str]:
+def delivering(spec: Spec, step: Step) -> set[str]:
     """Ids of the rules that say that something is sent, and not what has made it due."""
     return {rule for one in step.emits for rule in spec.undelivered(one.view)} if spec.undelivered else set()
 

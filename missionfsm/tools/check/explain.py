@@ -55,12 +55,24 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         observed += " happened" if isinstance(event, Driven) else ""
         found = _against_drive(nearest, event)
     expected, rules, notes = found
+    named = list(dict.fromkeys(rule for rule in rules if rule))[:MAX_RULES] or _implied(spec, event, about)
     return Violation(
-        rules_in_words(spec, list(dict.fromkeys(rules))[:MAX_RULES]),
+        rules_in_words(spec, named),
         observed,
         _allowed(spec, expected),
         tuple(dict.fromkeys(printable(note) for note in notes if note))[:MAX_NOTES],
     )
+
+
+def _implied(spec: Spec, event: Event, about: Circumstances) -> list[str]:
+    """The rule that goes without saying: of the operation that was answered or that opens streams, or of the drive."""
+    if isinstance(event, Driven):
+        place = [event.event.name]  # type: ignore[attr-defined]
+    elif isinstance(event, Returned):
+        place = [spec.request_operation(about.request)] if about.request is not None else []
+    else:
+        place = [one.name for one in spec.operations.values() if one.streaming]
+    return [rule for name in place[:1] for rule in spec.implied if rule.split("/")[1] == name]
 
 
 Accusation = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]

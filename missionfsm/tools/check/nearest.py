@@ -38,6 +38,7 @@ from missionfsm.tools.check.candidates import (
     Circumstances,
     Problem,
 )
+from missionfsm.tools.check.causes import delivering
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 MAX_LOOKED_AT = 200
@@ -113,9 +114,11 @@ class Nearest:
             refs = self.successors.refs(here, call.args)
             for step in self.successors.outcomes(here.state, call.request, refs):
                 if step.answer is not None:
+                    sent = delivering(self.spec, step)
+                    rules = tuple(rule for rule in step.rules if rule not in sent)
                     names = tuple(here.names[ref] if ref < len(here.names) else GONE - 1 for ref in step.refs)
                     problems = self._answered(here, event, given, step.answer, names, step.assumes)
-                    yield self._candidate(successor, step.answer, names, step.rules, step.assumes, problems)
+                    yield self._candidate(successor, step.answer, names, rules, step.assumes, problems)
 
     def _candidate(  # noqa: PLR0913 - what a candidate is made of
         self,

@@ -13,7 +13,7 @@ from missionfsm.tools.check.verdict import CitedRule
 
 def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[CitedRule, ...]:
     """Rules as a person is told them, each once."""
-    known = spec.rules_by_id
+    known = {**spec.implied, **spec.rules_by_id}
     found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
     return tuple(CitedRule(rule.id, rule.says, str(rule.cite)) for rule in found)
 

@@ -11,6 +11,16 @@ from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.codec import JSON, NAMED, Codec, Happening, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.mutations import (
+    MessageMutation,
+    StepMutation,
+    StepMutator,
+    breaks,
+    each_sent,
+    sent_last,
+    sent_twice,
+    unsent,
+)
 from missionfsm.kernel.picture import Plan, Sketch, every_state
 from missionfsm.kernel.readings import Ambiguity, Assumption, declared, meet, to_the_letter
 from missionfsm.kernel.rules import (
@@ -32,7 +42,7 @@ from missionfsm.kernel.rules import (
 from missionfsm.kernel.shapes import Shapes, record
 from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
 from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
-from missionfsm.kernel.system import MessageMutation, StepMutation, System, breaks
+from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.text import brief
 from missionfsm.kernel.typed import reads
@@ -84,6 +94,7 @@ __all__ = [
     "Spec",
     "Step",
     "StepMutation",
+    "StepMutator",
     "System",
     "UnreadableError",
     "as_text",
@@ -91,6 +102,7 @@ __all__ = [
     "brief",
     "decide",
     "declared",
+    "each_sent",
     "every_state",
     "meet",
     "new",
@@ -99,7 +111,10 @@ __all__ = [
     "reads",
     "record",
     "refusal",
+    "sent_last",
+    "sent_twice",
     "shown_whole",
     "to_the_letter",
+    "unsent",
     "upcoming",
 ]

@@ -9,43 +9,10 @@ from attrs import field, frozen
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.matrix import Matrix
+from missionfsm.kernel.mutations import MessageMutation, StepMutation
 from missionfsm.kernel.picture import Plan, Sketch
-from missionfsm.kernel.rules import Rule
 from missionfsm.kernel.shapes import Shapes
 from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.step import Step
-from missionfsm.kernel.terms import State
-
-
-@frozen
-class MessageMutation:
-    """A way to send wrong messages: the rule that it breaks, what it does, and how it changes a message's JSON."""
-
-    rule: str
-    says: str
-    mutate_message: Callable[[JSON], JSON]
-
-
-@frozen
-class StepMutation:
-    """A way to take wrong steps: the rule that it breaks, what it does, and how it changes a step.
-
-    `mutate_step` takes the state before and a step that the rule justifies; where the rule that is broken justifies
-    none (it is about what steps show), a step that the rule `at` justifies.
-    """
-
-    rule: str
-    says: str
-    mutate_step: Callable[[State, Step], Step | None]
-    at: str = ""
-
-
-def breaks(rule: Rule, **step_mutations: Callable[[State, Step], Step | None]) -> tuple[StepMutation, ...]:
-    """Ways to break a rule in the steps that it justifies: what is done, its words joined by ``_``, to the mutation."""
-    return tuple(
-        StepMutation(rule.id, says.replace("_", " "), mutate_step, at=rule.id)
-        for says, mutate_step in step_mutations.items()
-    )
 
 
 @frozen(eq=False)

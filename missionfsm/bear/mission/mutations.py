@@ -12,8 +12,8 @@ from missionfsm.bear.mission.spec import SPEC
 from missionfsm.bear.mission.state import Mission, Robot
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.mutations import MessageMutation, StepMutation
 from missionfsm.kernel.step import Step
-from missionfsm.kernel.system import MessageMutation, StepMutation
 
 
 def _each(change: Callable[[JSON], None]) -> Callable[[JSON], JSON]:

@@ -14,8 +14,8 @@ from missionfsm.bear.status.state import GET, MAPS, SINGLES, Endpoint
 from missionfsm.bear.status.stream import SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED
 from missionfsm.bear.status.views import Promised
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.mutations import MessageMutation, StepMutation
 from missionfsm.kernel.step import Step
-from missionfsm.kernel.system import MessageMutation, StepMutation
 
 Change = Callable[[dict[str, JSON]], None]
 

@@ -8,7 +8,7 @@ from missionfsm.isaac.robot.inputs import NAMED_ONLY, NULL, ODD, SHALLOW, UNUSAB
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Report, World
 from missionfsm.isaac.shared.drives import Passes, seconds, text_line
-from missionfsm.isaac.shared.line import MICROSECONDS, from_json, new_uuid, see, stamp, to_json, uuid_name
+from missionfsm.isaac.shared.line import MICROSECONDS, from_json, new_uuid, part_of, see, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -20,7 +20,7 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.kernel.language import JSON, Codec, Happening, Name, Part, UnreadableError, brief, meet
+from missionfsm.kernel.language import JSON, Codec, Happening, Name, UnreadableError, brief, meet
 
 ANY_NAME = "robot"
 """What a robot is called of which the world tells no name."""
@@ -116,13 +116,6 @@ def write_drive(event: Event, names: tuple[Name, ...]) -> JSON:
 # Lines that the robot sends.
 
 
-def split_message(line: JSON) -> tuple[Part, ...]:
-    """The mission's identifier in a line, the uuid of its header as a mark, and what is left of it."""
-    names, said = see(line)
-    own = stamp(line)
-    return ((names, () if own is None else (("uuid", own),), to_json(said)),)
-
-
 def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
     """The line that shows a report, or the name."""
     time = round(at * 1e9)
@@ -152,7 +145,7 @@ CODEC = Codec(
     write_world=write_world,
     read_drive=read_drive,
     write_drive=write_drive,
-    split_message=split_message,
+    split_message=lambda line: (part_of(line, *see(line)),),
     read_content=from_json,
     write_message=write_message,
 )

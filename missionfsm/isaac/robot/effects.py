@@ -58,19 +58,21 @@ def introduction(world: World, *, offer: bool = False) -> Emission:
 
 def _kept_names(here: Codelet) -> tuple[int, ...]:
     """The positions of the identifiers of the statuses that wait and are not lost for want of a connection."""
-    named = [one for one in here.waiting if one.report.named]
+    named = [one for one in here.waiting if one.named]
     return tuple(at for at, one in enumerate(named) if one.kept)
 
 
-def waiting_statuses(here: Codelet) -> Iterator[Emission]:
+def _said(here: Codelet, status: str, about: int | None, *, offered: bool) -> tuple[Emission, ...]:
+    """A status, behind RUNNING where that may come before it."""
+    said = _emission(here.world, status, about)
+    return (_offer(here, about), said) if offered else (said,)
+
+
+def _all_waiting(here: Codelet) -> Iterator[Emission]:
     """The statuses that waited, in order."""
-    at = 0
+    places = iter(here.waits)
     for one in here.waiting:
-        about = at if one.report.named else None
-        if one.offered:
-            yield _offer(here, about)
-        yield _emission(here.world, one.report.status, about)
-        at += one.report.named
+        yield from _said(here, one.status, next(places) if one.named else None, offered=one.offered)
 
 
 def _concluded(
@@ -90,11 +92,11 @@ def _concluded(
         return
     for now, later, assumes in _divided(due):
         flushed = bool(now) or not (here.waiting or later) or len(here.waiting) >= MAX_WAITING
-        waiting = (*(() if flushed else here.waiting), *(_waits(here, one) for one in later))
+        waiting = (*(() if flushed else here.waiting), *(_waits(one) for one in later))
         waited = 0 if flushed else here.waited
         emits = (
-            *(waiting_statuses(here) if flushed else ()),
-            *_sent(here, now),
+            *(_all_waiting(here) if flushed else ()),
+            *(said for one in now for said in _said(here, one.status, one.about, offered=one.offered)),
             *((_offer(here, mission),) if after.running and not waiting else ()),
         )
         names = (*(() if flushed else here.waits), *_names_in(later), *runs)
@@ -111,19 +113,12 @@ def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due,
             yield now, later, assumes
 
 
-def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
-    for one in due:
-        if one.offered:
-            yield _offer(here, one.about)
-        yield _emission(here.world, one.status, one.about)
-
-
 def _names_in(due: tuple[Due, ...]) -> Iterator[int]:
     return (one.about for one in due if one.about is not None)
 
 
-def _waits(here: Codelet, due: Due) -> Waiting:
-    return Waiting(Report(due.status, due.about is not None, here.world.status_channel), due.offered)
+def _waits(due: Due) -> Waiting:
+    return Waiting(due.status, due.about is not None, due.offered)
 
 
 def _unconnected(
@@ -134,7 +129,7 @@ def _unconnected(
     yield Step(
         evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(readings.AI_15_STATUS["a"],)
     )
-    reports = tuple(_waits(here, one) for one in due)
+    reports = tuple(_waits(one) for one in due)
     names = (*before, *_names_in(due), *runs)
     kept = Step(evolve(after, waiting=(*here.waiting, *reports)), names=names, rules=ids)
     yield evolve(kept, assumes=(readings.AI_15_STATUS["b"],))
@@ -264,10 +259,10 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     """The codelet's own tick: the statuses that waited are sent."""
     if not (here.connected and here.waiting):
         return ()
-    because = dict.fromkeys(FINAL[one.report.status].id for one in here.waiting)
+    because = dict.fromkeys(FINAL[one.status].id for one in here.waiting)
     offers = (_offer(here, _old(here)),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
-    return (Step(after, names=here.mission, emits=(*waiting_statuses(here), *offers), rules=tuple(because)),)
+    return (Step(after, names=here.mission, emits=(*_all_waiting(here), *offers), rules=tuple(because)),)
 
 
 # Time.
@@ -367,7 +362,7 @@ def _given_up(gone: Step) -> Step:
 def _failed(gone: Step) -> Step:
     """The mission that runs fails with the connection, and its FAILURE waits with what waits (AI-15.mission c)."""
     here: Codelet = gone.after
-    failure = Waiting(Report("failure", here.named, here.world.status_channel), offered=False, kept=True)
+    failure = Waiting("failure", here.named, offered=False, kept=True)
     after = evolve(here.moved("the connection drops"), waiting=(*here.waiting, failure))
     names = tuple(range(here.identifiers)) if gone.names is None else gone.names
     return evolve(gone, after=after, names=names, assumes=(*gone.assumes, readings.AI_15_MISSION["c"]))

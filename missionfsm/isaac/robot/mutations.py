@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
-
 from attrs import evolve
 
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
-from missionfsm.isaac.shared.mutations import changed, line_mutations, mission_type, swapped, unsigned_type
-from missionfsm.kernel.language import Emission, MessageMutation, Step, StepMutation, breaks
-
-StepMutator = Callable[[Codelet, Step], Step | None]
+from missionfsm.isaac.shared.mutations import line_mutations, mission_type, spoils, swapped, unsigned_type
+from missionfsm.kernel.language import Emission, Step, StepMutator, breaks, each_sent, sent_last, sent_twice, unsent
 
 MESSAGE_MUTATIONS = (
-    MessageMutation(rules.ABOUT.id, "swaps the halves of the identifier", changed(swapped)),
-    MessageMutation(rules.TYPES.id, "sends the type id unsigned", changed(unsigned_type)),
-    MessageMutation(rules.TYPES.id, "sends the type id of a mission", changed(mission_type)),
+    *spoils(rules.ABOUT, swaps_the_halves_of_the_identifier=swapped),
+    *spoils(rules.TYPES, sends_the_type_id_unsigned=unsigned_type, sends_the_type_id_of_a_mission=mission_type),
     *line_mutations(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
 )
 
@@ -45,18 +39,6 @@ def _is_name(emission: Emission) -> bool:
     return emission.topic == NAMES
 
 
-def _without(which: Callable[[Emission], bool], when: Callable[[Codelet], bool] = lambda _: True) -> StepMutator:
-    """What is said is left out, if the codelet was in such a state before."""
-    return lambda before, step: (
-        evolve(step, emits=tuple(itertools.filterfalse(which, step.emits))) if when(before) else step
-    )
-
-
-def _each(change: Callable[[Emission], Emission]) -> StepMutator:
-    """Everything that is said is changed."""
-    return lambda _, step: evolve(step, emits=tuple(map(change, step.emits)))
-
-
 def _speaks_up(before: Codelet, step: Step) -> Step:
     """The name is said although there is no connection."""
     return evolve(step, emits=(*step.emits, introduction(before.world)))
@@ -67,19 +49,9 @@ def _renamed(emission: Emission) -> Emission:
     return evolve(emission, view=evolve(view, name=f"{view.name}-2")) if isinstance(view, Introduction) else emission
 
 
-def _final_twice(_: Codelet, step: Step) -> Step:
-    return evolve(step, emits=(*step.emits, *filter(_final, step.emits)))
-
-
-def _final_first(_: Codelet, step: Step) -> Step:
-    """What comes after the last final status comes before it."""
-    finals = tuple(filter(_final, step.emits))
-    return evolve(step, emits=(*(one for one in step.emits if not _final(one)), *finals))
-
-
 def _said_as(status: str) -> StepMutator:
     """Final statuses are another one."""
-    return _each(lambda one: evolve(one, view=evolve(one.view, status=status)) if _final(one) else one)
+    return each_sent(lambda one: evolve(one, view=evolve(one.view, status=status)) if _final(one) else one)
 
 
 def _running_after(_: Codelet, step: Step) -> Step:
@@ -105,31 +77,31 @@ STEP_MUTATIONS = (
     *breaks(
         rules.PREEMPTS,
         is_not_run=_never_run,
-        drops_the_old_one_silently=_without(_final),
+        drops_the_old_one_silently=unsent(_final),
         says_that_the_old_one_succeeded=_said_as("success"),
-        reports_the_old_one_last=_final_first,
+        reports_the_old_one_last=sent_last(_final),
     ),
-    *breaks(rules.UNUSABLE, is_not_reported=_without(_final), is_reported_as_a_success=_said_as("success")),
+    *breaks(rules.UNUSABLE, is_not_reported=unsent(_final), is_reported_as_a_success=_said_as("success")),
     *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
-    *breaks(rules.RUNNING, is_never_reported=_without(_is_status)),
-    StepMutation(rules.RUNNING.id, "goes on after the end", _running_after, at=rules.SUCCESS.id),
+    *breaks(rules.RUNNING, is_never_reported=unsent(_is_status)),
+    *breaks(rules.RUNNING, at=rules.SUCCESS, goes_on_after_the_end=_running_after),
     *breaks(
         rules.NAMED,
-        is_never_said=_without(_is_name),
-        is_not_said_during_a_mission=_without(_is_name, lambda before: before.running),
-        is_another_one=_each(_renamed),
+        is_never_said=unsent(_is_name),
+        is_not_said_during_a_mission=unsent(_is_name, lambda before: before.running),
+        is_another_one=each_sent(_renamed),
     ),
     *breaks(rules.LINKED, is_forgotten=_speaks_up),
     *breaks(
         rules.SUCCESS,
-        is_not_reported=_without(_final),
-        is_reported_twice=_final_twice,
+        is_not_reported=unsent(_final),
+        is_reported_twice=sent_twice(_final),
         is_reported_as_a_failure=_said_as("failure"),
     ),
     *breaks(
         rules.FAILURE,
-        is_not_reported=_without(_final),
-        is_reported_twice=_final_twice,
+        is_not_reported=unsent(_final),
+        is_reported_twice=sent_twice(_final),
         is_reported_as_a_success=_said_as("success"),
     ),
 )

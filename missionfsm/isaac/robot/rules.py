@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from missionfsm.isaac.robot.state import SYSTEM_NAME
+from missionfsm.isaac.shared import promises
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
+from missionfsm.isaac.shared.promises import CLIENT
 from missionfsm.kernel.language import Citation, Rule, declared, promise
 
 CODELET = PAGE["Mission Codelet"]
-CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
 def _promise(topic: str, name: str, says: str, cite: Citation, argues: str = "") -> Rule:
@@ -86,12 +87,7 @@ LINKED = _promise(
     CLIENT,
     "AI-15: what becomes of the mission that runs and of its statuses.",
 )
-ENVELOPE = _promise(
-    "line",
-    "a-line-is-one-message",
-    "Every line is one JSON object with a header and a payload, of a type that is documented.",
-    CLIENT,
-)
+ENVELOPE = promises.ENVELOPE.registered(SYSTEM_NAME, "line")
 TYPES = _promise(
     "line",
     "a-type-id-is-signed",
@@ -99,11 +95,5 @@ TYPES = _promise(
     CLIENT,
     "A fact of the wire; a header that has none is understood by its payload. Whose its uuid is: AI-27.uuid.",
 )
-INTEGERS = _promise(
-    "line",
-    "64-bit-integers-are-strings",
-    "Every 64-bit integer of a message is a string.",
-    CLIENT,
-    "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
-)
+INTEGERS = promises.INTEGERS.registered(SYSTEM_NAME, "line")
 RULES = declared(globals(), Rule)

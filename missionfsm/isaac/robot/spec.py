@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from missionfsm.isaac.robot import rules
+from missionfsm.isaac.robot import effects, readings, rules, stream
 from missionfsm.isaac.robot.describe import describe
-from missionfsm.isaac.robot.effects import arrives, begins, connection, passes, stops, ticks
-from missionfsm.isaac.robot.readings import AMBIGUITIES
-from missionfsm.isaac.robot.rules import RULES
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
-from missionfsm.isaac.robot.stream import delivery, matches, sequence, undelivered, unowed
 from missionfsm.isaac.shared.drives import later
 from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec
 
@@ -29,24 +25,24 @@ SPEC = Spec(
     title="a robot's mission codelet",
     initial=Codelet,
     drives=(
-        Drive("line", arrives, impossible=(rules.LINKED.id,)),
-        Drive("behaviorSucceeded", stops, (Happening("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
-        Drive("behaviorFailed", stops, (Happening("behaviorFailed"),), impossible=(rules.STARTS.id,)),
-        Drive("advance", passes, later=later),
-        Drive("disconnect", connection, ends=True, impossible=(rules.LINKED.id,)),
-        Drive("connect", connection, impossible=(rules.LINKED.id,)),
+        Drive("line", effects.arrives, impossible=(rules.LINKED.id,)),
+        Drive("behaviorSucceeded", effects.stops, (Happening("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
+        Drive("behaviorFailed", effects.stops, (Happening("behaviorFailed"),), impossible=(rules.STARTS.id,)),
+        Drive("advance", effects.passes, later=later),
+        Drive("disconnect", effects.connection, ends=True, impossible=(rules.LINKED.id,)),
+        Drive("connect", effects.connection, impossible=(rules.LINKED.id,)),
     ),
-    urgent=begins,
-    spontaneous=ticks,
-    matches=matches,
-    delivery=delivery,
-    unowed=unowed,
-    undelivered=undelivered,
-    sequence=sequence,
+    urgent=effects.begins,
+    spontaneous=effects.ticks,
+    matches=stream.matches,
+    delivery=stream.delivery,
+    unowed=stream.unowed,
+    undelivered=stream.undelivered,
+    sequence=stream.sequence,
     names=lambda here: here.identifiers,
-    ambiguities=AMBIGUITIES,
+    ambiguities=readings.AMBIGUITIES,
     describe=describe,
-    rules=RULES,
+    rules=rules.RULES,
     charts=(LIFECYCLE,),
     invariants=(
         Invariant(
@@ -55,7 +51,7 @@ SPEC = Spec(
         Invariant(
             "what-waits-is-final",
             "RUNNING does not wait.",
-            lambda here: all(one.report.status != "running" for one in here.waiting),
+            lambda here: all(one.status != "running" for one in here.waiting),
         ),
     ),
     possibilities=(

@@ -64,11 +64,13 @@ class Waiting:
     """A status that waits.
 
     Attributes:
+        named: whether its mission has an identifier.
         offered: whether RUNNING of that mission may come just before it.
         kept: whether it is told once the connection is there again, whatever becomes of others (AI-15.mission c).
     """
 
-    report: Report
+    status: str
+    named: bool
     offered: bool
     kept: bool = False
 
@@ -128,7 +130,7 @@ class Codelet:
     @property
     def waits(self) -> tuple[int, ...]:
         """The positions of the identifiers of the statuses that wait."""
-        return tuple(range(sum(one.report.named for one in self.waiting)))
+        return tuple(range(sum(one.named for one in self.waiting)))
 
     @property
     def identifiers(self) -> int:

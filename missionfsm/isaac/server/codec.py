@@ -22,7 +22,6 @@ from missionfsm.isaac.server.inputs import (
     Submission,
 )
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
-from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Sends, World
 from missionfsm.isaac.shared.drives import Passes, in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import (
@@ -31,9 +30,8 @@ from missionfsm.isaac.shared.line import (
     canonical,
     from_json,
     new_uuid,
+    part_of,
     see,
-    stamp,
-    to_json,
     uuid_name,
 )
 from missionfsm.isaac.wire import strictjson
@@ -324,10 +322,8 @@ def split_message(line: JSON) -> tuple[Part, ...]:
     affair.
     """
     names, said = see(line)
-    if isinstance(said, LineContent) and said.kind == "text" and not said.bare:
-        return ()
-    own = stamp(line)
-    return ((names, () if own is None else (("uuid", own),), to_json(said)),)
+    greets = isinstance(said, LineContent) and said.kind == "text" and not said.bare
+    return () if greets else (part_of(line, names, said),)
 
 
 def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
@@ -347,8 +343,6 @@ def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int
 
 
 CODEC = Codec(
-    methods=tuple(SPEC.operations),
-    streams=(),
     measured=("seconds",),
     read_world=read_world,
     split_request=split_request,

@@ -8,17 +8,14 @@ from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status, topic
-from missionfsm.isaac.shared.mutations import changed, line_mutations
+from missionfsm.isaac.shared.mutations import line_mutations, spoils
+from missionfsm.kernel.mutations import StepMutator, breaks, sent_twice, unsent
 from missionfsm.kernel.step import Step
-from missionfsm.kernel.system import MessageMutation, StepMutation, breaks
-
-StepMutator = Callable[[Server, Step], Step | None]
 
 MESSAGE_MUTATIONS = (
-    MessageMutation(
-        rules.CONFIG.id,
-        "sends another configuration",
-        changed(lambda message: message["payload"].update(config={"serialized": '{"other":{}}'})),
+    *spoils(
+        rules.CONFIG,
+        sends_another_configuration=lambda message: message["payload"].update(config={"serialized": '{"other":{}}'}),
     ),
     *line_mutations(rules.ENVELOPE.id, rules.INTEGERS.id, rules.CHANNEL.id),
 )
@@ -43,14 +40,6 @@ def _each(change: Callable[[Mission, Mission], Mission]) -> StepMutator:
 def _became(status: Status, change: Callable[[Mission, Mission], Mission]) -> StepMutator:
     """A change of every mission that a step gives this status."""
     return _each(lambda old, new: change(old, new) if new.status is status is not old.status else new)
-
-
-def _sent_twice(_: Server, step: Step) -> Step:
-    return evolve(step, emits=(*step.emits, *step.emits))
-
-
-def _unsent(_: Server, step: Step) -> Step:
-    return evolve(step, emits=())
 
 
 def _sent_elsewhere(before: Server, step: Step) -> Step:
@@ -88,14 +77,9 @@ def _revived(_: Server, step: Step) -> Step:
 
 
 STEP_MUTATIONS = (
-    *breaks(rules.SENT, is_sent_twice=_sent_twice, is_not_sent=_unsent),
-    StepMutation(rules.UNNAMED.id, "goes to whoever connected first", _sent_elsewhere, at=rules.SENT.id),
-    StepMutation(
-        rules.UPSTREAM.id,
-        "does not wait for them",
-        _each(_freed),
-        at=rules.OPERATIONS["submit"].promises[0].id,
-    ),
+    *breaks(rules.SENT, is_sent_twice=sent_twice(), is_not_sent=unsent()),
+    *breaks(rules.UNNAMED, at=rules.SENT, goes_to_whoever_connected_first=_sent_elsewhere),
+    *breaks(rules.UPSTREAM, at=rules.OPERATIONS["submit"].promises[0], does_not_wait_for_them=_each(_freed)),
     *breaks(
         rules.CANCELED,
         is_not_cancelled=_became(Status.CANCELED, lambda old, _: evolve(old, waits=(), doomed=())),

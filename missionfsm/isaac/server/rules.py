@@ -5,14 +5,16 @@ from __future__ import annotations
 from missionfsm.isaac.server.inputs import EMPTY, HANDLE, KEY, MALFORMED, NEGATIVE, NO_NAME, NULL, NULL_CONFIG, Ask
 from missionfsm.isaac.server.readings import AI_19, AI_20_EMPTY, AI_20_KEYS, AI_20_NULL, AI_20_REPEATED, AI_33_NULL
 from missionfsm.isaac.server.state import SYSTEM_NAME, Server
+from missionfsm.isaac.shared import promises
 from missionfsm.isaac.shared.line import MISSION_SUBMISSION as PAGE
+from missionfsm.isaac.shared.promises import CLIENT
+from missionfsm.kernel.readings import declared
 from missionfsm.kernel.rules import INVALID_ARGUMENT, Citation, Operation, Rule, promise, refusal
 
 KEYS = PAGE["Sample Usage", "Key"]
 SERVER = PAGE["MissionServer Class"]
 DEPENDENCIES = PAGE["Mission Dependencies"]
 NAMES = PAGE["Robot Identification"]
-CLIENT = PAGE["JsonTcpClient Codelet"]
 
 
 @refusal(INVALID_ARGUMENT, cite=KEYS)
@@ -201,38 +203,9 @@ SILENCE = _promise(
     PAGE["Mission Codelet", "step 3"],
     "AI-31: no period is documented.",
 )
-ENVELOPE = _promise(
-    "line",
-    "a-line-is-one-message",
-    "Every line is one JSON object with a header and a payload, of a type that is documented.",
-    CLIENT,
-)
-INTEGERS = _promise(
-    "line",
-    "64-bit-integers-are-strings",
-    "Every 64-bit integer of a message is a string.",
-    CLIENT,
-    "AI-25.header: the shipped software sends the halves of the header's uuid as numbers.",
-)
-RULES = (
-    SENT,
-    CHANNEL,
-    CONFIG,
-    UNNAMED,
-    UPSTREAM,
-    CANCELED,
-    NAMED,
-    OTHER,
-    DROPPED,
-    RUNNING,
-    FINAL,
-    LATE,
-    ABORTED,
-    OVERRUN,
-    SILENCE,
-    ENVELOPE,
-    INTEGERS,
-)
+ENVELOPE = promises.ENVELOPE.registered(SYSTEM_NAME, "line")
+INTEGERS = promises.INTEGERS.registered(SYSTEM_NAME, "line")
+RULES = tuple(one for one in declared(globals(), Rule) if one.id)
 
 OPERATIONS = {
     one.name: one

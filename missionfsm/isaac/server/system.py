@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.alphabet import alphabet
-from missionfsm.isaac.server.codec import CODEC
-from missionfsm.isaac.server.matrix import MATRIX
-from missionfsm.isaac.server.mutations import MESSAGE_MUTATIONS, STEP_MUTATIONS
-from missionfsm.isaac.server.pictures import SKETCHES
-from missionfsm.isaac.server.plans import PLANS
-from missionfsm.isaac.server.shapes import shapes
+from missionfsm.isaac.server import alphabet, codec, matrix, mutations, pictures, plans, shapes
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.shared.naming import NAMING
 from missionfsm.isaac.shared.profiles import SHIPPED_SERVER, profiles
@@ -17,15 +11,15 @@ from missionfsm.kernel.system import System
 SYSTEM = System(
     SPEC.system,
     SPEC,
-    CODEC,
-    alphabet,
+    codec.CODEC,
+    alphabet.alphabet,
     NAMING,
-    message_mutations=MESSAGE_MUTATIONS,
-    step_mutations=STEP_MUTATIONS,
-    sketches=SKETCHES,
-    plans=PLANS,
-    shapes=shapes,
+    message_mutations=mutations.MESSAGE_MUTATIONS,
+    step_mutations=mutations.STEP_MUTATIONS,
+    sketches=pictures.SKETCHES,
+    plans=plans.PLANS,
+    shapes=shapes.shapes,
     profiles=profiles(SPEC.ambiguities, SHIPPED_SERVER),
-    matrix=MATRIX,
+    matrix=matrix.MATRIX,
     minutes_at=2,
 )

@@ -14,7 +14,7 @@ from attrs import astuple, frozen
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line
 from missionfsm.isaac.wire.messages import Message, MissionProto, MissionStatusProto, TextProto, Uuid
-from missionfsm.kernel.codec import JSON, Malformed
+from missionfsm.kernel.codec import JSON, Malformed, Part
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import Document
 
@@ -188,3 +188,9 @@ def from_json(rest: JSON) -> LineContent | Malformed:
         return Malformed(rest["garbled"])
     kind, channel, what, form, named, header_named, bare, *marks = rest
     return LineContent(kind, channel, what, form, named, header_named, tuple(bare), *marks)
+
+
+def part_of(line: JSON, names: tuple[Name, ...], said: LineContent | Malformed) -> Part:
+    """A line that `see` has read as the one part of a message, with the uuid of its header as a mark."""
+    own = stamp(line)
+    return names, () if own is None else (("uuid", own),), to_json(said)

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed, unsigned
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.system import MessageMutation
+from missionfsm.kernel.mutations import MessageMutation
+from missionfsm.kernel.rules import Rule
 
 
 def changed(change: Callable[[JSON], object]) -> Callable[[JSON], JSON]:
@@ -20,6 +21,11 @@ def changed(change: Callable[[JSON], object]) -> Callable[[JSON], JSON]:
         return strictjson.compact(message)
 
     return mutate_message
+
+
+def spoils(rule: Rule, **changes: Callable[[JSON], object]) -> tuple[MessageMutation, ...]:
+    """Ways to break a rule in lines: what is done, its words joined by ``_``, to the change of the object in it."""
+    return tuple(MessageMutation(rule.id, says.replace("_", " "), changed(change)) for says, change in changes.items())
 
 
 def _bare_uuid(message: JSON) -> None:

@@ -89,7 +89,8 @@ class Channel:
     """A stream or a connection: its name, its topic, what it showed last and what it owes.
 
     Where it is known what comes, `foretold` is how many of the messages that it shows next are settled already: they
-    can be nothing but what it owed before. `last` is then what the last of these shows.
+    can be nothing but what it owed before. `last` is then what the last of these shows. One that is `done` shows
+    nothing besides those, whatever happens: it owes nothing any more.
 
     `lowest` is the lowest of all names in it, `GONE` at most.
     """
@@ -99,11 +100,12 @@ class Channel:
     last: Owed | None = None
     owed: tuple[Owed, ...] = ()
     foretold: int = 0
+    done: bool = False
     lowest: int = field(init=False, eq=False, repr=False, default=Factory(_lowest_of_channel, takes_self=True))
 
     def owing(self, owed: tuple[Owed, ...] = ()) -> Channel:
         """The channel when it owes these, and nothing else."""
-        return Channel(self.name, self.topic, self.last, owed, self.foretold)
+        return Channel(self.name, self.topic, self.last, owed, self.foretold, self.done)
 
 
 DRAINED = "drained"
@@ -256,7 +258,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         if unseen_only and one.lowest == GONE:
             return one
         last = owed(one.last) if one.last else None
-        return Channel(new.get(one.name, one.name), one.topic, last, tuple(map(owed, one.owed)), one.foretold)
+        return Channel(new.get(one.name, one.name), one.topic, last, tuple(map(owed, one.owed)), one.foretold, one.done)
 
     return Explanation(
         explanation.state,
@@ -370,6 +372,8 @@ def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owe
 
 def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
     """The channel with more to show; an offer that it makes already is not made twice."""
+    if channel.done:
+        return channel
     owed = channel.owed
     for one in added:
         if not (one.stays and owed and owed[-1] == one):
@@ -380,7 +384,7 @@ def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
 def _relieved(channel: Channel, step: Step) -> Channel:
     """The channel without what a step makes void."""
     if channel.topic in step.clears:
-        return channel.owing()
+        return channel.owing() if channel.owed else channel
     if channel.topic in step.withdraws and channel.owed:
         return channel.owing(tuple(one for one in channel.owed if not one.optional))
     return channel
@@ -397,6 +401,14 @@ def undrained(explanation: Explanation, *names: int) -> Explanation:
     channels = explanation.channels
     left = tuple(one for one in channels if one.topic != DRAINED or (names and one.name not in names))
     return explanation if len(left) == len(channels) else explanation.replace(channels=left)
+
+
+def reopened(explanation: Explanation) -> Explanation:
+    """The explanation where any channel may show something again, for those who ask what else could have come."""
+    if not any(one.done for one in explanation.channels):
+        return explanation
+    channels = (Channel(one.name, one.topic, one.last, one.owed, one.foretold) for one in explanation.channels)
+    return explanation.replace(channels=tuple(channels))
 
 
 def take(

@@ -88,6 +88,23 @@ class _Way:
     withheld: bool = field(kw_only=True)
 
 
+@define(eq=False, slots=True)
+class _Resting:
+    """A channel of which nothing new is known up to some moment, whatever the state is.
+
+    Attributes:
+        since, until: from which position on, and up to which.
+        delivery: how its messages travel, where that matters.
+        ways: whether it may pass over what it owes, and show again what it has shown.
+    """
+
+    channel: Channel
+    since: int
+    until: int
+    delivery: Delivery | None
+    ways: tuple[bool, bool]
+
+
 class Lookahead:
     """What the events of a window say of those before them.
 
@@ -138,6 +155,7 @@ class Lookahead:
         self._led: dict[Hashable, bool] = {}
         self._known: dict[tuple[int, int, int, int], _Stretch] = {}
         self._stretches: dict[int, tuple[int, int, int, _Stretch]] = {}
+        self._resting: dict[int, _Resting] = {}
         self._rules = {} if rules is None else rules
         self._irregular: dict[int, list[int]] = {}
         self._at_cut, self._found_cut = -1, horizon
@@ -256,7 +274,7 @@ class Lookahead:
         if len(known) > 1 and len(set(known)) < len(known):
             return explanation  # which of the channels that share a name a message is about, nobody knows beforehand
         foretelling = self._with_messages_foretold(explanation)
-        return foretelling and self._with_channels_narrowed(foretelling)
+        return foretelling and self._with_channels_narrowed(foretelling, rests=foretelling is explanation)
 
     def _with_messages_foretold(self, explanation: Explanation) -> Explanation | None:
         """The explanation without what its channels are bound to show next; None where that is contradictory."""
@@ -265,6 +283,8 @@ class Lookahead:
         bound = False
         for at in range(len(explanation.channels)):
             while (channel := explanation.channels[at]).owed and channel.name > GONE:
+                if self._rests(channel, explanation.assumed):
+                    break
                 uncertain = self._stretch(channel).uncertain
                 if channel in uncertain:
                     break
@@ -300,12 +320,19 @@ class Lookahead:
         certain = bisect.bisect_left(stretch.positions, until)
         return tuple(zip(stretch.due[:certain], stretch.positions[:certain], strict=True))
 
-    def _with_channels_narrowed(self, explanation: Explanation) -> Explanation | None:
-        """The explanation with each channel narrowed; None where one cannot show what it is known to show."""
+    def _with_channels_narrowed(self, explanation: Explanation, *, rests: bool) -> Explanation | None:
+        """The explanation with each channel narrowed; None where one cannot show what it is known to show.
+
+        Args:
+            rests: whether no message of any of them is foretold.
+        """
         channels, assumed = explanation.channels, explanation.assumed
         narrow: list[Channel] = []
         for channel in channels:
-            found = self._narrowed(explanation, channel) if channel.name > GONE else (channel, None, False)
+            if channel.name <= GONE or channel.done or self._rests(channel, explanation.assumed):
+                narrow.append(channel)
+                continue
+            found = self._narrowed(explanation, channel)
             if found is None:
                 return None
             left, assumption, _ = found
@@ -313,10 +340,30 @@ class Lookahead:
                 assumed = meet(assumed, (assumption,))
                 if not assumed or self.withholds(assumed):
                     return None
+            elif rests and left is channel:
+                self._let_rest(channel, explanation.assumed)
             narrow.append(left)
         if all(map(operator.is_, narrow, channels)):
             return explanation
         return explanation.replace(channels=tuple(narrow), assumed=assumed)
+
+    def _rests(self, channel: Channel, assumed: int) -> bool:
+        """Whether nothing new is known of a channel since it was last narrowed."""
+        known = self._resting.get(channel.name)
+        if known is None or known.channel is not channel or not known.since <= self.at <= known.until:
+            return False
+        return known.delivery is None or self._ways(assumed, known.delivery) == known.ways
+
+    def _let_rest(self, channel: Channel, assumed: int) -> None:
+        """Note that nothing new is known of a channel for the time being, unless it is the state that tells."""
+        stretch, delivery, ways = self._stretch(channel), None, (False, False)
+        if not stretch.nothing:
+            delivery = self.spec.delivery(channel.topic)
+            ways = self._ways(assumed, delivery)
+            led = stretch.led.get((channel, *ways))
+            if led is None or led[1] is not None:
+                return
+        self._resting[channel.name] = _Resting(channel, *self._stretches[channel.name][:2], delivery, ways)
 
     def state(self, explanation: Explanation) -> State:
         """The state, or the one that stands for all those that nobody can tell from it any more.
@@ -331,6 +378,8 @@ class Lookahead:
         return explanation.state
 
     def _is_over(self, explanation: Explanation, channel: Channel) -> bool:
+        if channel.done:
+            return True
         if not self._stretch(channel).over:
             return False
         found = self._narrowed(explanation, channel)
@@ -427,11 +476,12 @@ class Lookahead:
         )
 
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
-        stretch = self._stretch(channel)
+        stretch, name = self._stretch(channel), channel.name
         if stretch.nothing:
             # What is owed to a stream that ends is never shown, and nobody minds.
-            silent = stretch.over and channel.owed
-            return channel.owing() if silent else channel, None, stretch.over
+            silent = stretch.over and not channel.done
+            left = Channel(name, channel.topic, channel.last, (), channel.foretold, done=True) if silent else channel
+            return left, None, stretch.over
         delivery = self.spec.delivery(channel.topic)
         skips, repeats = self._ways(explanation.assumed, delivery)
         key = channel, skips, repeats

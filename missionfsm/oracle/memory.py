@@ -26,6 +26,9 @@ EACH_NAME = 24
 NAME = 200
 """What a name takes that is remembered by itself."""
 
+PLACE = 8
+"""What a message that is owed takes once more in another channel, or in what a channel becomes."""
+
 TEXT = 4
 """How many bytes one byte of a text takes that is remembered with what it means."""
 
@@ -51,3 +54,11 @@ def explanation_bytes(explanation: Explanation) -> int:
     owed = sum([len(channel.owed) for channel in explanation.channels])
     parts = 1 + owed + len(explanation.calls) + len(explanation.lost)
     return ENTRY * parts + EACH_NAME * (len(explanation.names) + len(explanation.gone))
+
+
+def bytes_besides(explanation: Explanation, before: Explanation) -> int:
+    """What an explanation takes besides what it shares with one before it, of which it has become."""
+    channels, calls = set(map(id, before.channels)), set(map(id, before.calls))
+    others = [len(one.owed) for one in explanation.channels if id(one) not in channels]
+    parts = 1 + 2 * len(others) + sum(id(one) not in calls for one in explanation.calls) + len(explanation.lost)
+    return ENTRY * parts + PLACE * sum(others) + EACH_NAME * (len(explanation.names) + len(explanation.gone))

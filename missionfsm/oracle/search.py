@@ -22,7 +22,7 @@ from missionfsm.oracle.alignment import Message
 from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
 from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead
-from missionfsm.oracle.memory import ENTRY, MEMORY, explanation_bytes
+from missionfsm.oracle.memory import ENTRY, MEMORY, bytes_besides
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight
 from missionfsm.oracle.symbols import Symbol
@@ -44,6 +44,9 @@ USUAL, USUAL_EACH = 5_000, 50
 
 FURTHER = 64
 """How many events behind the one where that leads nowhere are looked at under all readings."""
+
+NO_FURTHER = 300
+"""How many explanations are looked at without coming any further, where more events will come that tell more."""
 
 PUT_OFF = 64
 """How many explanations under unusual readings are put off at once."""
@@ -178,7 +181,8 @@ class Search:
                 if self._go_on(horizon, usual):
                     return True
             except ExhaustedError:
-                pass
+                if not self.whole:
+                    raise  # what comes later tells more than other readings do
             usual -= self.successors.spent
             required, self._required = self._required, 0
             try:
@@ -281,19 +285,22 @@ class Search:
             self.layers[-1].depends |= failed.depends
 
     def _explain(self) -> bool:
-        layers = self.layers
+        layers, advanced = self.layers, self.successors.spent
         while len(layers) <= self._horizon:
             if not layers:
                 if self._ahead.stopped and not self._ahead.last:  # what was not imagined may explain them
                     raise ExhaustedError
                 return False
             position = len(layers) - 1
+            if position > self._stuck:
+                self._stuck, advanced = position, self.successors.spent
+            elif not self.whole and self.successors.spent - advanced > NO_FURTHER:
+                raise ExhaustedError
             self._ahead.at = position
             found = self._next(layers[-1], position)
             if found:
                 self._enter(found)
             else:
-                self._stuck = max(self._stuck, position)
                 self._leave()
         return True
 
@@ -311,7 +318,7 @@ class Search:
                 for one in here.more:
                     narrow = self._narrowed_behind(one.explanation, position)
                     if narrow and not self._outdone(tried, narrow):
-                        self._remember(narrow)
+                        self._remember(narrow, here.explanations[0])
                         found.append(one if narrow is one.explanation else Successor(narrow, one.rules))
                         successors.limit = min(successors.budget, begun + here.effort)
                     if len(found) >= self.width:
@@ -392,9 +399,9 @@ class Search:
         self._entering.append(entry)
         return False
 
-    def _remember(self, explanation: Explanation) -> None:
+    def _remember(self, explanation: Explanation, before: Explanation) -> None:
         """Count an explanation that is going to be remembered. Raises ExhaustedError when it is too much."""
-        self._bytes += explanation_bytes(explanation)
+        self._bytes += bytes_besides(explanation, before)
         if self._bytes > self._memory:
             self.successors.spent = self.successors.budget + 1
             raise ExhaustedError

@@ -542,15 +542,18 @@ def _without_fussier(ready: tuple[Ready, ...], assumed: int) -> tuple[Ready, ...
     return tuple(one for _, one in sorted(kept, key=operator.itemgetter(0)))
 
 
-CALL_WEIGHT, NAMES_A_UNIT = 4, 64
-"""A call in flight weighs as much as so many names of a message that is owed; so many of those weigh as much as an
-explanation itself."""
+CALL_WEIGHT, A_UNIT = 4, 64
+"""A call in flight weighs as much as so many messages that are owed; so many of those weigh as much as an explanation
+itself. Where a channel owes names that nobody has seen, each of its messages weighs as much as it has names: these are
+numbered anew with each step."""
 
 
 def weight(explanation: Explanation) -> int:
-    """What an explanation costs: one, and more where it owes many messages with many names."""
-    owed = sum([len(channel.owed) for channel in explanation.channels])
-    return 1 + (len(explanation.names) * owed + CALL_WEIGHT * len(explanation.calls)) // NAMES_A_UNIT
+    """What an explanation costs: one, and more where it owes many messages."""
+    parts, each = CALL_WEIGHT * len(explanation.calls), len(explanation.names)
+    for channel in explanation.channels:
+        parts += len(channel.owed) * (each if channel.lowest < GONE else 1)
+    return 1 + parts // A_UNIT
 
 
 def place_with_lost(explanation: Explanation) -> Place:

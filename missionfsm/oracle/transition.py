@@ -341,7 +341,7 @@ class TransitionFunction:
         here, ahead = successor.explanation, self.successors.ahead
         assert ahead is not None, "only who looks ahead knows what comes"  # noqa: S101
         channels = tuple(
-            Channel(one.name, one.topic, one.last, one.owed, one.foretold - 1) if one.name == name else one
+            Channel(one.name, one.topic, one.last, one.owed, one.foretold - 1, one.done) if one.name == name else one
             for one in here.channels
         )
         return Successor(here.replace(channels=channels), successor.rules + ahead.exercised)

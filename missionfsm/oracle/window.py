@@ -10,7 +10,7 @@ import itertools
 
 from missionfsm.kernel.history import Called, Event, Returned
 from missionfsm.oracle.belief import Belief
-from missionfsm.oracle.explanation import Explanation, with_lost
+from missionfsm.oracle.explanation import Explanation, reopened, with_lost
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import Symbol
@@ -107,5 +107,5 @@ class Window:
             if layer.unfinished:
                 for one in layer.explanations:
                     belief.unfollowed |= one.assumed
-        found = tuple(Successor(one) for one in layers[-1].explanations)
+        found = tuple(Successor(reopened(one)) for one in layers[-1].explanations)
         belief.leap(self._lookout, found, [layer.rules for layer in layers[1:]])

@@ -96,7 +96,7 @@ def _concluded(
         waited = 0 if flushed else here.waited
         emits = (
             *(_all_waiting(here) if flushed else ()),
-            *(said for one in now for said in _said(here, one.status, one.about, offered=one.offered)),
+            *_sent(here, now),
             *((_offer(here, mission),) if after.running and not waiting else ()),
         )
         names = (*(() if flushed else here.waits), *_names_in(later), *runs)
@@ -111,6 +111,10 @@ def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due,
         assumes = (*(one.when["a"] for one in now[-1:]), *(one.when["b"] for one in later[:1]))
         if len({one.ambiguity for one in assumes}) == len(assumes):
             yield now, later, assumes
+
+
+def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
+    return (said for one in due for said in _said(here, one.status, one.about, offered=one.offered))
 
 
 def _names_in(due: tuple[Due, ...]) -> Iterator[int]:

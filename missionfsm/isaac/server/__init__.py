@@ -2,6 +2,6 @@
 
 It imports the kernel, `missionfsm.isaac.wire` and `missionfsm.isaac.shared`; `plans` reads mission files with
 `missionfsm.isaac.runtime`. Begin with `rules`; what happens is in `lifecycle`, `connections`,
-`dispatch` and `time`, `spec` puts the specification together, and `system` adds its JSON, its alphabet, its mutations
-and its pictures.
+`reports`, `dispatch` and `time`, `spec` puts the specification together, and `system` adds its JSON, its alphabet, its
+mutations and its pictures.
 """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from missionfsm.isaac.server.connections import STATUS_CHANNEL
 from missionfsm.isaac.server.inputs import (
     BAD,
     DEFAULT_START,
@@ -17,6 +16,7 @@ from missionfsm.isaac.server.inputs import (
     Statuses,
     Submission,
 )
+from missionfsm.isaac.server.reports import STATUS_CHANNEL
 from missionfsm.isaac.server.scripts import PAUSE, A, B, Script
 from missionfsm.isaac.server.state import ENDED, FAILURES, PASS_PERIOD, UNDER_WAY, Link, Mission, Server, Status
 from missionfsm.isaac.shared.drives import Passes

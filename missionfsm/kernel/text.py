@@ -22,12 +22,15 @@ def printable(text: str) -> str:
     return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
+def shortened(text: str, most: int) -> str:
+    """A text of at most about so many characters: of a longer one the beginning and the end."""
+    half = most // 2
+    return text if len(text) <= most else f"{text[:half]} … {text[-half:]}"
+
+
 def clipped(text: str) -> str:
     """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
-    if len(text) > MAX_CHARACTERS:
-        half = MAX_CHARACTERS // 2
-        text = f"{text[:half]} … {text[-half:]}"
-    return printable(text)
+    return printable(shortened(text, MAX_CHARACTERS))
 
 
 def printable_lines(text: str) -> str:

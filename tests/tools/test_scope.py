@@ -83,6 +83,12 @@ def test_what_keeps_to_the_text_is_not_flagged() -> None:
     assert (judged(), judged(*alike)) == ((), ())
 
 
+def test_where_no_reading_is_left_none_departs() -> None:
+    """A question that was answered in every way that it has been read is a violation, no departure."""
+    left = {one.id: () for one in DOOR.ambiguities}
+    assert flagged(DOOR, left, {}) == ()
+
+
 def test_a_departure_is_flagged_with_its_event() -> None:
     """A reading that departs from the text is named with what it says and the event that left no other."""
     assert judged(("open", OK)) == (

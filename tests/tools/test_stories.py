@@ -172,6 +172,17 @@ def test_an_answer_that_was_excused_before_is_suspected() -> None:
     ]
 
 
+def test_what_comes_again_and_again_is_one_line() -> None:
+    """A message that comes five times is told once, with how often; a long one is cut in its middle."""
+    said = {"stream": 1, "message": {"missionStates": {"missions": []}}}
+    told = story(MISSION, (HEAD, {"settled": True}, said, said, said, {"settled": True})).splitlines()
+    assert [line.partition(". ")[2] for line in told] == ["(settled)", f"{told[1].partition('. ')[2]}", "(settled)"]
+    assert told[1].endswith(", 3 times")
+    long = {"call": 1, "method": "CreateMission", "params": {"mission": {"baseMission": {"x" * 900: 1}}}}
+    (line,) = story(MISSION, (HEAD, long)).splitlines()
+    assert len(line) < 350
+
+
 def test_what_had_no_effect_is_told() -> None:
     """A codelet that never runs the mission that arrives is right but for that: the line had no effect."""
     robot = system("isaac.robot")
@@ -240,10 +251,10 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     assert verdict.violation is not None
     assert verdict.violation.notes == ()
     says = [side.says.partition(": ") for side in verdict.violation.sides]
-    assert [letter for letter, _, _ in says] == ["not a", "not b", "not c"]
-    assert ["showed []" in event for _, _, event in says] == [False, True, False]
+    assert [letter for letter, _, _ in says] == ["not a, c", "not b"]
+    assert ["showed []" in event for _, _, event in says] == [False, True]
     page = report([Judged(verdict)], system)
-    # Those that look alike but for the names in them are one, and what all begin with is folded away.
+    # What both begin with is folded away.
     assert page.count('<div class="side">') == 2
     assert (page.count("2 lines that both begin with"), page.count("Here the conversations part:")) == (1, 1)
 

@@ -17,8 +17,7 @@ def describe(value: object) -> str:
         shown = _missions(value.listed(value.turns)) if value.turns else "[no mission]"
         return shown + (", halted" if value.halted else "")
     if isinstance(value, Listing):
-        active = "none active" if value.active is None else f"{value.active} active"
-        return f"{_missions(value.missions)}, {active}"
+        return f"{_missions(value.missions)}, current_mission_index {-1 if value.active is None else value.active}"
     if isinstance(value, Seen):
         shown = ", ".join(map(_message, value.states.missions))
         return f"[{shown}], current_mission_index {value.states.current_mission_index}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 
 from attrs import evolve
 
@@ -52,6 +52,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import Rule, promise
 from missionfsm.kernel.step import Match, Mismatch
+from missionfsm.kernel.text import counted
 from missionfsm.kernel.values import value
 
 TOPIC = "mission status"
@@ -229,11 +230,15 @@ def _about(content: Seen) -> Iterator[Assumption]:
         yield AM_58_SENT["messages"]["b"]
 
 
+def _so_many(missions: Sequence[object]) -> str:
+    return f"{counted(len(missions), 'mission')} {'is' if len(missions) == 1 else 'are'} listed"
+
+
 def _placeholder(view: Listing, content: Seen) -> Assumed:
     """AM-35, AM-36: an empty list may be shown as one mission in STATE_DEFAULT without an id."""
     only = content.states.missions[0]
     if len(content.states.missions) > 1 or content.named[0] or only.state != State.STATE_DEFAULT or only.goals:
-        raise _WrongError(ALL_LISTED.id, f"{len(content.states.missions)} missions are listed; the robot has none")
+        raise _WrongError(ALL_LISTED.id, f"{_so_many(content.states.missions)}; the robot has none")
     index = content.states.current_mission_index
     if index not in (-1, 0):
         raise _WrongError(CURRENT.id, f"current_mission_index is {index}, expected -1 or 0")
@@ -247,7 +252,7 @@ def _placeholder(view: Listing, content: Seen) -> Assumed:
 def _listed(view: Listing, content: Seen) -> Assumed:
     shown = content.states.missions
     if len(shown) != len(view.missions):
-        raise _WrongError(ALL_LISTED.id, f"{len(shown)} missions are listed; the robot has {len(view.missions)}")
+        raise _WrongError(ALL_LISTED.id, f"{_so_many(shown)}; the robot has {len(view.missions)}")
     if not all(content.named):
         raise _WrongError(ALL_LISTED.id, f"mission {content.named.index(False)} has no id")
     assumes: list[Assumption] = []

@@ -55,7 +55,7 @@ def _link(link: Link) -> str:
 
 def _submission(asked: Submission) -> str:
     if asked.defects:
-        return f"submit(a mission of which {'; '.join(asked.defects)})"
+        return f"submit(a mission: {'; '.join(asked.defects)})"
     parts = [f"robot {asked.robot}", f"channel {asked.channel}"]
     if asked.upstream:
         parts.append(f"{asked.upstream} upstream")

@@ -198,10 +198,15 @@ def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
 
 
 def _strangers(nearest: Nearest, event: Received) -> list[str]:
-    """Names in a message that no call was answered with, and the calls that were answered last."""
+    """Names in a message that no call was answered with, and the calls that were answered last.
+
+    Names of a kind that no call was answered with come from elsewhere, those of missions in lines for example.
+    """
     belief = nearest.belief
     answered = {name for call in nearest.about.recent for name in call.names}
-    unknown = [name for name in event.names if belief.number(name) < 0 and name not in answered]
+    kinds = {name[0] for name in answered if isinstance(name, tuple)}
+    foreign = [name for name in event.names if isinstance(name, tuple) and name[0] not in kinds]
+    unknown = [name for name in event.names if belief.number(name) < 0 and name not in {*answered, *foreign}]
     if not unknown or not nearest.about.recent:
         return []
     calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-MAX_CALLS:])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 from collections.abc import Iterable, Iterator
 
@@ -10,10 +11,13 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
 from missionfsm.kernel.system import System
-from missionfsm.kernel.text import printable
+from missionfsm.kernel.text import printable, shortened
 from missionfsm.oracle.transcript import Transcript
 from missionfsm.tools.check.phrases import answer_words, event_words, name_words
 from missionfsm.tools.check.verdict import Violation
+
+MAX_LINE = 300
+"""How many characters of one thing that happened a story has room for."""
 
 MAX_CHARACTERS = 240
 """How many characters of a world a story has room for."""
@@ -24,9 +28,14 @@ def story(system: System, history: tuple[JSON, ...]) -> str:
 
     A world that is not the usual one stands before them.
     """
-    lines = [f"{number:>3}. {line}" for number, line in enumerate(_lines_of(system, history), 1)]
+    folded = (_folded(line, len(list(same))) for line, same in itertools.groupby(_lines_of(system, history)))
+    lines = [f"{number:>3}. {shortened(line, MAX_LINE)}" for number, line in enumerate(folded, 1)]
     unusual = _unusual(system, history[0].get("world") or {}) if history else ""
     return "\n".join([f"  0. in the world {unusual}", *lines] if unusual else lines)
+
+
+def _folded(line: str, times: int) -> str:
+    return line if times == 1 else f"{line}, {times} times"
 
 
 def story_of(system: System, violation: Violation) -> str:

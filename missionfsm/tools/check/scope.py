@@ -126,7 +126,7 @@ class _Way:
 
 def _departing(spec: Spec, left: Mapping[str, tuple[str, ...]]) -> list[Ambiguity]:
     """The ambiguities of which nothing but what departs from the letter of the text is left."""
-    return [one for one in spec.ambiguities if one.flagged and one.flagged.issuperset(left[one.id])]
+    return [one for one in spec.ambiguities if left[one.id] and one.flagged.issuperset(left[one.id])]
 
 
 def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> Flagged:

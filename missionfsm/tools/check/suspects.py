@@ -119,7 +119,8 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
 
     Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
     nothing to be wrong about. Nor is it where something is missing: without what it made nothing would be due. Where it
-    is what is shown, the rules of the only suspect that was refused come first, and those of what had no effect last.
+    is what is shown, the rules of the only suspect that was refused come first. Those of the only thing that may have
+    had no effect come second: what is wrong in what came is nearer.
     `readings` are those that the implementation has to follow.
     """
     history = violation.history
@@ -136,5 +137,6 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
             rules = (*rules_in_words(system.spec, found[0].rules), *rules)
     if len(idle) in range(1, MAX_SUSPECTS + 1):
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
-        rules = (*rules, *rules_in_words(system.spec, idle[-1].rules))
+        own = rules_in_words(system.spec, idle[-1].rules)
+        rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
     return evolve(violation, rules=tuple(dict.fromkeys(rules))[:MAX_RULES], notes=(*violation.notes, *notes))

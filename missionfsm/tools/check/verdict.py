@@ -6,11 +6,11 @@ import enum
 import json
 from collections.abc import Iterator, Mapping
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
-from missionfsm.kernel.text import counted, printable
+from missionfsm.kernel.text import counted, printable, shortened
 from missionfsm.tools.check.basis import Flagged, MatrixCoverage, Untested, readings_line
 from missionfsm.tools.check.experiment import Experiment
 
@@ -30,6 +30,12 @@ class Outcome(enum.Enum):
     CONFORMS = "conforms"
     VIOLATES = "violates"
     INCONCLUSIVE = "inconclusive"
+
+
+MAX_LINE = 300
+"""How many characters of what came, and of what could have come, a person is shown; all of it is in the JSON."""
+MAX_SHOWN = 5
+"""How much of what could have come a person is shown."""
 
 
 @frozen
@@ -55,7 +61,7 @@ class Allowed:
     def __str__(self) -> str:
         why = "; ".join(map(str, self.rules))
         under = f" (under {', '.join(self.assumes)})" if self.assumes else ""
-        return f"{self.what}{under}" + (f": {why}" if why else "")
+        return f"{shortened(self.what, MAX_LINE)}{under}" + (f": {why}" if why else "")
 
 
 @frozen
@@ -115,17 +121,27 @@ class Violation:
     @property
     def explanation(self) -> str:
         """The violation in a few lines."""
-        lines = [f"{self.where}{self.observed}", *([f"  sent: {self.sent}"] if self.sent else [])]
-        if self.expected:
-            lines.append("  allowed here:")
-            lines += [f"    - {one}" for one in self.expected]
-        else:
-            lines.append("  nothing was allowed here")
+        seen = f"{self.where}{shortened(self.observed, MAX_LINE)}"
+        lines = [seen, *([f"  sent: {self.sent}"] if self.sent else []), *self._allowed]
         lines += [f"  {note}" for note in self.notes]
         if self.against:
             lines.append("  against:")
             lines += dict.fromkeys(f"    - {one}" for one in self.against)
         return "\n".join(lines)
+
+    @property
+    def _allowed(self) -> list[str]:
+        """What could have come; rules that all of it would have come by stand before it."""
+        if not self.expected:
+            return ["  nothing was allowed here"]
+        common = self.expected[0].rules if len({one.rules for one in self.expected}) == 1 < len(self.expected) else ()
+        shown = [evolve(one, rules=()) if common else one for one in self.expected[:MAX_SHOWN]]
+        more = len(self.expected) - len(shown)
+        return [
+            f"  allowed here{', by' if common else ''}: {'; '.join(map(str, common))}".rstrip(),
+            *(f"    - {one}" for one in shown),
+            *([f"    - and {more} more"] if more else []),
+        ]
 
     @property
     def against(self) -> tuple[CitedRule, ...]:

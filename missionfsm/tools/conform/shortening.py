@@ -132,18 +132,21 @@ def beside_others(run: Run, violation: Violation, *, asks_again: bool) -> Violat
 
 
 def _shorten_those(run: Run, keys: Iterable[tuple[str, str]]) -> None:
-    """Make the conversations short that rule out these readings."""
+    """Make the conversations short that rule out these readings; one that rules out several stays one."""
     ledger = run.ledger
-    for name, letter in keys:
+    by_conversation: dict[Conversation, list[tuple[str, str]]] = {}
+    for key in keys:
+        by_conversation.setdefault(ledger.ruled_out_by[key], []).append(key)
+    for conversation, those in by_conversation.items():
         if run.enough():
             return
-        conversation = ledger.ruled_out_by[name, letter]
 
-        def shows(tried: Conversation, name: str = name, letter: str = letter) -> bool:
-            return tried.right and letter not in tried.judge.belief.readings.get(name, (letter,))
+        def shows(tried: Conversation, those: list[tuple[str, str]] = those) -> bool:
+            left = tried.judge.belief.readings
+            return tried.right and all(letter not in left.get(name, (letter,)) for name, letter in those)
 
-        def keep(shorter: Conversation, key: tuple[str, str] = (name, letter)) -> None:
-            ledger.ruled_out_by[key] = shorter
+        def keep(shorter: Conversation, those: list[tuple[str, str]] = those) -> None:
+            ledger.ruled_out_by.update(dict.fromkeys(those, shorter))
 
         try:
             shrink(conversation, run.replay, run.simpler, run.guide.worlds[0], shows, keep=keep, enough=run.enough)

@@ -22,6 +22,7 @@ from attrs import evolve, frozen
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.historyfile import is_plain_file, lines, open_history
 from missionfsm.app.cores import cores
+from missionfsm.app.garbage import seldom
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.oracle.transcript import head
@@ -214,6 +215,7 @@ def judge_files(
 
 def _undisturbed() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
+    seldom()
 
 
 def _result(path: str, future: Future[Judged]) -> Judged:

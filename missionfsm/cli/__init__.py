@@ -16,6 +16,7 @@ from typing import Annotated
 import typer
 
 from missionfsm.adapters.outputs import silence_stdout
+from missionfsm.app.garbage import seldom
 from missionfsm.cli import adapter, check, conform, diagram, dispatch, explore, listing, proxy, robot, serve, teeth
 from missionfsm.cli.common import BAD_INPUT, DONE, complain, say
 from missionfsm.cli.defaults import defaults
@@ -78,6 +79,7 @@ def main() -> None:
     """Run the command line."""
     if isinstance(sys.stdout, io.TextIOWrapper):  # it may have no daggers, and no encoding has all names of files
         sys.stdout.reconfigure(errors="replace")
+    seldom()
     try:
         with ended_like_ctrl_c():
             app(default_map=defaults(typer.main.get_group(app), Path.cwd()))

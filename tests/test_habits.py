@@ -104,6 +104,13 @@ def test_every_command_has_examples_whose_options_exist() -> None:
             assert {word for word in shell if word.startswith("-")} <= known, one
 
 
+def test_the_example_of_teeth_breaks_something(command_line: CommandLine) -> None:
+    """What the example picks is there, and noticed."""
+    [example] = EXAMPLES["teeth"]
+    ended = command_line(*shlex.split(example)[1:])
+    assert (ended.status, re.match(r"isaac\.robot: [1-9]\d* of", ended.out) is not None) == (0, True), ended.err
+
+
 def test_names_of_systems_are_completed() -> None:
     """A shell is told the systems whose names begin as what was typed."""
     assert completed("isaac.") == ["isaac.server", "isaac.robot"]

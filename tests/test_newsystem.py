@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -45,9 +46,14 @@ def test_what_is_written_works_at_once(
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: desk-lamp\nVersion: 0\n")
     (about / "entry_points.txt").write_text(f"[missionfsm.systems]\n{name} = {place}\n")
     monkeypatch.syspath_prepend(str(root))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(root), os.environ.get("PYTHONPATH", ""))))
     assert command_line("explore", "desk_lamp").status == 0
     assert "The light is off, and only light can be dimmed." in command_line("rules", "desk_lamp").out
     assert "desk_lamp" in command_line("readings", "desk_lamp", "--json").out
+    assert command_line("conform", "desk_lamp", "--examples", "10").status == 0
+    assert "5 of 5 mutants killed" in command_line("teeth", "desk_lamp").out
+    assert command_line("diagram", "desk_lamp", "-o", "pictures").status == 0
+    assert "timeIsUp" in (tmp_path / "pictures" / "desk_lamp" / "states.mmd").read_text()
     history = root / "one.jsonl"
     history.write_text(
         '{"missionfsm": 1, "system": "desk_lamp", "drives": ["timeIsUp"]}\n'

@@ -1,7 +1,7 @@
 """The command line: ``missionfsm conform``, ``check``, ``explore``, ``rules``, ``readings``, ``adapter`` and more.
 
-It may import everything; nothing imports it. Begin with the file that is called like the
-command; `common` and `printing` are what all of them share.
+It may import everything; nothing imports it. Begin with the file that is called like the command; `common` and
+`printing` are what all of them share.
 
 Exit status: 0 conforms (or done), 1 violates or inconclusive, 2 bad usage or bad input, 3 the adapter failed.
 """

@@ -30,7 +30,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "smoke": ("missionfsm smoke bear.mission -- python3 my_adapter.py",),
     "explore": ("missionfsm explore bear.mission --html explorer.html", "missionfsm explore bear.mission --hazards"),
-    "teeth": ("missionfsm teeth isaac.robot --only lifecycle",),
+    "teeth": ("missionfsm teeth isaac.robot --only a-new-mission-preempts",),
     "rules": ("missionfsm rules bear.mission",),
     "readings": ("missionfsm readings bear.mission",),
     "schema": ("missionfsm schema adapter --system bear.mission > adapter.schema.json",),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from commandline import CommandLine
 
-from missionfsm.systems import names, system
+from missionfsm.systems import names, system, title
 
 
 @pytest.fixture
@@ -48,3 +48,9 @@ def test_one_that_cannot_be_loaded_is_bad_input(command_line: CommandLine, name:
     """What is wrong with a package of somebody else is one line and exit status 2."""
     ended = command_line("rules", name)
     assert (ended.status, ended.err.startswith(f"missionfsm: {says}"), ended.err.count("\n")) == (2, True, 1)
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_registry_calls_a_system_what_it_calls_itself(name: str) -> None:
+    """Titles stand in the registry too, so that the help loads no system."""
+    assert title(name) == system(name).spec.title

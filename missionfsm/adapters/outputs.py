@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import secrets
 import stat
 import sys
 from collections.abc import Iterator
@@ -122,7 +121,7 @@ def _found(path: str) -> os.stat_result | None:
 
 def _replace(target: Path, data: bytes, found: os.stat_result | None) -> None:
     """Write a file beside it, which then takes its place and its mode."""
-    part = target.with_name(f".{secrets.token_hex(8)}.part")
+    part = target.with_name(f".{os.urandom(8).hex()}.part")
     try:
         with part.open("xb") as file:
             if found is not None:

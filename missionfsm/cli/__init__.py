@@ -11,7 +11,7 @@ from __future__ import annotations
 import io
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
@@ -82,7 +82,8 @@ def main() -> None:
     seldom()
     try:
         with ended_like_ctrl_c():
-            app(default_map=defaults(typer.main.get_group(app), Path.cwd()))
+            program = cast(Program, typer.main.get_command(app))  # as `app()` makes it anew: once is enough
+            program(default_map=defaults(program, Path.cwd()))
     except KeyboardInterrupt:
         sys.exit(130)
     except UnreadableError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-import secrets
+import os
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -222,7 +222,7 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
         try:
             with Bar("conversations", reached.conversations(plan)) as bar:
                 asked: dict[str, Any] = {
-                    "seed": secrets.randbits(32) if seed is None else seed,
+                    "seed": int.from_bytes(os.urandom(4), "big") if seed is None else seed,
                     "readings": readings,
                     "no_flagged": no_flagged,
                     "expected": known,

@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from missionfsm.kernel.codec import UnreadableError
-from missionfsm.systems import names, system
+from missionfsm.systems import names, title
 
 EXAMPLES: dict[str, tuple[str, ...]] = {
     "missionfsm": (
@@ -76,7 +76,7 @@ def _write_examples(formatter: Any, examples: tuple[str, ...]) -> None:  # noqa:
 def _title(name: str) -> str:
     """What a system is; one of another package may be broken, and help is needed all the same."""
     try:
-        return system(name).spec.title
+        return title(name)
     except UnreadableError as error:
         return str(error)
 

@@ -37,7 +37,13 @@ def test_what_is_written_works_at_once(
         check=False,
         timeout=120,
     )
-    assert (ran.returncode, "3 passed" in ran.stdout) == (0, True), ran.stdout
+    assert (ran.returncode, "4 passed" in ran.stdout) == (0, True), ran.stdout
+    page = (root / "specification.md").read_text()
+    assert "| FAILED_PRECONDITION | `there-is-no-light` | The light is off, and only light can be dimmed. |" in page
+    assert (
+        "| (promise) | `the-light-is-shown` | A stream shows the light at once, then every change. |  | L-4 |" in page
+    )
+    assert "**LA-01** What does Dim do to a light that is dim?" in page
     [(name, place)] = tomllib.loads((root / "pyproject.toml").read_text())["project"]["entry-points"][
         "missionfsm.systems"
     ].items()

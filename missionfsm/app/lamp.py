@@ -30,7 +30,7 @@ PAGE = Document("Lamp", "The lamp's manual")
 
 # What the page leaves open: the first reading is the one that the reference follows.
 
-DIM = Ambiguity("L-01", "What does Dim do to a light that is dim?", {"a": "it is full again", "b": "nothing"}, "a")
+DIM = Ambiguity("LA-01", "What does Dim do to a light that is dim?", {"a": "it is full again", "b": "nothing"}, "a")
 
 
 @frozen
@@ -60,7 +60,7 @@ def switch(lamp: Lamp, *_: object) -> Iterator[Step]:
 
 
 def dim(lamp: Lamp, *_: object) -> Iterator[Step]:
-    """Full light becomes dim; what becomes of dim light is L-01."""
+    """Full light becomes dim; what becomes of dim light is LA-01."""
     if lamp.light == "on":
         yield Step(Lamp("dim"))
     else:

@@ -10,6 +10,7 @@ from pathlib import Path
 from missionfsm.app import lamp
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.text import brief
+from missionfsm.tools.specpages import regenerate
 
 _PYPROJECT = """\
 [build-system]
@@ -31,15 +32,66 @@ NAME = "NAME.system:SYSTEM"
 include = ["NAME*"]
 """
 _INIT = '"""The system NAME."""\n'
+_SPECIFICATION = """\
+# `NAME`: a lamp with a timer
+
+What the manual says, clause by clause, in our own words, and what the program makes of it: what stands between two
+comments is computed, and `python tests/test_NAME.py` writes it anew.
+
+## What can be asked
+
+<!-- generated: operations -->
+<!-- end -->
+
+## Switch
+
+**L-1** (`Lamp › Switch`) Switch turns the light on, or off if there is light. No rule: it is what the call does.
+
+## Dim
+
+**L-2** (`Lamp › Dim`) Dim changes full light to dim. *Open*: LA-01.
+
+**L-3** (`Lamp › Dim › Errors`) Only light can be dimmed. *Checked by* `Dim/FAILED_PRECONDITION/there-is-no-light`.
+
+<!-- generated: rules Dim -->
+<!-- end -->
+
+## Watch
+
+**L-4** (`Lamp › Watch`) The stream shows the light at once, then every change. *Checked by*
+`Watch/the-light-is-shown`.
+
+<!-- generated: rules Watch -->
+<!-- end -->
+
+## What is open
+
+<!-- generated: readings -->
+<!-- end -->
+
+### LA-01
+
+<!-- generated: entry LA-01 -->
+<!-- end -->
+"""
 _TESTS = '''\
 """The system NAME: it holds together, and the oracle that is made from it tells right from wrong."""
 
 import itertools
+from pathlib import Path
 
 from missionfsm import conform, explore
 from missionfsm.kernel.subject import Exchange
+from missionfsm.tools.specpages import regenerate
 
 from NAME.system import SYSTEM
+
+PAGE = Path(__file__).parent.parent / "specification.md"
+
+
+def test_the_specification_says_what_the_program_does():
+    """The computed parts of the page are as the program has them."""
+    assert PAGE.read_text(encoding="utf-8") == regenerate(PAGE.read_text(encoding="utf-8"), SYSTEM)
 
 
 def test_every_state_is_as_it_should_be():
@@ -70,6 +122,10 @@ class Dark:
 
     def close(self):
         pass
+
+
+if __name__ == "__main__":
+    PAGE.write_text(regenerate(PAGE.read_text(encoding="utf-8"), SYSTEM), encoding="utf-8")
 '''
 
 
@@ -86,13 +142,15 @@ def new_system(name: str, folder: Path) -> tuple[Path, ...]:
         root / "pyproject.toml": _PYPROJECT,
         root / name / "__init__.py": _INIT,
         root / name / "system.py": inspect.getsource(lamp).replace('NAME = "lamp"', f'NAME = "{name}"'),
+        root / "specification.md": regenerate(_SPECIFICATION, lamp.SYSTEM),
         root / "tests" / f"test_{name}.py": _TESTS,
     }
     try:
         root.mkdir()
         for path, text in files.items():
             path.parent.mkdir(exist_ok=True)
-            path.write_text(re.sub(r"\bNAME\b", name, text) if path.name != "system.py" else text, encoding="utf-8")
+            own = text if path.name == "system.py" else re.sub(r"(?<![A-Z])NAME\b", name, text)
+            path.write_text(own, encoding="utf-8")
     except OSError as error:
         raise UnreadableError(f"{error.filename}: {error.strerror}") from None
     return tuple(files)

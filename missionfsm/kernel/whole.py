@@ -19,9 +19,10 @@ def shown_whole(spec: Spec, rule: Rule) -> Spec:
     """The same system, each streaming operation of which opens a stream that shows its states, names and all.
 
     Every step that changes the state, whatever brings it about, owes it to all who listen. The rule promises that: it
-    becomes one of the system, and whoever shows anything else, or nothing, breaks it.
+    becomes one of the system, at the operation that streams, and whoever shows anything else, or nothing, breaks it.
     """
-    rule = rule if rule.id else rule.registered(spec.system)
+    streaming = next((name for name, one in spec.operations.items() if one.streaming), TOPIC)
+    rule = rule if rule.id else rule.registered(spec.system, streaming)
 
     def seen(before: State, step: Step) -> Step:
         if step.names is None and step.after == before:

@@ -14,13 +14,13 @@ HERE = Path(__file__).parent.parent
 BUGS = {
     "fifth-floor": ["Call/INVALID_ARGUMENT/there-is-no-such-floor"],
     "one-more": ["Call/RESOURCE_EXHAUSTED/enough-rides-wait"],
-    "stays": ["rides-are-shown-in-order"],
+    "stays": ["Watch/rides-are-shown-in-order"],
     "name-again": ["Call/a-ride-is-queued"],
-    "newest-first": ["rides-are-shown-in-order", "Cancel/FAILED_PRECONDITION/the-ride-is-under-way"],
-    "cancels-the-first": ["rides-are-shown-in-order"],
-    "quiet": ["rides-are-shown-in-order"],
+    "newest-first": ["Watch/rides-are-shown-in-order", "Cancel/FAILED_PRECONDITION/the-ride-is-under-way"],
+    "cancels-the-first": ["Watch/rides-are-shown-in-order"],
+    "quiet": ["Watch/rides-are-shown-in-order"],
     "now-so-now-so": ["Call/a-ride-is-shared"],
-    "forgets": ["rides-are-shown-in-order"],
+    "forgets": ["Watch/rides-are-shown-in-order"],
 }
 
 

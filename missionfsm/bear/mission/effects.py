@@ -54,6 +54,7 @@ from missionfsm.bear.mission.state import (
     free_goal,
 )
 from missionfsm.bear.mission.unwatched import worlds
+from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.bear.wire.messages import Command, Goal, State
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
@@ -62,10 +63,7 @@ from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
     INTERNAL,
     OK,
-    RESOURCE_EXHAUSTED,
-    UNAUTHENTICATED,
     UNAVAILABLE,
-    UNIMPLEMENTED,
     Operation,
     Rule,
 )
@@ -124,10 +122,6 @@ def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -
     yield Outcome(fault.status, edit, NOBODY, outcome.assumes)
 
 
-UNLISTED_CODES = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
-"""AM-61: codes of the transport and of authentication, which no table lists."""
-
-
 def failing(request: Request, code: str) -> Failure | None:
     """Codes that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
 
@@ -139,7 +133,7 @@ def failing(request: Request, code: str) -> Failure | None:
         # No tester can drive a subscription to fail.
         open_ended = code == DEADLINE_EXCEEDED or request.operation == "SkipGoal"
         return Failure(open_ended=open_ended, drive=None if operation.streaming else "fault")
-    if code in UNLISTED_CODES:
+    if code in UNLISTED:
         return Failure((AM_61["b"],), open_ended=code in (UNAVAILABLE, CANCELLED))
     return None
 

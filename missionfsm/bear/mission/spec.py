@@ -10,7 +10,7 @@ from attrs import evolve
 
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
 from missionfsm.bear.mission.describe import describe
-from missionfsm.bear.mission.effects import UNLISTED_CODES, call_of, failing, outcomes, target
+from missionfsm.bear.mission.effects import call_of, failing, outcomes, target
 from missionfsm.bear.mission.events import Event, apply_event, by_itself, due, unwatched_choices
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.glimpse import MIDDLE
@@ -52,6 +52,7 @@ from missionfsm.bear.mission.stream import (
 )
 from missionfsm.bear.mission.stream import RULES as STATUS_RULES
 from missionfsm.bear.mission.unwatched import UNWATCHED
+from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
@@ -280,7 +281,7 @@ def _answers(_: object, given: object) -> tuple[Match, ...] | Mismatch:
 @functools.cache
 def _delivery(_: object) -> Delivery:
     # A stream may break down (INTERNAL is documented) or be cut off by the transport; it never just ends.
-    ends = {INTERNAL: (), **dict.fromkeys(UNLISTED_CODES, (AM_61["b"],))}
+    ends = {INTERNAL: (), **dict.fromkeys(UNLISTED, (AM_61["b"],))}
     first = tuple(rule.id for rule in OPERATIONS["SubscribeMissionStatus"].promises)
     return Delivery(
         skips=AM_47_SKIP["b"],

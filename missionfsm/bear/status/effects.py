@@ -37,16 +37,12 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import renderings
 from missionfsm.bear.status.views import BLANK, About, Assumed, Promised, Seen, Topic, View, blank, view
+from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.rules import (
-    CANCELLED,
     INTERNAL,
     OK,
-    RESOURCE_EXHAUSTED,
-    UNAUTHENTICATED,
-    UNAVAILABLE,
-    UNIMPLEMENTED,
     Decision,
     Operation,
     decide,
@@ -54,9 +50,6 @@ from missionfsm.kernel.rules import (
 from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import Emission, Opening, Step
 from missionfsm.kernel.terms import Refs
-
-TRANSPORT = (UNAUTHENTICATED, RESOURCE_EXHAUSTED, UNIMPLEMENTED, UNAVAILABLE, CANCELLED)
-
 
 # Calls.
 
@@ -120,7 +113,7 @@ def failing(request: Request, code: str) -> Failure | None:
     """
     if code == INTERNAL:
         return Failure(drive="fault" if request.operation == GET else None)
-    return Failure((AS_34[request.operation]["b"],)) if code in TRANSPORT else None
+    return Failure((AS_34[request.operation]["b"],)) if code in UNLISTED else None
 
 
 def _failed(fleet: Fleet, step: Step) -> Step:

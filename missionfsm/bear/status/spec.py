@@ -8,7 +8,7 @@ from collections.abc import Hashable, Mapping
 from attrs import evolve
 
 from missionfsm.bear.status.describe import describe
-from missionfsm.bear.status.effects import TRANSPORT, failing, outcomes
+from missionfsm.bear.status.effects import failing, outcomes
 from missionfsm.bear.status.events import armed, moved, reported, restarted
 from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
 from missionfsm.bear.status.readings import (
@@ -48,6 +48,7 @@ from missionfsm.bear.status.state import (
 from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, answers, matches
 from missionfsm.bear.status.values import a_stuck_state_is_known, faults, reserved_reasons_are_not_used
 from missionfsm.bear.status.views import Topic, concerns
+from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.kernel import history
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Received
@@ -74,7 +75,7 @@ def _delivery(topic: Topic) -> Delivery:
     ends: dict[str, tuple[Assumption, ...]] = {
         INTERNAL: (),
         OK: (AS_26[call]["b"],),
-        **dict.fromkeys(TRANSPORT, (AS_34[call]["b"],)),
+        **dict.fromkeys(UNLISTED, (AS_34[call]["b"],)),
     }
     if topic.partly:
         ends[PERMISSION_DENIED] = (AS_01[call]["c"],)

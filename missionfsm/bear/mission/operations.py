@@ -261,8 +261,8 @@ OPERATIONS: Mapping[str, Operation] = {
             ),
             _WORKFLOW_IDS,
         ),
-        _operation("AppendMission", _append("AppendMission"), _ONE_ID, _APPENDED),
-        _operation("AppendMissionBatch", _append("AppendMissionBatch"), _ALL_IDS, _APPENDED),
+        _operation("AppendMission", _append("AppendMission"), _APPENDED, _ONE_ID),
+        _operation("AppendMissionBatch", _append("AppendMissionBatch"), _APPENDED, _ALL_IDS),
         _operation(
             "ChargeRobot",
             (

@@ -296,7 +296,7 @@ def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[
     own = [one for one in queued if link.serves and one.robot == link.name]
     if not own:
         return (rules.UNNAMED.id,) if queued else ()
-    return () if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
+    return (rules.SENT.id,) if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
 
 
 def _says(content: LineContent, mission: Mission) -> bool:

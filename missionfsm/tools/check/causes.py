@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Hashable, Iterator
 from typing import Any
 
-from missionfsm.kernel.history import Called, Driven, Received, Settled
+from missionfsm.kernel.history import Called, Driven, Received, Returned, Settled
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Belief
@@ -55,6 +55,16 @@ def latest(belief: Belief) -> tuple[str, ...]:
         rules = [one for one in exercises if one not in known or known[one].code is None]
         if rules and kind is not Received:
             return tuple(rules)
+    return ()
+
+
+def since_last_answer(belief: Belief) -> tuple[str, ...]:
+    """Ids of the rules of what was made happen since the last answer; none where it was nothing."""
+    for symbol, _ in belief.walked:
+        if symbol[0] is Returned:
+            return ()
+        if symbol[0] is Driven:
+            return driven(belief)
     return ()
 
 

@@ -16,7 +16,7 @@ from missionfsm.oracle.symbols import relations_of
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNDRIVEN, UNOWED, Candidate, Circumstances, Problem
 from missionfsm.tools.check.nearest import Nearest
-from missionfsm.tools.check.phrases import described, event_words, name_words, rules_in_words
+from missionfsm.tools.check.phrases import answer_words, described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
 from missionfsm.tools.check.wrongcode import wrong_code
 
@@ -126,12 +126,24 @@ def _wrong_in_it(
     rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
     if any(problem.weight >= SHAPE for problem in _problems(lightest)) and not _malformed(event):
         rules = _alternately(rules, _before(nearest))
+    if _was_right(nearest, candidates):
+        rules = _alternately(causes.since_last_answer(nearest.belief), rules)
     due = [one for one in candidates if one.allowed and one.weight >= CODE]
     rules = _alternately(rules, list(dict.fromkeys(rule for one in due for rule in one.rules)))
     notes = [problem.says for problem in _problems(lightest[:1])]
     if _says_a_name_twice(event):
         notes.append("each thing has a name of its own, and one is given twice")
     return rules or itertools.chain.from_iterable(one.rules for one in lightest), notes
+
+
+def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:
+    """Whether the last answer was to the same question, and what would be right now as well."""
+    last = nearest.about.recent[-1] if nearest.about.recent else None
+    if last is None or last.request != nearest.about.request:
+        return False
+    return answer_words(last.answer, tuple(map(name_words, last.names))) in {
+        one.what for one in candidates if one.allowed
+    }
 
 
 def _says_a_name_twice(event: Returned) -> bool:

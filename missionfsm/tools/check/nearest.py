@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Name, Received, Returned
-from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.readings import Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Mismatch, Step
@@ -136,7 +136,10 @@ class Nearest:
             one.ambiguity.default not in one.letters and one.ambiguity.default in one.ambiguity.possible(here.assumed)
             for one in assumes
         )
-        shown = tuple(dict.fromkeys(map(str, assumes)))
+        together: dict[Ambiguity, int] = {}
+        for one in assumes:
+            together[one.ambiguity] = together.get(one.ambiguity, one.group) & one.kept
+        shown = tuple(str(ambiguity.where(kept)) for ambiguity, kept in together.items())
         return Candidate(
             what=what,
             rules=rules,

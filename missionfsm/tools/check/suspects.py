@@ -119,8 +119,8 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
 
     Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
     nothing to be wrong about. Nor is it where something is missing: without what it made nothing would be due. Where it
-    is what is shown, the rules of the only suspect that was refused come first. Those of the only thing that may have
-    had no effect come second: what is wrong in what came is nearer.
+    is what is shown, the rules of the only suspect that was refused come first. Those of the only one that was OK, and
+    of the only thing that may have had no effect, come second: what is wrong in what came is nearer.
     `readings` are those that the implementation has to follow.
     """
     history = violation.history
@@ -128,13 +128,17 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         return violation
     answered, missing = "return" in history[-1], "settled" in history[-1]
     found = [one for one in suspects(system, history, readings) if not (answered or missing) or one.code != OK]
-    idle = () if answered else without_effect(system, history, readings)
+    # An answer shows what has happened where it is right but for what it says: another code is wrong by itself.
+    shows = not answered or ("result" in history[-1] and any(one.what.startswith(OK) for one in violation.expected))
+    idle = without_effect(system, history, readings) if shows else ()
     rules = violation.rules
     notes: tuple[str, ...] = ()
     if len(found) in range(1, MAX_SUSPECTS + 1):
         notes += tuple(f"without this answer everything is explained: {one.says}" for one in found)
         if len(found) == 1 and not answered:
-            rules = (*rules_in_words(system.spec, found[0].rules), *rules)
+            own = rules_in_words(system.spec, found[0].rules)
+            nearer = 1 if found[0].code == OK else 0
+            rules = (*rules[:nearer], *own, *rules[nearer:])
     if len(idle) in range(1, MAX_SUSPECTS + 1):
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
         own = rules_in_words(system.spec, idle[-1].rules)

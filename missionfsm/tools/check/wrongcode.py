@@ -50,7 +50,7 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
     note += "; the first did before" if held else f"; the first would if it were about {about}" if others else ""
     if is_done:  # what may be done is refused without a reason; or it is refused for another one, with a wrong code
         return [reasons[0].id, *refused[:1], *done], [note]
-    return [*refused, *(rule.id for rule in held[:1])], [note]  # what has to be refused is refused wrongly
+    return refused, [note]  # what has to be refused is refused wrongly
 
 
 def _conditions(rules: Iterable[Rule]) -> str:
@@ -60,6 +60,8 @@ def _conditions(rules: Iterable[Rule]) -> str:
 def _parted(allowed: Sequence[Candidate]) -> tuple[list[str], list[str], bool]:
     """The rules of the refusals that are due and of what may be done instead, and whether that is likelier."""
     due = sorted(allowed, key=_likely)
+    # What would need more to have happened unseen is no reason to accuse anything, where there is what needs less.
+    due = [one for one in due if _likely(one)[:2] == _likely(due[0])[:2]]
     refused = _once_each(rule for one in due if not _succeeds(one) for rule in one.rules)
     done = list(dict.fromkeys(rule for one in due if _succeeds(one) for rule in one.rules))
     return refused, done, not refused or _succeeds(due[0])

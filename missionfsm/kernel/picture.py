@@ -62,8 +62,12 @@ class Sketch:
     parts: tuple[Part, ...] = ()
 
 
-def every_state(spec: Spec) -> Sketch:
-    """A picture in which each state is a node, of a system that has few: what can be asked without saying more is."""
+def every_state(spec: Spec, inputs: tuple[Input, ...] | None = None) -> Sketch:
+    """A picture in which each state is a node, of a system that has few of them.
+
+    Args:
+        inputs: what is asked; every operation with nothing in its params where it is not said.
+    """
     return Sketch(
         "states",
         f"every state of {spec.title}",
@@ -71,7 +75,7 @@ def every_state(spec: Spec) -> Sketch:
         label=lambda _state, asked, _refs: spec.describe(asked),
         within=lambda _state: True,
         shows=spec.describe,
-        inputs=tuple(Input(method, {}) for method in spec.operations),
+        inputs=tuple(Input(method, {}) for method in spec.operations) if inputs is None else inputs,
         drives=tuple({"event": name} for name in spec.drives),
     )
 

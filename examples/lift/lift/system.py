@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lift.codec import CODEC
 from lift.spec import NAME, SPEC
-from missionfsm.kernel.language import JSON, Alphabet, Bounds, Input, ScriptStep, System, pick
+from missionfsm.kernel.language import JSON, Alphabet, Bounds, Input, ScriptStep, System, every_state, pick
 
 
 def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
@@ -29,4 +29,7 @@ def alphabet(_world: JSON, _bounds: Bounds) -> Alphabet:
     )
 
 
-SYSTEM = System(NAME, SPEC, CODEC, alphabet)
+# A picture of all states of a lift that is called to one floor alone, and whose rides are cancelled.
+
+ONE_FLOOR = (Input("Call", {"floor": 1}), Input("Cancel", {"ride": pick("ride")}))
+SYSTEM = System(NAME, SPEC, CODEC, alphabet, sketches=(every_state(SPEC, ONE_FLOOR),))

@@ -101,6 +101,9 @@ def test_a_system_fills_in_the_calls_and_drives_of_its_codec() -> None:
     methods = ("Switch", "Dim", "Watch")
     assert (SYSTEM.codec.methods, SYSTEM.codec.streams, SYSTEM.codec.events) == (methods, ("Watch",), ("timeIsUp",))
     assert evolve(SYSTEM, codec=evolve(SYSTEM.codec, methods=())).codec.methods == ()
+    spec = SYSTEM.spec
+    fewer = evolve(SYSTEM, spec=evolve(spec, operations=[spec.operations["Switch"]], drives=()))
+    assert (fewer.codec.methods, fewer.codec.streams, fewer.codec.events) == (("Switch",), (), ())
 
 
 def test_names_stand_beside_what_is_left_of_a_message() -> None:

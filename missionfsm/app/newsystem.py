@@ -91,7 +91,8 @@ PAGE = Path(__file__).parent.parent / "specification.md"
 
 def test_the_specification_says_what_the_program_does():
     """The computed parts of the page are as the program has them."""
-    assert PAGE.read_text(encoding="utf-8") == regenerate(PAGE.read_text(encoding="utf-8"), SYSTEM)
+    text = PAGE.read_text(encoding="utf-8")
+    assert text == regenerate(text, SYSTEM), "run python tests/test_NAME.py"
 
 
 def test_every_state_is_as_it_should_be():

@@ -38,7 +38,7 @@ class System:
 
     name: str
     spec: Spec
-    codec: Codec = field(factory=Codec)
+    _codec: Codec = field(factory=Codec)
     _alphabet: Callable[[JSON, Bounds], Alphabet] | None = None
     naming: Naming = Naming()
     message_mutations: tuple[MessageMutation, ...] = ()
@@ -50,11 +50,12 @@ class System:
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
     matrix: Matrix | None = None
     minutes_at: int | None = None
+    codec: Codec = field(init=False)  # the one that was given, with the calls and drives of the spec
 
     def __attrs_post_init__(self) -> None:
         operations = self.spec.operations
         streams = tuple(name for name, one in operations.items() if one.streaming)
-        object.__setattr__(self, "codec", self.codec.completed(tuple(operations), streams, tuple(self.spec.drives)))
+        object.__setattr__(self, "codec", self._codec.completed(tuple(operations), streams, tuple(self.spec.drives)))
 
     def alphabet(self, world: JSON, bounds: Bounds) -> Alphabet:
         """What is worth trying in a world, within bounds."""

@@ -48,6 +48,21 @@ def test_a_mutant_that_follows_another_reading_is_allowed() -> None:
     )
 
 
+@pytest.mark.long
+def test_a_mutant_that_no_call_can_meet_is_allowed() -> None:
+    """A rule that is due only where the next thing happens at once can be broken by nobody; one at rest can be."""
+    only = "ClearMissionStatus/FAILED_PRECONDITION/a-mission-is-about-to-start"
+    found = teeth(system("bear.mission"), only=only)
+    assert found.survived == ()
+    assert [one.mutant.split("/")[-1].partition(" ")[2] for one in found.allowed] == [
+        "is dropped",
+        "is answered INVALID_ARGUMENT",
+    ]
+    assert all("that do not last" in one.because for one in found.allowed)
+    waits = "ClearMissionStatus/FAILED_PRECONDITION/a-mission-waits-in-a-halted-queue is answered INVALID_ARGUMENT"
+    assert [one.because for one in teeth(system("bear.mission"), only=waits).results] == [""]
+
+
 @pytest.mark.parametrize("name", names())
 def test_every_mutant_can_be_made(name: str) -> None:
     """Mutants are found for every system, under names of their own."""

@@ -122,20 +122,24 @@ def allowed_under(  # noqa: PLR0913 - what an implementation is made of
         reference: the reference under the same readings, from which it may differ by a mutation of a step, and
             in the rules of one operation.
         model: the implementation.
-        rule: the rule that it breaks; nothing is proved where that never comes up.
+        rule: the rule that it breaks; nothing is proved where that never comes up. Where it does so only in states that
+            do not last, because something happens at once, nobody can meet it.
         operation: the operation whose rules differ.
         mutate_message: what it does to its messages.
         worlds: those that it is explored in.
     """
     system = reference.model.system
-    states, came_up = 0, False
+    states, came_up, passing = 0, False, False
     for scope in TIMED if system.spec.abstraction.canonical else SCOPES:
         explorer = _Explorer(system, model, reference, rule, operation, mutate_message, scope)
         states += sum(map(explorer.run, worlds[: scope.worlds]))
         came_up |= explorer.came_up
+        passing |= explorer.passing
         if not explorer.alternatives:
             return ""
-    return _words(system, model, explorer.alternatives, states) if came_up else ""
+    if came_up:
+        return _words(system, model, explorer.alternatives, states)
+    return f"of the {states} states that it reaches it is due only in some that do not last" if passing else ""
 
 
 def _words(system: System, model: Reference, alternatives: tuple[int, ...], states: int) -> str:
@@ -160,6 +164,7 @@ class _Explorer:
     Attributes:
         alternatives: sets of readings, of which none holds another; empty once nothing explains the model.
         came_up: whether the broken rule did.
+        passing: whether it did where no call can meet it, since something happens at once.
         rules_differ: whether the model differs in the rules of the operation, and not just by a mutation of a step.
     """
 
@@ -183,6 +188,7 @@ class _Explorer:
         self.scope = scope
         self.alternatives: tuple[int, ...] = (UNCONSTRAINED,)
         self.came_up = mutate_message is not unchanged_message
+        self.passing = False
         self.rules_differ = model.system.spec is not system.spec
         self._required: set[Options] = {_FREE}
         self._judged: set[Any] = set()
@@ -233,6 +239,7 @@ class _Explorer:
         allowed, own = self.reference.urgent(here)
         taken = self.model.mutate_step(here, own)
         if taken is not None:
+            self.passing = self.passing or self._would_come_up(here, actions)
             self._require(self._explained(here, taken, allowed))
             yield taken
             return
@@ -248,6 +255,15 @@ class _Explorer:
                 if happened is not None:
                     self._require(self._explained(here, happened, allowed))
                     yield happened
+
+    def _would_come_up(self, here: State, actions: Actions) -> bool:
+        """Whether a call would meet the broken rule in a state that does not last."""
+        asked = (one for one in actions.requests if self.spec.request_operation(one[0]) == self.operation)
+        return any(
+            self.rule in self.reference.answers(here, request, refs)[2]
+            for request, free in asked
+            for refs in bindings(self.spec, here, free)
+        )
 
     def _asked_all(self, here: State, actions: Actions) -> Iterator[Step]:
         for request, free in actions.requests:

@@ -48,18 +48,19 @@ class Accusation:
     def is_right(self, system: System) -> bool:
         """Whether the broken rule is named, or one that cannot be told apart from it.
 
-        Of a refusal without a reason nobody can see which of the rows with its code was meant; where another one is
-        due, all that can be seen is that it is not given. Of rows that differ in their code alone, by reading, any may
-        have been broken. A mutant that could not answer any more breaks more than its rule.
+        Of a refusal without a reason nobody can see which of the rows with its code was meant: what is seen is that the
+        call was not done, and where another row is due, that it is not given. Of rows that differ in their code alone,
+        by reading, any may have been broken. A mutant that could not answer any more breaks more than its rule.
         """
         rules = system.spec.rules_by_id
         own = rules[self.mutant.rule]
         place = self.mutant.rule.split("/")[1]
         beside = [rules[one.id] for one in self.violation.rules if one.id.split("/")[1] == place]
         due = {rule.id for one in self.violation.expected for rule in one.rules if rules[rule.id].code}
+        seen = (own.code, None)
         return (
             own.id in [one.id for one in self.violation.rules]
-            or (self.mutant.kind == "holds always" and any(one.code == own.code or one.id in due for one in beside))
+            or (self.mutant.kind == "holds always" and any(one.code in seen or one.id in due for one in beside))
             or any(one.name == own.name for one in beside)
             or self.speechless
             or self.mutant.name in EXCUSED

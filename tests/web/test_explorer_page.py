@@ -90,7 +90,7 @@ def _comes_to(page: Any, *queue: str) -> None:
 def _walked(page: Any) -> None:
     """Create, start, append, be refused, pause: five steps, the second by itself."""
     _press(page, "CreateMission", "servi delivery to", "OK")
-    _press(page, "by itself", "moves by start", "happens")
+    _press(page, "by itself", "runs when its turn comes", "happens")
     _press(page, "AppendMission", "base navigate", "OK")
     _press(page, "CreateMission", "base navigate", "FAILED_PRECONDITION")
     _press(page, "UpdateMission", "COMMAND_PAUSE) of mission-1", "OK")

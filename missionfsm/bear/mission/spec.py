@@ -62,10 +62,14 @@ from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
 from missionfsm.kernel.terms import Refs
 
 _MOVES = {
-    trigger: promise(
-        trigger.replace(" ", "-"), f"A mission moves by {trigger}.", cite=MISSION["MissionState", "State enum"]
-    ).registered(SYSTEM_NAME, "lifecycle")
-    for trigger in ("start", "succeed", "fail")
+    trigger: promise(trigger.replace(" ", "-"), says, cite=MISSION["MissionState", "State enum"]).registered(
+        SYSTEM_NAME, "lifecycle"
+    )
+    for trigger, says in (
+        ("start", "A mission that waits runs when its turn comes."),
+        ("succeed", "A mission that was completed has succeeded, and only then."),
+        ("fail", "A mission that could not be completed has failed, and only then."),
+    )
 }
 """The moves of the lifecycle that no call makes."""
 

@@ -20,6 +20,7 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Mismatch, Step
 from missionfsm.kernel.terms import Content, View
+from missionfsm.kernel.text import counted
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
 from missionfsm.oracle.successors import ExhaustedError, Successor
@@ -330,7 +331,7 @@ class Nearest:
         if unordered:
             return self._named_together(own, called)
         if len(own) != len(seen):
-            return [Problem(f"it names {len(seen)}, expected {len(own)}: {self._list(own)}", (), NAME)]
+            return [Problem(f"it names {len(seen)}, expected {self._list(own)}", (), NAME)]
         if unify(here, list(zip(own, seen, strict=True))):
             return []
         found = []
@@ -358,4 +359,6 @@ class Nearest:
         return "a new name" if known is None else name_words(known)
 
     def _list(self, names: Names) -> str:
-        return ", ".join(map(self._known, names)) or "nothing"
+        known = [name_words(one) for one in map(self.belief.name, names) if one is not None]
+        new = len(names) - len(known)
+        return ", ".join((*known, *([counted(new, "new name")] if new else []))) or "nothing"

@@ -2,10 +2,9 @@
 
 Two things can be wrong: what should have been answered is not, and what was answered has no reason. What should have
 been answered is what needs least to have happened unseen, but for what happens at once, and the fewest readings that
-are not usual. Of the rows of the Errors table with the code that came none holds, so that one is named only where it
-held for this request a while ago, as for whoever looks at a state that is no more, or where nothing but a row of that
-code can be what is wrong: the call should have taken effect. Then it is the row that is nearest to hold: one that
-held a while ago, or would if the call were about another thing.
+are not usual. Of the rows of the Errors table with the code that came none holds, so that none is named but where
+something speaks for it: the call should have taken effect, and the row held for this request a while ago, as for
+whoever looks at a state that is no more, or would hold if the call were about another thing.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
     note = f"no refusal with {code} is due: of the rows with that code none applies ({_conditions(reasons)})"
     note += "; the first did before" if held else f"; the first would if it were about {about}" if others else ""
     if is_done:  # what may be done is refused without a reason; or it is refused for another one, with a wrong code
-        return [reasons[0].id, *refused[:1], *done], [note]
+        return [*(rule.id for rule in (*held, *others)[:1]), *done[:1], *refused[:1], *done], [note]
     return refused, [note]  # what has to be refused is refused wrongly
 
 

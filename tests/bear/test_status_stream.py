@@ -447,7 +447,8 @@ def test_a_location_that_gains_a_robot_may_show_it_or_not(letter: str, shown: bo
         *([battery_message(1, "r3", 2, battery(50))] if shown else []),
         SETTLED,
     ]
-    assert readings(judge(lines), "AS-25") == (letter,)
+    assert letter in readings(judge(lines), "AS-25")
+    assert ("b" in readings(judge(lines), "AS-25")) is shown
 
 
 @pytest.mark.parametrize("shown", ["STATE_UNKNOWN", "STATE_DISCONNECTED"])
@@ -463,7 +464,7 @@ def test_a_robot_that_joins_a_location_is_shown_as_a_new_stream_would_show_it(sh
 
 
 def test_a_location_that_loses_a_robot_may_go_on_showing_it_or_not() -> None:
-    """AS-25: the robots at the start, or those that are there."""
+    """AS-25: the robots at the start, those that are there, or those at the start until they leave."""
     lines = [
         *opened(1, BATTERY, at("L2")),
         battery_message(1, "r3", 1, WORLDS[0]["robots"][2]["state"]["battery"]),
@@ -471,7 +472,40 @@ def test_a_location_that_loses_a_robot_may_go_on_showing_it_or_not() -> None:
         report("r3", "battery", battery(50)),
     ]
     assert readings(judge([*lines, battery_message(1, "r3", 2, battery(50)), SETTLED]), "AS-25") == ("a",)
-    assert readings(judge([*lines, SETTLED]), "AS-25") == ("b",)
+    assert readings(judge([*lines, SETTLED]), "AS-25") == ("b", "c", "e")
+
+
+@pytest.mark.parametrize("shown", [False, True])
+def test_a_robot_that_comes_back_may_have_left_for_good(shown: bool) -> None:  # noqa: FBT001
+    """AS-25 c: nothing is owed of it to the stream of the location, but to one by its id."""
+    away, back = ({"drive": {"event": "move", "robotId": "r3", "locationId": place}} for place in ("L1", "L2"))
+    first = WORLDS[0]["robots"][2]["state"]["battery"]
+    lines = [
+        *opened(1, BATTERY, at("L2")),
+        battery_message(1, "r3", 1, first),
+        *opened(2, BATTERY, by_ids("r3")),
+        battery_message(2, "r3", 1, first),
+        away,
+        back,
+        report("r3", "battery", battery(50)),
+        battery_message(2, "r3", 2, battery(50)),
+        *([battery_message(1, "r3", 2, battery(50))] if shown else []),
+        SETTLED,
+    ]
+    assert "c" in readings(judge(lines), "AS-25")
+    without = [one for one in lines if one != battery_message(2, "r3", 2, battery(50))]
+    assert not conforms(*without)
+
+
+def test_the_stream_of_a_location_may_end_with_its_last_robot() -> None:
+    """AS-25 e: pointed out; a stream that was asked for by ids may not end so."""
+    away = {"drive": {"event": "move", "robotId": "r3", "locationId": "L1"}}
+    ended = {"stream": 1, "closed": True, "error": {"status": "NOT_FOUND"}}
+    shown = battery_message(1, "r3", 1, WORLDS[0]["robots"][2]["state"]["battery"])
+    verdict = judge([*opened(1, BATTERY, at("L2")), shown, away, ended, SETTLED]).verdict()
+    assert verdict.conforms
+    assert [one.partition(" ")[0] for one in verdict.flagged] == [f"AS-25.{BATTERY}=e"]
+    assert not conforms(*opened(1, BATTERY, by_ids("r3")), shown, away, ended, SETTLED)
 
 
 def test_a_robot_that_comes_back_may_be_shown_under_the_number_that_it_had() -> None:

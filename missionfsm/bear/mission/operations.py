@@ -39,6 +39,8 @@ from missionfsm.bear.mission.rules import (
     NO_DOCK,
     SHAPE,
     STATE,
+    TAKEN,
+    WORKFLOW_UNFIT,
     WORKFLOW_WHILE_WAITING,
     WRONG_ID,
     a_destination_is_not_on_the_map,
@@ -82,6 +84,7 @@ from missionfsm.bear.mission.rules import (
     the_robot_is_unable_to_start,
     the_robot_is_unable_to_start_any_mission,
     the_robot_is_unable_to_start_charging,
+    the_workflow_does_not_fit_a_robot_that_cannot_start,
     the_workflow_is_for_another_family,
     there_is_nothing_to_clear,
     there_never_was_anything_to_clear,
@@ -256,8 +259,10 @@ OPERATIONS: Mapping[str, Operation] = {
                 the_workflow_is_for_another_family,
                 another_mission_is_active,
                 *WORKFLOW_WHILE_WAITING,
+                *WORKFLOW_UNFIT,
                 _under(the_robot_is_unable_to_start_any_mission, AM_53["CreateMissionWorkflow"]["a"]),
                 _under(the_mission_system_cannot_start_a_mission, AM_53["CreateMissionWorkflow"]["i"]),
+                _under(the_workflow_does_not_fit_a_robot_that_cannot_start, AM_53["CreateMissionWorkflow"]["v"]),
             ),
             _WORKFLOW_IDS,
         ),
@@ -355,14 +360,16 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     """AM-01: the format first, the state first, or the state between shape and goals.
 
     Where no state forbids the call, there is nothing that could come first. What cannot be decoded is
-    INVALID_ARGUMENT whatever is looked at first, since there is no request to look at anything for.
+    INVALID_ARGUMENT whatever is looked at first, since there is no request to look at anything for; what others have
+    taken may be looked at whenever an implementation likes.
     """
     forbidding = tuple(_forbidding(operation, holding))
-    invalid = {one.looks_at for one in holding if one.code == INVALID_ARGUMENT}
+    looked_at = {one.looks_at for one in holding if one.code == INVALID_ARGUMENT}
+    invalid = looked_at - {TAKEN}
     if not forbidding or not invalid:
         yield from ((code, ()) for code in _codes(holding))
         return
-    if FORM in invalid:
+    if not looked_at.isdisjoint((FORM, TAKEN)):
         yield INVALID_ARGUMENT, ()
     sure = not invalid.isdisjoint((FORM, SHAPE))  # of EITHER nobody knows whether it is noticed so early
     early = sure or EITHER in invalid

@@ -182,9 +182,11 @@ AM_07 = _each(
         "b": "no, the workflow joins the queue",
         "o": "no, it is begun first, though it is listed behind them",
         "r": "no, the workflow replaces the queue",
+        "v": "yes, with INVALID_ARGUMENT: it does not fit the robot's state",
     },
     "a",
     WAITING,
+    flagged="v",
 )
 AM_08 = Ambiguity(
     "AM-08",
@@ -580,20 +582,20 @@ AM_51 = _each(
     flagged="b",
 )
 _UNABLE = "{}: what is answered where the robot is unable to start a mission?"
+_UNABLE_FIRST = {
+    "a": "FAILED_PRECONDITION",
+    "b": "OK",
+    "i": "INTERNAL: that it cannot be started is a failure of the mission system",
+    "t": "OK, or DEADLINE_EXCEEDED",
+}
 AM_53 = {
-    **_each(
-        "AM-53",
-        _UNABLE,
-        {
-            "a": "FAILED_PRECONDITION",
-            "b": "OK",
-            "i": "INTERNAL: that it cannot be started is a failure of the mission system",
-            "t": "OK, or DEADLINE_EXCEEDED",
-        },
-        "a",
-        ("CreateMission", "CreateMissionWorkflow", "ChargeRobot"),
-        flagged="i",
-        alike=False,
+    **_each("AM-53", _UNABLE, _UNABLE_FIRST, "a", ("CreateMission", "ChargeRobot"), flagged="i", alike=False),
+    "CreateMissionWorkflow": Ambiguity(
+        "AM-53.CreateMissionWorkflow",
+        _UNABLE.format("CreateMissionWorkflow"),
+        {**_UNABLE_FIRST, "v": "INVALID_ARGUMENT: the workflow does not fit the robot's state"},
+        default="a",
+        flagged=frozenset("iv"),
     ),
     **_each("AM-53", _UNABLE, {"b": "OK", "t": "OK, or DEADLINE_EXCEEDED"}, "b", APPENDING, alike=False),
     "CreateMissionBatch": Ambiguity(

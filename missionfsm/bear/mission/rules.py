@@ -52,10 +52,12 @@ from missionfsm.kernel.rules import (
     refusal,
 )
 
-FORM, SHAPE, GOALS, EITHER, STATE, ABILITY = "form", "shape", "goals", "either", "state", "ability"
+FORM, SHAPE, GOALS, EITHER, TAKEN = "form", "shape", "goals", "either", "taken"
+STATE, ABILITY = "state", "ability"
 """What a rule looks at; AM-01 read as c ranks them, and EITHER may be checked with the shape or with the goals.
 
 A request of the wrong FORM cannot be decoded: whoever looks at something else first cannot do so without a request.
+What other robots have TAKEN is neither the request nor the missions: it may be looked at first, last or between.
 STATE is about the missions, ABILITY about whether the robot can start one. What is wrong with the request is ranked
 against the state by its code, INVALID_ARGUMENT: a refusal of SHAPE or GOALS with another code is not.
 
@@ -166,13 +168,13 @@ def _no_goal_is_free(robot: Situation, call: Call) -> bool:
     )
 
 
-@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=GOALS)
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=TAKEN)
 def no_goal_is_free(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is checked when it is created (AM-45)."""
     return _no_goal_is_free(robot, call)
 
 
-@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=GOALS)
+@refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=TAKEN)
 def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is a state that forbids to create it (AM-45)."""
     return _no_goal_is_free(robot, call)
@@ -227,6 +229,12 @@ def the_mission_system_cannot_start_a_mission(robot: Situation, _: Call) -> bool
     return robot.world.blocked
 
 
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMissionWorkflow", "Errors"], looks_at=ABILITY)
+def the_workflow_does_not_fit_a_robot_that_cannot_start(robot: Situation, _: Call) -> bool:
+    """The robot is unable to start a mission, which makes a workflow invalid (AM-53)."""
+    return robot.world.blocked
+
+
 @refusal(FAILED_PRECONDITION, cite=MISSION["CreateMissionWorkflow", "Errors"], looks_at=STATE)
 def another_mission_is_active(robot: Situation, _: Call) -> bool:
     """A mission is running or paused, so a workflow cannot be created."""
@@ -243,7 +251,9 @@ def _waits(where: str, robot: Situation, _: Call) -> bool:
     return robot.active is None and robot.queued and waiting(robot) == where
 
 
-def _about_waiting(operation: str, under: Mapping[str, Assumption], *rules: tuple[str, str, str]) -> tuple[Rule, ...]:
+def _about_waiting(
+    operation: str, under: Mapping[str, Assumption], *rules: tuple[str, str, str], code: str = FAILED_PRECONDITION
+) -> tuple[Rule, ...]:
     """A refusal for each situation in which missions wait and none is active: the situation, its name, what it says."""
     return tuple(
         Rule(
@@ -251,7 +261,7 @@ def _about_waiting(operation: str, under: Mapping[str, Assumption], *rules: tupl
             says,
             "",
             MISSION[operation, "Errors"] if operation != "ClearMissionStatus" else MISSION[operation],
-            FAILED_PRECONDITION,
+            code,
             functools.partial(_waits, where),
             under[where],
             STATE,
@@ -266,6 +276,22 @@ WORKFLOW_WHILE_WAITING = _about_waiting(
     (GAP, "another-mission-is-queued", "A mission waits, which forbids a workflow as it forbids a mission (AM-07)."),
     (HALTED, "another-mission-waits-in-a-halted-queue", "A mission waits in a halted queue (AM-07)."),
     (BLOCKED, "another-mission-cannot-start", "A mission waits that the robot is unable to start (AM-07)."),
+)
+WORKFLOW_UNFIT = _about_waiting(
+    "CreateMissionWorkflow",
+    {where: one["v"] for where, one in AM_07.items()},
+    (GAP, "the-workflow-does-not-fit-a-queue", "A mission waits, which makes a workflow invalid (AM-07)."),
+    (
+        HALTED,
+        "the-workflow-does-not-fit-a-halted-queue",
+        "A mission waits in a halted queue, which makes a workflow invalid (AM-07).",
+    ),
+    (
+        BLOCKED,
+        "the-workflow-does-not-fit-what-cannot-start",
+        "A mission waits that the robot is unable to start, which makes a workflow invalid (AM-07).",
+    ),
+    code=INVALID_ARGUMENT,
 )
 
 

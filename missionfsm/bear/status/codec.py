@@ -49,6 +49,7 @@ def read_request(method: str, params: JSON) -> Request:
         if method == GET:
             unknown = ("request",) if unknown_fields(wire.StatusRequest, params) else ()
             return Request(method, (read(wire.StatusRequest, params).robot_id,), unknown_fields=unknown)
+        params, bare = _unwrapped(params)
         selector = read(wire.SubscribeRequest, params).selector or wire.RobotSelector()
     except MalformedError as error:
         return Request(method, malformed=str(error))
@@ -60,8 +61,18 @@ def read_request(method: str, params: JSON) -> Request:
         by_ids=selector.robot_ids is not None,
         location=selector.location_id,
         repeated=len(ids) < len(given),
+        bare=bare,
         unknown_fields=_levels(params),
     )
+
+
+def _unwrapped(params: JSON) -> tuple[JSON, bool]:
+    """The request with its robot ids where they should stand, and whether they stood as a bare list (AS-06.list)."""
+    selector = field(params, "selector") if isinstance(params, dict) else None
+    if not isinstance(selector, dict) or not isinstance(ids := field(selector, "robotIds"), list):
+        return params, False
+    rest = {name: value for name, value in selector.items() if name not in ("robotIds", "robot_ids")}
+    return {**params, "selector": {**rest, "robotIds": {"ids": ids}}}, True
 
 
 def _levels(params: JSON) -> tuple[str, ...]:
@@ -83,7 +94,8 @@ def write_request(asked: Request, _: tuple[Name, ...] = ()) -> JSON:
         return {"robotId": asked.ids[0]} if asked.ids else {}
     selector: dict[str, JSON] = {}
     if asked.by_ids:
-        selector["robotIds"] = {"ids": [*asked.ids, *(asked.ids[:1] if asked.repeated else ())]}
+        ids = [*asked.ids, *(asked.ids[:1] if asked.repeated else ())]
+        selector["robotIds"] = ids if asked.bare else {"ids": ids}
     if asked.location is not None:
         selector["locationId"] = asked.location
     return {"selector": selector} if selector else {}

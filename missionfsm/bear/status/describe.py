@@ -42,6 +42,8 @@ def _request(request: Request) -> str:
     if request.by_ids:
         ids = ", ".join(map(brief, request.ids))
         parts.append(f"robots {ids or 'none'}{', one of them twice' if request.repeated else ''}")
+    if request.bare:
+        parts.append("in a bare list")
     if request.location is not None:
         parts.append(f"location {brief(request.location)}")
     if request.unknown_fields:

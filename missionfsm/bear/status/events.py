@@ -171,13 +171,17 @@ def _addressed(  # noqa: PLR0913 - an emission's own fields
     stays: bool = False,
 ) -> list[Way]:
     """A message about a robot, once for each way to find its streams (AS-25), which matters once it has moved."""
-    question = AS_25[endpoint.value]
+    about, question = About(endpoint, robot.id, robot.location), AS_25[endpoint.value]
+    message = Emission(about, shown, (), only, optional, stays)
+    if not robot.moved:
+        return [((message,), ())]
+    # Where it is again it may have left a stream for good, or have been there when the stream began.
+    by_ids = evolve(message, topic=evolve(about, placed=False))
+    stayed = evolve(message, topic=evolve(about, now=True, placed=True), optional=True)
     return [
-        (
-            (Emission(About(endpoint, robot.id, robot.location, followed), shown, (), only, optional, stays),),
-            (question["b" if followed else "a"],) if robot.moved else (),
-        )
-        for followed in ((False, True) if robot.moved else (False,))
+        ((message,), (question["a"],)),
+        ((evolve(message, topic=evolve(about, start=False, now=True)),), (question["b"],)),
+        ((by_ids, stayed), (question["c", "e"],)),
     ]
 
 
@@ -300,7 +304,7 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     if after.location == robot.location:
         return (Step(fleet, label="move"),)
     emits = tuple(
-        Emission(About(endpoint, after.id, after.location, followed=True), shown, (), only, stays=True)
+        Emission(About(endpoint, after.id, after.location, start=False, now=True), shown, (), only, stays=True)
         for endpoint in Endpoint
         if robot.owned
         for shown, only in _joining(fleet, after, endpoint)

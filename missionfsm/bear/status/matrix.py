@@ -81,7 +81,7 @@ def _as_known(robot: Robot) -> Robot:
 @functools.lru_cache(maxsize=10_000)
 def _whom(fleet: Fleet, asked: Request) -> str:
     """Whom a request is about, or what is wrong with it."""
-    if asked.malformed or asked.unknown_fields:
+    if asked.malformed or asked.bare or asked.unknown_fields:
         return "a malformed request"
     if asked.location is not None:
         return "robots and a location" if asked.by_ids else _which_location(fleet, asked.location)

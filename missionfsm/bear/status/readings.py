@@ -184,6 +184,7 @@ _ORDERS: Mapping[str, tuple[tuple[str, ...], str]] = {
     "empty-last": (SUBSCRIPTIONS, "an empty robot id stands behind one that may not be seen"),
     "twice": (SUBSCRIPTIONS, "a robot id is given twice, and one may not be seen"),
     "both": (SUBSCRIPTIONS, "robot ids and a location are given, and one of them may not be seen"),
+    "list": (SUBSCRIPTIONS, "robot_ids is a bare list, and one of them may not be seen"),
     "field": (CALLS, "a field is not documented, and a robot or a location may not be seen"),
 }
 AS_06_ORDER: Mapping[str, Question] = {
@@ -214,6 +215,14 @@ AS_06_FIELD: Mapping[str, Question] = {
     for level, (calls, says) in _LEVELS.items()
 }
 """By where the field stands."""
+
+AS_06_LIST = _asked(
+    SUBSCRIPTIONS,
+    "AS-06.list",
+    "robot_ids is a bare list of ids, as in the page's example: is such a request invalid?",
+    {"a": "yes, INVALID_ARGUMENT: it is no RobotIDs", "b": "no, those are the ids"},
+    "a",
+)
 
 AS_07 = Ambiguity(
     "AS-07.offline",
@@ -410,8 +419,14 @@ AS_25 = _asked(
     SUBSCRIPTIONS,
     "AS-25",
     "which robots does the stream of a location follow once robots have moved?",
-    {"a": "those that were there at its start", "b": "those that are there"},
+    {
+        "a": "those that were there at its start",
+        "b": "those that are there",
+        "c": "those that were there at its start, until they leave",
+        "e": "those that were there at its start, until they leave; with the last one it ends, NOT_FOUND",
+    },
     "a",
+    flagged="e",
 )
 AS_26 = _asked(
     SUBSCRIPTIONS,

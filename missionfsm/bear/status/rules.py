@@ -19,6 +19,7 @@ from missionfsm.bear.status.readings import (
     AS_05,
     AS_06_EMPTY,
     AS_06_FIELD,
+    AS_06_LIST,
     AS_06_ORDER,
     Question,
 )
@@ -65,6 +66,12 @@ def a_field_of_the_selector_is_unknown(_: Fleet, request: Request) -> bool:
 def a_field_of_the_robot_ids_is_unknown(_: Fleet, request: Request) -> bool:
     """The robot_ids have a field that is not documented, and such a request is taken for malformed (AS-06)."""
     return "ids" in request.unknown_fields
+
+
+@refusal(INVALID_ARGUMENT, cite=_ANY)
+def the_robot_ids_are_a_bare_list(_: Fleet, request: Request) -> bool:
+    """The robot_ids are a list and no RobotIDs with a list in it, and that is taken for malformed (AS-06)."""
+    return request.bare
 
 
 @refusal(INVALID_ARGUMENT, cite=_GET)
@@ -291,6 +298,8 @@ def _situation(request: Request, fleet: Fleet) -> str:
     """What is invalid about a request that names what may not be seen as well."""
     if request.unknown_fields:
         return "field"
+    if request.bare:
+        return "list"
     if request.both:
         return "both"
     if "" not in request.ids:
@@ -316,6 +325,7 @@ _SELECTION: tuple[_Row, ...] = (
     (a_field_is_unknown, AS_06_FIELD["request"], "b"),
     (a_field_of_the_selector_is_unknown, AS_06_FIELD["selector"], "b"),
     (a_field_of_the_robot_ids_is_unknown, AS_06_FIELD["ids"], "b"),
+    (the_robot_ids_are_a_bare_list, AS_06_LIST, "a"),
     (the_location_does_not_exist, AS_03_UNKNOWN, "a"),
     (no_robot_is_at_the_location, AS_03_EMPTY, "c"),
     (no_robot_of_the_account_is_at_the_location, AS_03_OTHERS, "c"),

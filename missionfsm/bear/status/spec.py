@@ -23,6 +23,7 @@ from missionfsm.bear.status.readings import (
     AS_17_ZERO,
     AS_21,
     AS_22,
+    AS_25,
     AS_26,
     AS_29_EMPTY,
     AS_34,
@@ -53,7 +54,7 @@ from missionfsm.kernel import history
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Received
 from missionfsm.kernel.readings import Assumption
-from missionfsm.kernel.rules import INTERNAL, OK, PERMISSION_DENIED, Operation, Waiver
+from missionfsm.kernel.rules import INTERNAL, NOT_FOUND, OK, PERMISSION_DENIED, Operation, Waiver
 from missionfsm.kernel.spec import Delivery, Drive, Invariant, Middle, Parting, Spec
 from missionfsm.kernel.step import Mismatch
 
@@ -77,6 +78,8 @@ def _delivery(topic: Topic) -> Delivery:
         OK: (AS_26[call]["b"],),
         **dict.fromkeys(UNLISTED, (AS_34[call]["b"],)),
     }
+    if topic.location is not None:
+        ends[NOT_FOUND] = (AS_25[call]["e"],)
     if topic.partly:
         ends[PERMISSION_DENIED] = (AS_01[call]["c"],)
     return Delivery(

@@ -314,6 +314,7 @@ class Request:
         by_ids: the list of robot ids is set.
         location: the location that it names, None where it is not set.
         repeated: an id is named twice.
+        bare: the list of robot ids stands where the message that holds it should stand.
         unknown_fields: where it has fields that are not documented: `request`, `selector`, `ids`.
         malformed: where and how it is malformed; empty where it is not.
     """
@@ -323,6 +324,7 @@ class Request:
     by_ids: bool = False
     location: str | None = None
     repeated: bool = False
+    bare: bool = False
     unknown_fields: tuple[str, ...] = ()
     malformed: str = ""
 

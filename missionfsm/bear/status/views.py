@@ -54,21 +54,32 @@ class Topic:
 
 @frozen(cache_hash=True)
 class About:
-    """What an emission is about: one robot, where it is, and whether streams follow it there (AS-25)."""
+    """What an emission is about: one robot, where it is, and which streams of a location show it (AS-25).
+
+    Attributes:
+        start: only those that it belonged to at their start.
+        now: only those of the location where it is.
+        placed: only those of a location, or only those by robot ids; None for both.
+    """
 
     endpoint: Endpoint
     robot: str
     location: str
-    followed: bool = False
+    start: bool = True
+    now: bool = False
+    placed: bool | None = None
 
 
 def concerns(channel: Topic, emission: About) -> bool:
     """Whether a channel gets an emission."""
     if channel.robot != emission.robot or channel.endpoint is not emission.endpoint:
         return False
-    if channel.location is None or not emission.followed:
+    placed = channel.location is not None
+    if emission.placed not in (None, placed):
+        return False
+    if not placed:
         return bool(channel.member)
-    return bool(channel.location == emission.location)
+    return (channel.member or not emission.start) and (channel.location == emission.location or not emission.now)
 
 
 @frozen(cache_hash=True)

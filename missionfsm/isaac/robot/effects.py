@@ -21,7 +21,7 @@ from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Happenin
 STATUSES, NAMES = "statuses", "names"
 """The two topics of the one connection: statuses and names come in any order among one another."""
 
-MAX_WAITING = 2
+MAX_WAITING = 32
 """How many statuses wait before the codelet is taken to have ticked when another one is due."""
 
 NEW = -1

@@ -44,7 +44,23 @@ def patrolled(kind: Kind) -> tuple[ScriptStep, ...]:
     return (*WATCHED, *begun, *call("SkipGoal"))
 
 
+AUTO_TAKEN = {
+    "baseMission": {"navigateAutoMission": {"goals": [{"destinationId": TABLES[0]}, {"destinationId": TABLES[1]}]}}
+}
+TAKEN = {"family": "servi", "occupied": [*TABLES]}
+AUTO_FIRST, AUTO_LATER = (
+    call("CreateMissionBatch", {"missions": [{"mission": one} for one in missions]})
+    for missions in (
+        (AUTO_TAKEN, of_family("servi", "deliveryMission", TABLES[0])),
+        (of_family("servi", "deliveryMission", TABLES[0]), AUTO_TAKEN),
+    )
+)
+WORKFLOW = call(
+    "CreateMissionWorkflow",
+    {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": [{"destinationId": TABLES[0]}]}}}},
+)
 DEPARTURES: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]], ...] = (
+    ("AM-07.halted", "v", HALTED, SERVI, (*QUEUE, *commanded(0, CANCEL), *WORKFLOW)),
     ("AM-08", "b", {}, SERVI, QUEUE),
     ("AM-09", "d", {}, SERVI, (*QUEUE, *commanded(0, CANCEL))),
     ("AM-09.skip", "d", {"AM-17": "d"}, SERVI, (*QUEUE, *call("SkipGoal"))),
@@ -62,6 +78,7 @@ DEPARTURES: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]],
     ("AM-29.resume", "b", {}, SERVI, (*CREATED, *commanded(0, RESUME))),
     ("AM-30", "b", {}, SERVI, (*WATCHED, *CREATED, *commanded(0, FINISH))),
     *(("AM-38.dock", letter, {}, SERVI, UNDOCKED) for letter in "cg"),
+    ("AM-53.CreateMissionWorkflow", "v", {}, {"family": "servi", "blocked": True}, WORKFLOW),
     ("AM-51.base-navigate", "b", {}, SERVI, (*WATCHED, *CREATED)),
 )
 ACCEPTED: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]], ...] = (
@@ -73,6 +90,9 @@ ACCEPTED: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]], .
     ("AM-33.fresh", "b", {}, SERVI, call("ClearMissionStatus")),
     ("AM-36", "b", {}, SERVI, WATCHED),
     ("AM-40", "c", {}, SERVI, (*call("ChargeRobot"), *commanded(0, PAUSE))),
+    ("AM-45.none.refused.CreateMissionBatch", "c", {}, TAKEN, AUTO_LATER),
+    ("AM-45.none.refused.CreateMissionBatch", "s", {}, TAKEN, AUTO_FIRST),
+    ("AM-45.none.refused.CreateMissionBatch", "s", {}, TAKEN, AUTO_LATER),
 )
 
 

@@ -115,10 +115,29 @@ def by_itself(
     elif active is not None and is_missing(world, _ahead(active)):
         for edit, assumes in failed(_alone(world, active, queued=queued), active):
             yield edit, (AM_43_LEFT["e"], *assumes)
+        yield from _passes_over(world, active, queued=queued)
     elif active is None and head is not None and world.blocked and head.held and not halted:
         running = head.moved("start")
         for edit, assumes in failed_to_start(_alone(world, running, queued=queued), running):
             yield ((Op.START, running), *edit), (AM_53_THEN[head.first or QUEUE]["f"], *assumes)
+
+
+def _passes_over(world: World, active: Mission, *, queued: bool) -> Iterator[Way]:
+    """AM-43: a mission goes on to its next goal that is on the map, or fails where there is none."""
+    passed = (AM_43_LEFT["p"],)
+    if active.goal == NOT_CHOSEN or not is_missing(world, active.goals[active.goal : active.goal + 1]):
+        return
+    count = len(active.goals)
+    around = active.kind in PATROLS or active.kind in AUTOMATIC
+    later = range(active.goal + 1, active.goal + count if around else count)
+    there = [at % count for at in later if not is_missing(world, (active.goals[at % count],))]
+    if active.kind in AUTOMATIC:
+        there = [at for at in there if free_goal((active.goals[at],), world) != NOT_CHOSEN]
+    if there:
+        yield become(evolve(active, goal=there[0])), passed
+        return
+    for edit, assumes in failed(_alone(world, active, queued=queued), active):
+        yield edit, (*passed, *assumes)
 
 
 def _ahead(mission: Mission) -> tuple[Goal, ...]:

@@ -48,6 +48,7 @@ from missionfsm.bear.mission.rules import (
     a_goal_is_invalid,
     a_goal_occurs_twice,
     a_goal_occurs_twice_in_the_list,
+    a_mission_could_not_start_now,
     a_mission_is_paused,
     a_mission_is_running,
     a_mission_is_running_or_paused,
@@ -61,6 +62,7 @@ from missionfsm.bear.mission.rules import (
     id_situation,
     no_goal_is_free,
     no_goal_is_free_now,
+    no_goal_is_free_to_start_with,
     no_mission_is_running,
     nothing_is_listed,
     nothing_was_ever_listed,
@@ -129,6 +131,8 @@ def _mission(operation: str) -> tuple[Rule, ...]:
         _under(the_robot_is_of_another_family, AM_41[operation]["b"]),
         _under(no_goal_is_free, AM_45_REFUSED[operation]["c"]),
         _under(no_goal_is_free_now, AM_45_REFUSED[operation]["c"]),
+        _under(no_goal_is_free_to_start_with, AM_45_REFUSED[operation]["s"]),
+        _under(a_mission_could_not_start_now, AM_45_REFUSED[operation]["s"]),
     )
 
 

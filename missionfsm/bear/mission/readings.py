@@ -497,7 +497,7 @@ AM_43 = _each(
 AM_43_LEFT = Ambiguity(
     "AM-43.left",
     "What becomes of a mission under way of which a goal leaves the map?",
-    {"a": "it goes on", "e": "it may fail"},
+    {"a": "it goes on", "e": "it may fail", "p": "the goal is passed over; where none is left, the mission fails"},
     default="a",
 )
 AM_44 = _each(
@@ -524,7 +524,11 @@ AM_45_NONE = _each(
 AM_45_REFUSED = _each(
     "AM-45.none.refused",
     "{}: is a NavigateAuto mission refused of which no goal is free?",
-    {"a": "no", "c": "yes, INVALID_ARGUMENT or FAILED_PRECONDITION"},
+    {
+        "a": "no",
+        "c": "yes, INVALID_ARGUMENT or FAILED_PRECONDITION",
+        "s": "yes, INVALID_ARGUMENT or FAILED_PRECONDITION, where it would start at once",
+    },
     "a",
     (*BATCHES, "CreateMission", "AppendMission"),
 )

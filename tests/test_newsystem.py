@@ -68,6 +68,12 @@ def test_what_is_written_works_at_once(
     assert command_line("check", history).status == 1
 
 
+def test_a_small_system_stays_small() -> None:
+    """A lamp with a timer, a call, a refusal, an ambiguity, a stream and a drive takes about eighty lines."""
+    source = (Path(__file__).parent.parent / "missionfsm" / "app" / "lamp.py").read_text()
+    assert len(source.splitlines()) <= 90
+
+
 def test_what_the_language_fills_in_refuses_what_there_is_not() -> None:
     """A codec that leaves everything out reads its own methods and drives, and says of others what there are."""
     codec = Codec(methods=("Switch",), events=("burnOut",))

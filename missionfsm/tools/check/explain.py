@@ -160,9 +160,9 @@ def _alternately(*lists: Sequence[str]) -> list[str]:
 
 
 def _accused(problem: Problem, candidate: Candidate) -> list[str]:
-    """The rules of an answer that contradicts one before: those of this one, and of that one, since either is wrong."""
+    """The rules of an answer that contradicts one before: those of this one, and that of the other: either is wrong."""
     if problem.since:
-        return _alternately(candidate.rules or problem.rules, problem.since)
+        return _alternately(candidate.rules or problem.rules, problem.since[:1])
     about = [rule for rule in problem.rules if rule in candidate.rules]
     return about or [*(problem.rules or candidate.rules)]
 

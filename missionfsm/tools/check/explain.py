@@ -128,12 +128,17 @@ def _wrong_in_it(
         rules = _alternately(rules, _before(nearest))
     if _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
-    due = [one for one in candidates if one.allowed and one.weight >= CODE]
-    rules = _alternately(rules, list(dict.fromkeys(rule for one in due for rule in one.rules)))
+    rules = _alternately(rules, _of_other_codes(candidates))
     notes = [problem.says for problem in _problems(lightest[:1])]
     if _says_a_name_twice(event):
         notes.append("each thing has a name of its own, and one is given twice")
     return rules or itertools.chain.from_iterable(one.rules for one in lightest), notes
+
+
+def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
+    """The rules of answers with another code that are allowed."""
+    due = (one for one in candidates if one.allowed and one.weight >= CODE)
+    return list(dict.fromkeys(rule for one in due for rule in one.rules))
 
 
 def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:

@@ -114,6 +114,15 @@ def _led_to(system: System, history: tuple[JSON, ...], at: int, readings: Mappin
     return judge
 
 
+def _shows_what_happened(violation: Violation) -> bool:
+    """Whether what is wrong shows what has happened, as an answer does that is right but for what it says.
+
+    Another code is wrong by itself.
+    """
+    last = violation.history[-1]
+    return "return" not in last or ("result" in last and any(one.what.startswith(OK) for one in violation.expected))
+
+
 def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:
     """The violation with a note on what came before it and may be what is wrong.
 
@@ -128,9 +137,7 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         return violation
     answered, missing = "return" in history[-1], "settled" in history[-1]
     found = [one for one in suspects(system, history, readings) if not (answered or missing) or one.code != OK]
-    # An answer shows what has happened where it is right but for what it says: another code is wrong by itself.
-    shows = not answered or ("result" in history[-1] and any(one.what.startswith(OK) for one in violation.expected))
-    idle = without_effect(system, history, readings) if shows else ()
+    idle = without_effect(system, history, readings) if _shows_what_happened(violation) else ()
     rules = violation.rules
     notes: tuple[str, ...] = ()
     if len(found) in range(1, MAX_SUSPECTS + 1):

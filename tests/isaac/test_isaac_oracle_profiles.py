@@ -233,6 +233,16 @@ def test_of_several_connections_with_a_name_any_may_be_the_next_robot(heir: int)
     assert verdict.conforms, str(verdict)
 
 
+@pytest.mark.parametrize(("back", "served"), [("q", True), ("s", False)])
+def test_a_connection_that_another_took_over_keeps_its_name_or_has_none(back: str, *, served: bool) -> None:
+    """Another name that it says then is its first (q), or a second one that does nothing (s, AI-17 a)."""
+    known = {"AI-16": "n", "AI-16.back": back, "AI-17": "a", "AI-39": "a"}
+    for sent in (True, False):
+        begun = History().robot(1).robot(2).says(1, "other").submit(1, robot="other")
+        verdict = (begun.sends(1, 1) if sent else begun).settles.judged(readings=known)
+        assert (verdict.outcome is not Outcome.VIOLATES) is (sent is served), str(verdict)
+
+
 def test_a_mission_may_have_timed_out_before_its_robot_is_there() -> None:
     """A start_timeout of 0 that counts from submission has elapsed: the robot that comes is sent nothing."""
     begun = History().submit(1, start_timeout=0).settles.robot(1).settles
@@ -254,7 +264,7 @@ def test_a_mission_may_be_cancelled_once_it_heads_an_idle_robots_queue() -> None
 @pytest.mark.parametrize(("again", "served"), [("t", 2), ("u", 1)])
 def test_what_a_name_that_is_said_again_does_is_a_question_of_its_own(again: str, served: int) -> None:
     """Under every reading of what follows a drop, saying it again does nothing, or what it did at first."""
-    for back in "pqr":
+    for back in "pqrs":
         known = {"AI-16": "n", "AI-16.back": back, "AI-16.again": again, "AI-39": "a"}
         begun = History().robot(1).robot(2).says(1).submit(1)
         assert begun.sends(served, 1).settles.judged(readings=known).conforms, back

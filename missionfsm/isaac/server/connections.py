@@ -65,7 +65,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
     if not gone.serves or not heirs:
         yield move
         return
-    at_once, later = split(move, AI_16_BACK, "p")  # q and r: not before it says it again, or never
+    at_once, later = split(move, AI_16_BACK, "p")  # else not before it says it again, or never
     if at_once is not None:
         for heir in reversed(heirs):  # nobody says which of several, the newest or the one that said it last
             yield from _served(at_once, heir)
@@ -148,7 +148,7 @@ def _named(move: Move, link: Link, key: str) -> Moves:
         yield from _claims(move, link, key)
     elif link.name == key:
         there = move.state.serving(key) is not None
-        again, never = split(move, AI_16_AGAIN, "u") if there else split(move, AI_16_BACK, "pq")
+        again, never = split(move, AI_16_AGAIN, "u") if there else split(move, AI_16_BACK, "pqs")
         if again is not None:
             yield from _claims(again, link, key)
         if never is not None:
@@ -183,7 +183,7 @@ def _other_name(move: Move) -> tuple[Move | None, Move | None, Move | None]:
 
 def _named_otherwise(move: Move, link: Link, key: str) -> Moves:
     """It said a name that another connection has: it keeps that (AI-17), or has none (AI-16.back q)."""
-    keeps, without = split(move, AI_16_BACK, "pr")
+    keeps, without = split(move, AI_16_BACK, "prs")
     if without is not None:
         yield from _claims(without, link, key)
     ignored, bound, closing = (None, None, None) if keeps is None else _other_name(keeps)

@@ -228,7 +228,8 @@ AI_16_BACK = Ambiguity(
     "The connection that is the robot drops, and another has said the same name: is that the robot now?",
     {
         "p": "at once",
-        "q": "when it says its name again",
+        "q": "when it says its name again; until then it has none",
+        "s": "when it says its name again; until then another name is a second one (AI-17)",
         "r": "never",
     },
     default="q",

@@ -180,9 +180,13 @@ def constrain(ambiguities: Iterable[Ambiguity], choice: Mapping[str, str]) -> in
 def _constrained(ambiguities: tuple[Ambiguity, ...], chosen: tuple[tuple[str, str], ...]) -> int:
     choice = dict(chosen)
     decided: dict[Ambiguity, str] = {}
+    spoken_for: dict[str, list[Ambiguity]] = {}
+    for one in ambiguities:
+        for parts in itertools.accumulate(one.id.split("."), "{}.{}".format):
+            spoken_for.setdefault(parts, []).append(one)
     for name in sorted(choice, key=lambda name: name.count(".")):
         letters = choice[name]
-        named = [one for one in ambiguities if one.id == name or one.id.startswith(f"{name}.")]
+        named = spoken_for.get(name, [])
         if not named:
             raise ValueError(_unknown(name, [one.id for one in ambiguities]))
         fitting = [one for one in named if one.readings.keys() >= set(letters)]

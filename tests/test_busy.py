@@ -11,6 +11,7 @@ from busy import Habits, busy
 from traffic import MISSION, SUBSCRIBE, Recorder, navigate, readings_at_random
 
 from missionfsm.app.recorded import check_file
+from missionfsm.bear.mission.stream import GOALS
 
 ROUGH = Habits(lost=0.12, late=0.12, ends=0.05, slow=0.8)
 """Where much is lost or late, and little comes at once."""
@@ -72,6 +73,33 @@ def test_a_busy_log_is_decided(tmp_path: Path, habits: Habits, clients: int) -> 
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
     ((_, verdict),) = check_file(str(path))
     assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize(("habits", "clients", "lines", "seed"), [(CLOSE, 3, 300, 37), (LAGGING, 5, 300, 38)])
+def test_many_unusual_readings_are_learned(tmp_path: Path, habits: Habits, clients: int, lines: int, seed: int) -> None:
+    """A quarter of all questions answered in any way, by a robot that many follow: which ones, is found out."""
+    path = tmp_path / "log"
+    log = busy(seed, lines, evolve(habits, clients=clients), readings_at_random(seed))
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in log))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("place", [0.5, 1])
+@pytest.mark.parametrize("clients", [3, 6])
+def test_a_wrong_message_of_a_busy_log_is_accused(tmp_path: Path, clients: int, place: float) -> None:
+    """A mission that a stream shows with other goals than before, amid others or at the end, is what is wrong."""
+    log = busy(clients, 200, evolve(CLOSE, clients=clients))
+    shown = [at for at, line in enumerate(log) if line.get("message", {}).get("missionStates", {}).get("missions")]
+    at = shown[int(place * (len(shown) - 1))]
+    log[at] = orjson.loads(orjson.dumps(log[at]))
+    log[at]["message"]["missionStates"]["missions"][0]["goals"] = [{"destinationId": "elsewhere"}]
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in log))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.violation is not None, str(verdict)
+    accused = [one.id for one in verdict.violation.rules]
+    assert (verdict.violation.at, accused) == (at + 1, [GOALS.id]), str(verdict)
 
 
 @pytest.mark.parametrize("shown", [1, 5])

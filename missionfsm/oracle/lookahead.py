@@ -121,6 +121,8 @@ class Lookahead:
     Attributes:
         at: how many of them have been observed.
         withheld: whether anything was withheld since this was last set.
+        blamed: the bits of readings that had to stay and for which something was withheld, by the position of the next
+            event.
         stopped: whether changes were not imagined since all who are to see them are too far behind what is known.
         consulted: the bits of the ambiguities of which something was assumed since the last event.
         depends: the bits of those on which it has depended since then what becomes of an explanation: it would have
@@ -141,6 +143,7 @@ class Lookahead:
     ) -> None:
         self.spec = spec
         self.required, self.withheld, self.stopped = required, False, False
+        self.blamed: dict[int, int] = {}
         self.last = last
         self._horizon = horizon
         self._beyond = sorted(beyond)
@@ -228,8 +231,10 @@ class Lookahead:
 
     def withholds(self, assumed: int) -> bool:
         """Whether what is assumed contradicts a reading that has to stay possible."""
-        if not assumed or not self.required & ~assumed:
+        withheld = self.required & ~assumed
+        if not assumed or not withheld:
             return False
+        self.blamed[self.at] = self.blamed.get(self.at, 0) | withheld
         self.withheld = True
         return True
 

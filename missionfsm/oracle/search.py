@@ -45,6 +45,12 @@ USUAL, USUAL_EACH = 5_000, 50
 FURTHER = 64
 """How many events behind the one where that leads nowhere are looked at under all readings."""
 
+NEAR = 8
+"""How many events before the one where the usual readings lead nowhere are looked at for those to be given up."""
+
+FIRST_LOOK = 3
+"""How many times the budget for the usual readings goes at first into learning which others there are."""
+
 NO_FURTHER = 300
 """How many explanations are looked at without coming any further, where more events will come that tell more."""
 
@@ -165,7 +171,9 @@ class Search:
         """Whether the first events up to a horizon are explained.
 
         Every ambiguity is first read in its usual way: few implementations need many other readings. Which ones, is
-        learned where that leads nowhere, by looking at all readings of what is before and a little behind that.
+        learned where that leads nowhere, by looking at all readings of what is before and a little behind that. Where
+        that is too dear, those are given up that kept anything from being looked at near there, or all of them, with
+        more events in mind.
 
         Raises:
             ExhaustedError: it costs more than the budget.
@@ -184,18 +192,32 @@ class Search:
                 if not self.whole:
                     raise  # what comes later tells more than other readings do
             usual -= self.successors.spent
-            required, self._required = self._required, 0
-            try:
-                if not self._go_on(min(self._stuck + FURTHER, horizon), self.budget):
-                    return False
-            except ExhaustedError:
+            required, stuck, blamed = self._required, self._stuck, self._ahead.blamed
+            nearer, effort = min(stuck + FURTHER, horizon), USUAL + USUAL_EACH * horizon
+            found = self._explains_under(0, nearer, min(FIRST_LOOK * effort, self.budget))
+            if found is None and self.whole:
+                ways = (required & ~_near(blamed, stuck), 0)
+                if any(self._explains_under(way, horizon, effort) for way in ways):
+                    return True
+                found = self._explains_under(0, nearer, self.budget)
+            if found is None:
                 self._required = required  # nothing was learned
-                raise
+                raise ExhaustedError
+            if not found:
+                return False
             left = required
             for one in self.layers[-1].explanations:
                 left &= one.assumed
             self._required = left if left != required and usual > 0 else 0
         return self._go_on(horizon, self.budget)
+
+    def _explains_under(self, required: int, horizon: int, budget: int) -> bool | None:
+        """Whether the first events up to a horizon are explained where readings have to stay; None: too dear."""
+        self._required = required
+        try:
+            return self._go_on(horizon, budget)
+        except ExhaustedError:
+            return None
 
     def _go_on(self, horizon: int, budget: int) -> bool:
         """Whether the first events up to a horizon are explained under the readings that are required.
@@ -459,3 +481,13 @@ class Search:
     def exact(self) -> bool:
         """Whether the last layer has every explanation there is."""
         return self._end is None and not any(layer.unfinished for layer in self.layers[:-1])
+
+
+def _near(blamed: Mapping[int, int], stuck: int) -> int:
+    """The bits of the readings that kept anything from being looked at near the event where nothing led further.
+
+    Args:
+        blamed: the bits of those that did, by the position of the next event.
+        stuck: how far it led.
+    """
+    return functools.reduce(operator.or_, (bits for at, bits in blamed.items() if at >= stuck - NEAR), 0)

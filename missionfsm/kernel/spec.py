@@ -345,6 +345,11 @@ class Spec:
         """How large a state is for an exploration."""
         return (self.abstraction.explore_size or self.names)(state)
 
+    def promised_about(self, ambiguity: Ambiguity) -> tuple[str, ...]:
+        """Ids of the promises that an ambiguity is a question about, by the longest of the names that begin its id."""
+        names = (name for name in self.answers_for if f"{ambiguity.id}.".startswith(f"{name}."))
+        return self.answers_for.get(max(names, key=len, default=""), ())
+
     @property
     def implied(self) -> Mapping[str, Rule]:
         """What goes without saying of each operation and each drive, by its id: named where no other rule is broken."""

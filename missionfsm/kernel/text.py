@@ -28,6 +28,19 @@ def shortened(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[:half]} … {text[-half:]}"
 
 
+def differing(one: str, other: str) -> tuple[str, str]:
+    """Two texts that are shown side by side: of long ones only where they differ, with a little before and after."""
+    if max(len(one), len(other)) <= 2 * MAX_BRIEF:
+        return one, other
+    least = min(len(one), len(other))
+    first = next((at for at in range(least) if one[at] != other[at]), least)
+    last = next((at for at in range(least - first) if one[-1 - at] != other[-1 - at]), least - first)
+    begin = max(0, first - MAX_BRIEF // 2)
+    both = (text[begin : len(text) - last + min(last, MAX_BRIEF // 2)] for text in (one, other))
+    here, there = (f"{'…' if begin else ''}{shortened(text, 4 * MAX_BRIEF)}" for text in both)
+    return (f"{here}…", f"{there}…") if last > MAX_BRIEF // 2 else (here, there)
+
+
 def clipped(text: str) -> str:
     """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
     return printable(shortened(text, MAX_CHARACTERS))

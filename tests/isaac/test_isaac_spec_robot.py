@@ -17,6 +17,7 @@ from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.nearest import rules_about
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.mutate.teeth import teeth
@@ -129,6 +130,12 @@ def test_what_is_due_while_there_is_no_connection(lines: tuple[Any, ...], readin
     assert verdict.conforms, verdict
     followed = {name: verdict.readings.get(name, ("a", "b")) for name in readings}
     assert followed == readings
+
+
+def test_every_question_has_a_rule_that_two_answers_to_it_break() -> None:
+    """A codelet that answers a question now so and now otherwise is accused of that, not of whatever came."""
+    spec = system("isaac.robot").spec
+    assert [one.id for one in AMBIGUITIES if not rules_about(spec, one[one.default])] == []
 
 
 def test_an_integer_that_is_a_number_is_told_by_its_place() -> None:

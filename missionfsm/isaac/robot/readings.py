@@ -11,6 +11,7 @@ AI_10 = Ambiguity(
     "How does a status say which mission it is about?",
     {"a": "it does not: there is one mission at a time", "b": "by the mission's uuid in the payload"},
     default="b",
+    rule="a-status-is-about-its-mission",
 )
 AI_15_MISSION = Ambiguity(
     "AI-15.mission",
@@ -21,18 +22,21 @@ AI_15_MISSION = Ambiguity(
         "c": "it fails, which is told once the connection is there again",
     },
     default="a",
+    rule="nothing-is-said-without-a-connection",
 )
 AI_15_STATUS = Ambiguity(
     "AI-15.status",
     "What becomes of a status that is due while there is no connection?",
     {"a": "it is lost", "b": "it is sent once the connection is there again"},
     default="a",
+    rule="nothing-is-said-without-a-connection",
 )
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a mission understood whose 64-bit integers are numbers instead of strings?",
     {"a": "yes, both are", "b": "no, strings only"},
     default="a",
+    rule="a-mission-starts-the-behavior-tree",
 )
 AI_25_HEADER = Ambiguity(
     "AI-25.header",
@@ -40,6 +44,7 @@ AI_25_HEADER = Ambiguity(
     {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
     default="s",
     flagged=frozenset("n"),
+    rule="64-bit-integers-are-strings",
 )
 AI_27_TYPE = Ambiguity(
     "AI-27.type",
@@ -47,6 +52,7 @@ AI_27_TYPE = Ambiguity(
     {"a": "nothing to the codelet", "b": "a mission without a configuration: only the channel counts"},
     default="a",
     flagged=frozenset("b"),
+    rule="what-is-no-mission-has-no-effect",
 )
 AI_27_UUID = Ambiguity(
     "AI-27.uuid",
@@ -54,17 +60,26 @@ AI_27_UUID = Ambiguity(
     {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
     default="a",
     flagged=frozenset("b"),
+    rule="a-line-is-one-message",
 )
 AI_28_STATUS = Ambiguity(
     "AI-28.status",
     "How is a status written?",
     {"c": "by its name in capitals", "d": "by its name in lower case", "e": "by its number"},
     default="d",
+    rule="a-line-is-one-message",
 )
 _TICK = {"a": "at once", "b": "on the codelet's own tick"}
-AI_31_END = Ambiguity("AI-31.end", "When is the final status sent?", _TICK, default="a", alike="AI-31")
+AI_31_END = Ambiguity(
+    "AI-31.end", "When is the final status sent?", _TICK, default="a", alike="AI-31", rule="one-success-at-the-end"
+)
 AI_31_PREEMPTED = Ambiguity(
-    "AI-31.preempted", "When is the FAILURE of a preempted mission sent?", _TICK, default="a", alike="AI-31"
+    "AI-31.preempted",
+    "When is the FAILURE of a preempted mission sent?",
+    _TICK,
+    default="a",
+    alike="AI-31",
+    rule="a-new-mission-preempts",
 )
 AI_31_UNUSABLE = Ambiguity(
     "AI-31.unusable",
@@ -72,30 +87,35 @@ AI_31_UNUSABLE = Ambiguity(
     _TICK,
     default="a",
     alike="AI-31",
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_32_SAME = Ambiguity(
     "AI-32.same",
     "What is a MissionProto with the uuid of the mission that runs?",
     {"a": "a mission that preempts it, like any other", "b": "nothing: that mission runs already"},
     default="a",
+    rule="a-new-mission-preempts",
 )
 AI_33_NULL = Ambiguity(
     "AI-33.null",
     "What is a configuration that is null?",
     {"a": "an empty one", "b": "one that cannot be used"},
     default="a",
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_VALUE = Ambiguity(
     "AI-33.value",
     "What is a configuration that is JSON, but no object?",
     {"a": "one that cannot be used", "b": "one with nothing to set"},
     default="a",
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_NODE = Ambiguity(
     "AI-33.node",
     "What is a configuration in which something is no node with components?",
     {"a": "one that can be used", "b": "one that cannot be used, as in the shipped software"},
     default="a",
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNUSABLE = Ambiguity(
     "AI-33.unusable",
@@ -107,18 +127,21 @@ AI_33_UNUSABLE = Ambiguity(
     },
     default="a",
     flagged=frozenset("bc"),
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_RUNNING = Ambiguity(
     "AI-33.running",
     "Is RUNNING said of a mission whose configuration cannot be used?",
     {"a": "no, only FAILURE", "b": "yes, before the FAILURE"},
     default="a",
+    rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_PREEMPTS = Ambiguity(
     "AI-33.preempts",
     "What becomes of a mission that runs when another one comes whose configuration cannot be used?",
     {"a": "it is preempted all the same", "b": "it goes on"},
     default="a",
+    rule="a-new-mission-preempts",
 )
 
 AMBIGUITIES = declared(globals(), Ambiguity)

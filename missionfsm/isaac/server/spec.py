@@ -294,6 +294,9 @@ def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[
         return ()
     queued = [one for one in server.missions if one.status is Status.QUEUED and _says(content, one)]
     own = [one for one in queued if link.serves and one.robot == link.name]
+    canceled = (one for one in server.missions if one.status is Status.CANCELED and one.robot == link.name)
+    if not own and any(_says(content, one) for one in canceled):
+        return (rules.CANCELED.id, rules.UPSTREAM.id)
     if not own:
         return (rules.UNNAMED.id,) if queued else ()
     return (rules.SENT.id,) if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)

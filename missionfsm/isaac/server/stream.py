@@ -25,6 +25,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.step import Match, Mismatch, Step
+from missionfsm.kernel.text import differing
 
 _ABORTED = {"c": "timed out", "a": "aborted", "b": "failed"}
 """AI-02.aborted: how missions are called that were aborted."""
@@ -127,7 +128,8 @@ def matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] 
         says = f"the mission came on channel {content.channel!r}, not {view.channel!r}"
         return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)
     if content.what != view.config:
-        return Mismatch(rules.CONFIG.id, f"the configuration is {content.what}, not {view.config}", near=True)
+        came, due = differing(str(content.what), view.config)
+        return Mismatch(rules.CONFIG.id, f"the configuration is {came}, not {due}", near=True)
     assumes = (
         AI_28_CONFIG["b" if content.form == "text" else "a"],
         AI_25_HEADER["n" if content.bare else "s"],

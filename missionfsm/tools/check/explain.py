@@ -300,5 +300,5 @@ def _against_drive(nearest: Nearest, event: Event) -> Accusation:
     reachable = list(nearest.reachable())
     rest = [one for one in reachable if nearest.at_rest(one)] or reachable
     states = dict.fromkeys(described(nearest.spec, one.state) for one in rest)
-    note = f"it cannot happen in {' or '.join(list(states)[:MAX_STATES])}"
+    note = f"it cannot happen here: {' or '.join(list(states)[:MAX_STATES])}"
     return [Candidate(what=NOT_HAPPENED)], drive.impossible if drive else (), [note]

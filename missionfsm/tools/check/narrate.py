@@ -9,12 +9,15 @@ from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Called, Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.history import Called, Driven, Ended, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.system import System
 from missionfsm.kernel.text import printable, shortened
 from missionfsm.oracle.transcript import Transcript
 from missionfsm.tools.check.phrases import answer_words, event_words, name_words
 from missionfsm.tools.check.verdict import Violation
+
+MAX_NAME = 20
+"""How many digits of a name are read; in place of longer ones a story numbers them."""
 
 MAX_LINE = 300
 """How many characters of one thing that happened a story has room for."""
@@ -94,6 +97,7 @@ def _lines(system: System, history: tuple[JSON, ...]) -> Iterator[tuple[str, Eve
     """A line for each event but those answers that come at once: they share the line of their call."""
     asked: Called | None = None
     spec = system.spec
+    known: dict[Name, int] = {}
 
     def call(asked: Called) -> str:
         about = f" of {', '.join(map(name_words, asked.names))}" if asked.names else ""
@@ -108,9 +112,18 @@ def _lines(system: System, history: tuple[JSON, ...]) -> Iterator[tuple[str, Eve
             yield call(asked), asked
         asked = event if isinstance(event, Called) else None
         if asked is None:
-            yield "(settled)" if isinstance(event, Settled) else event_words(spec, event), event
+            said = event_words(spec, event) + _long_names(event, known)
+            yield "(settled)" if isinstance(event, Settled) else said, event
     if asked is not None:
         yield call(asked), asked
+
+
+def _long_names(event: Event, known: dict[Name, int]) -> str:
+    """Names that are too long to be told from each other, by the order in which they come: the first, the second."""
+    if not isinstance(event, Driven | Received):
+        return ""
+    long = [one for one in event.names if isinstance(one, tuple) and len(str(one[-1])) > MAX_NAME]
+    return "".join(f" ({one[0]} no. {known.setdefault(one, len(known) + 1)})" for one in long)
 
 
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:

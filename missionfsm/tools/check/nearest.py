@@ -66,7 +66,8 @@ def rules_about(spec: Spec, assumption: Assumption) -> tuple[str, ...]:
     ambiguity = assumption.ambiguity
     under = [rule.id for rule in spec.all_rules if rule.assumes is not None and rule.assumes.ambiguity is ambiguity]
     named = [rule.id for rule in spec.all_rules if ambiguity.rule and rule.id.endswith(ambiguity.rule)]
-    return tuple(dict.fromkeys((*named, *under)))
+    about = tuple(dict.fromkeys((*named, *under)))
+    return about or spec.promised_about(ambiguity)
 
 
 class Nearest:

@@ -150,4 +150,6 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
         own = rules_in_words(system.spec, idle[-1].rules)
         rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
-    return evolve(violation, rules=tuple(dict.fromkeys(rules))[:MAX_RULES], notes=(*violation.notes, *notes))
+    return evolve(
+        violation, rules=tuple(dict.fromkeys(rules))[:MAX_RULES], notes=(*violation.notes, *dict.fromkeys(notes))
+    )

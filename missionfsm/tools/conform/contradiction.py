@@ -34,7 +34,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     expected, notes, others, rules = [], [], [], list[str]()
     last: Judge | None = None
     ruled_out: list[tuple[Judge, str, str]] = []
-    promised = _promised(spec, ambiguity)
+    promised = spec.promised_about(ambiguity)
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
         ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
@@ -71,12 +71,6 @@ def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
         )
         for judge, says in found.values()
     )
-
-
-def _promised(spec: Spec, ambiguity: Ambiguity) -> tuple[str, ...]:
-    """Ids of the promises that an ambiguity is a question about, by the longest of the names that it begins with."""
-    names = (name for name in spec.answers_for if f"{ambiguity.id}.".startswith(f"{name}."))
-    return spec.answers_for.get(max(names, key=len, default=""), ())
 
 
 def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:

@@ -171,9 +171,11 @@ class Automaton:
         retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
         if retired:
             explanations = tuple(_forgetting(one, new) for one in explanations)
-        next_node = self._intern(tuple(rename(one, new) for one in explanations), len(new))
         keep = tuple(new)
-        rests = not retired and keep == tuple(range(len(keep)))
+        as_they_are = keep == tuple(range(len(keep)))
+        renamed = explanations if as_they_are else tuple(rename(one, new) for one in explanations)
+        next_node = self._intern(renamed, len(new))
+        rests = not retired and as_they_are
         return Edge(
             next_node,
             keep=None if rests and len(keep) == node.width else keep,

@@ -177,6 +177,11 @@ def _lowest(explanation: Explanation) -> int:
 def mentioned(explanation: Explanation) -> Iterator[int]:
     """Every name that an explanation mentions, in a fixed order; some come more than once."""
     yield from explanation.names
+    yield from mentioned_besides(explanation)
+
+
+def mentioned_besides(explanation: Explanation) -> Iterator[int]:
+    """The same without the names of the state, which come first."""
     for channel in explanation.channels:
         yield channel.name
         if channel.last:

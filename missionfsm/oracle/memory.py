@@ -20,7 +20,7 @@ one in so many."""
 ENTRY = 400
 """What anything takes that is remembered."""
 
-EACH_NAME = 24
+EACH_NAME = 16
 """What it takes more for each name of the state in it."""
 
 NAME = 200

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.readings import covers, merge
-from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned, within
+from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned_besides, within
 from missionfsm.oracle.successors import FocusOf, Place, Successor, Successors, place, place_with_lost
 
 
@@ -80,7 +80,10 @@ def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:
     A name that is gone in some explanations and was never anything's in others is carried on as well.
     """
     explanations = tuple(explanations)
-    seen = dict.fromkeys(name for one in explanations for name in mentioned(one) if name > GONE)
+    seen: dict[int, None] = {}
+    for one in explanations:
+        seen.update(dict.fromkeys(one.names))
+        seen.update(dict.fromkeys(mentioned_besides(one)))
     everywhere = set.intersection(*(set(one.gone) for one in explanations)) if explanations else set()
     seen.update(dict.fromkeys(name for one in explanations for name in one.gone if name not in everywhere))
-    return {name: number for number, name in enumerate(seen)}
+    return {name: number for number, name in enumerate([name for name in seen if name > GONE])}

@@ -94,7 +94,7 @@ def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
 def listing(robot: Robot) -> Listing:
     """What a subscriber of the robot is shown."""
     return Listing(
-        robot.listed(tuple(mission.visible for mission in robot.turns)),
+        robot.listed(tuple([mission.visible for mission in robot.turns])),
         (robot.assigned[len(robot.done)] if robot.assigned else len(robot.done)) if robot.active else None,
         robot.world.family,
         robot.fresh,

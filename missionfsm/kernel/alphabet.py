@@ -31,6 +31,11 @@ def upcoming(kind: str) -> JSON:
     return {"$next": kind}
 
 
+def member(key: str, of: JSON) -> JSON:
+    """Stands in params for a member of what such a stand-in stands for, where names are objects."""
+    return {"$member": key, "of": of}
+
+
 def as_text(value: JSON) -> JSON:
     """Stands in params for the JSON text of a value that may hold such stand-ins."""
     return {"$text": value}

@@ -6,7 +6,7 @@ What each name means is said where it is defined.
 from __future__ import annotations
 
 from missionfsm.kernel.abstraction import Abstraction
-from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming, ScriptStep, as_text, new, pick, upcoming
+from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming, ScriptStep, as_text, member, new, pick, upcoming
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.codec import JSON, NAMED, Codec, Happening, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
@@ -105,6 +105,7 @@ __all__ = [
     "each_sent",
     "every_state",
     "meet",
+    "member",
     "new",
     "pick",
     "promise",

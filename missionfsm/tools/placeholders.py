@@ -1,6 +1,6 @@
 """Stand-ins in the params of inputs and drives: where names go that a tester picks or makes up.
 
-See `pick`, `new`, `upcoming` and `as_text` in `missionfsm.kernel.alphabet`.
+See `pick`, `new`, `upcoming`, `member` and `as_text` in `missionfsm.kernel.alphabet`.
 """
 
 from __future__ import annotations
@@ -56,6 +56,8 @@ def fill(params: JSON, picked: Mapping[int, Any], naming: Naming, serial: int, k
         if "$next" in params:
             taken = [name[1] for name in known if kind_of(name) == params["$next"]]
             return naming.write((params["$next"], max(taken, default=0) + 1))
+        if "$member" in params:
+            return fill(params["of"], picked, naming, serial, known)[params["$member"]]
         if "$text" in params:
             return json.dumps(fill(params["$text"], picked, naming, serial, known), separators=(",", ":"))
         return {key: fill(value, picked, naming, serial, known) for key, value in params.items()}

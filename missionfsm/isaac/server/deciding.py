@@ -5,7 +5,6 @@ A clock that no reading that is left looks at runs no more: what differs only in
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterable, Iterator
 
 from attrs import evolve
@@ -114,44 +113,31 @@ def merged(moves: Iterable[Move]) -> tuple[Move, ...]:
     for move in moves:
         key = (move.state.missions, move.state.links, move.sent, move.at)
         same.setdefault(key, []).append(move)
-    found: list[Move] = []
-    for group in same.values():
-        while len(group) > 1:
-            pair = next(
-                (
-                    (one, other, left)
-                    for one, other in itertools.combinations(group, 2)
-                    if (left := _union(one.state.left, other.state.left)) is not None
-                ),
-                None,
-            )
-            if pair is None:
-                break
-            one, other, left = pair
-            both = tuple(dict.fromkeys((*one.rules, *other.rules)))
-            joined = evolve(one, state=evolve(one.state, left=left), rules=both)
-            group = [joined if here is one else here for here in group if here is not other]  # noqa: PLW2901 - grows less
-        found += group
-    return tuple(found)
+    return tuple(move for group in same.values() for move in _joined(group))
 
 
-def _union(one: Left, other: Left) -> Left | None:
-    """What is left under either of two choices, if they differ in one question at most."""
-    if one == other:
-        return one
-    first, second = dict(one), dict(other)
-    differing = [name for name in {**first, **second} if first.get(name) != second.get(name)]
-    if len(differing) > 1:
-        return None
-    (name,) = differing
-    if name not in first or name not in second:
-        return one if name not in first else other
-    everything = "".join(_QUESTIONS[name].readings)
-    joined = "".join(letter for letter in everything if letter in first[name] or letter in second[name])
-    rest = {**first, name: joined}
-    if joined == everything:
-        del rest[name]
-    return tuple(sorted(rest.items()))
+def _joined(group: list[Move]) -> list[Move]:
+    """Moves that differ only in what they decided, as few as can be: any two are one that differ in one question."""
+    while True:
+        before = len(group)
+        for name in sorted({name for one in group for name, _ in one.state.left}) if before > 1 else ():
+            apart: dict[Left, list[Move]] = {}
+            for one in group:
+                apart.setdefault(tuple(left for left in one.state.left if left[0] != name), []).append(one)
+            if len(apart) < len(group):
+                group = [_either(alike, name, rest) if len(alike) > 1 else alike[0] for rest, alike in apart.items()]
+        if len(group) == before:
+            return group
+
+
+def _either(moves: list[Move], name: str, rest: Left) -> Move:
+    """The move for several that differ in what is left of one question; `rest` is what is left of the others."""
+    question = _QUESTIONS[name]
+    wanted = {letter for one in moves for letter in one.state.letters(question)}
+    letters = "".join(letter for letter in question.readings if letter in wanted)
+    left = rest if len(letters) == len(question.readings) else tuple(sorted((*rest, (name, letters))))
+    rules = tuple(dict.fromkeys(rule for one in moves for rule in one.rules))
+    return evolve(moves[0], state=evolve(moves[0].state, left=left), rules=rules)
 
 
 _QUESTIONS = {one.id: one for one in AMBIGUITIES}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.server.samples import ROBOTS, header, robot_line
 from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
-from missionfsm.kernel.alphabet import ScriptStep, pick, upcoming
+from missionfsm.kernel.alphabet import ScriptStep, member, pick, upcoming
 from missionfsm.kernel.codec import JSON
 
 A, B = ROBOTS
@@ -88,6 +88,14 @@ class Script:
         self.lines.append(ScriptStep("drive", robot_line(head, payload, LINK), ((LINK, link), (UUID, mission))))
         return self
 
+    def half(self, link: int, mission: int, status: str, half: str) -> Script:
+        """A status is said of nobody's mission, whose identifier is half that of another; then a look."""
+        uuid = {"lower": "3", "upper": "4", half: member(half, pick("uuid", UUID))}
+        head = header(MissionStatusProto, "mission_status", uuid=uuid)
+        drive = robot_line(head, {"missionStatus": status, "uuid": uuid}, LINK)
+        self.lines.append(ScriptStep("drive", drive, ((LINK, link), (UUID, mission))))
+        return self.look()
+
     def raw(self, link: int, text: str) -> Script:
         """Any text is sent as a line; then a look."""
         params = {"event": "line", "connection": pick("connection", LINK), "line": text}
@@ -109,6 +117,9 @@ _RICH = {
     "words": {"Say": {"text": "carter " * 200}},
 }
 _GRIP = {"arm": {"Grip": {"force": 17, "on": True}}}
+
+_CONFIGS: tuple[JSON, ...] = (3, 0, 0.5, True, False, "", [], [{}], ["carter"])
+"""What is no configuration."""
 
 _SCRIPTS = (
     # A diamond over two robots: nothing starts before its upstreams have succeeded, and then everything does.
@@ -427,6 +438,108 @@ _SCRIPTS = (
     .name(2, B)
     .wait()
     .report(2, 1, "success"),
+    # Identifiers of which one half is right, the lower or the upper, are nobody's.
+    Script()
+    .submit(A)
+    .submit(A)
+    .robot(0, A)
+    .half(0, 0, "running", "lower")
+    .half(0, 0, "running", "upper")
+    .report(0, 0, "running")
+    .half(0, 0, "failure", "lower")
+    .half(0, 0, "failure", "upper")
+    .wait()
+    .report(0, 0, "success")
+    .half(0, 1, "success", "lower"),
+    # A connection that drops is its own robot's affair: others go on with what is sent, runs, waits or has ended.
+    Script()
+    .submit(A, timeout=60)
+    .submit(A)
+    .submit(B, start_timeout=60)
+    .submit("carter-03")
+    .submit("carter-03", start_timeout=60)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .robot(1, B)
+    .robot(2, "carter-03")
+    .report(2, 3, "success")
+    .connect()
+    .drop(3)
+    .robot(4, "carter-04")
+    .drop(4)
+    .drop(2)
+    .report(1, 2, "running")
+    .report(1, 2, "success")
+    .drop(1)
+    .report(0, 0, "success")
+    .report(0, 1, "success"),
+    # What is submitted while a robot is away waits for it, and what came before and after does; so it is a second time.
+    Script()
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "success")
+    .drop(0)
+    .submit(A)
+    .submit(A)
+    .look()
+    .robot(1, A)
+    .report(1, 1, "success")
+    .submit(A)
+    .report(1, 2, "failure")
+    .report(1, 3, "running")
+    .drop(1)
+    .submit(A)
+    .robot(2, A)
+    .report(2, 4, "success"),
+    # A mission is cancelled in the queue of a robot that is busy: it is busy still.
+    Script()
+    .submit(A, timeout=60)
+    .submit(B)
+    .submit(A, 1)
+    .submit(A)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .robot(1, B)
+    .report(1, 1, "failure")
+    .wait()
+    .report(0, 0, "success"),
+    # Each mission of a robot has the timeouts that are its own, or none.
+    Script()
+    .submit(A, start_timeout=2, timeout=4)
+    .submit(A, start_timeout=20)
+    .submit(A, start_timeout=2, timeout=4)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .report(0, 0, "success")
+    .wait(4)
+    .report(0, 1, "running")
+    .wait(6)
+    .report(0, 1, "success")
+    .report(0, 2, "running")
+    .wait(6),
+    # The time that a robot's last mission took is not the next one's.
+    Script()
+    .submit(A, timeout=8)
+    .submit(A, timeout=8)
+    .robot(0, A)
+    .report(0, 0, "running")
+    .wait(5)
+    .report(0, 0, "success")
+    .report(0, 1, "running")
+    .wait(4),
+    # What a robot says that acknowledges nothing gives no more time.
+    Script()
+    .submit(A, start_timeout=5)
+    .robot(0, A)
+    .name(0, A)
+    .wait()
+    .say(0, 0, "running", "elsewhere")
+    .name(0, A, "elsewhere")
+    .wait()
+    .name(0, A)
+    .wait(2.5),
+    # A configuration is an object, or the mission is refused.
+    Script().odd(*({"robot": A, "config": config} for config in _CONFIGS)).look(),
     # Upstreams that do not exist, and what is of another type than documented.
     Script()
     .odd(

@@ -72,6 +72,20 @@ def test_a_mission_may_pass_to_the_newer_connection() -> None:
     assert "n" in verdict.readings["AI-16.under-way"]
 
 
+def test_a_mission_that_outlived_its_connection_may_stay_where_its_robot_was_back() -> None:
+    """AI-16.under-way k: a newer connection takes over; it is heard there too, or only the one between is (AI-15 a)."""
+
+    def begin() -> History:
+        begun = sent(start_timeout=60).drive("disconnect", connection=1).robot(2).submit(2).robot(3).settles
+        return begun.shows("STARTED", "QUEUED").reports(3, 1, "success")
+
+    known = {**EXACT, "AI-16": "a", "AI-16.under-way": "k"}
+    unheard = begin().settles.shows("STARTED", "QUEUED").reports(2, 1, "success").sends(3, 2).settles
+    assert unheard.shows("SUCCESS", "STARTED").judged(readings=known).conforms
+    assert begin().sends(3, 2).settles.shows("SUCCESS", "STARTED").judged(readings=known).conforms
+    assert not begin().settles.shows("SUCCESS", "QUEUED").judged(readings=known).conforms
+
+
 def test_another_name_may_cost_the_connection() -> None:
     """AI-17 d: like a line that cannot be read."""
     begun = sent().says(1, "s").closes(1).settles.shows("FAILED_DISCONNECTED")

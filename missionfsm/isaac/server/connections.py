@@ -243,6 +243,8 @@ def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Move
     for letter, way in ways(displaced, AI_16_UNDER_WAY, "k", "l", "m", "n"):
         if letter == "k":
             yield from _served(way, link)
+            if kept:
+                yield from _served(_bound(way, holder), link)
         elif letter == "n":
             yield from _served(_adopted(way, holder, link), link)
         elif letter == "l":
@@ -250,6 +252,14 @@ def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Move
                 yield from _served(after, link)
         else:
             yield from _served(_untied(way, holder) if unnoticed else untimed(way, holder.slot), link)
+
+
+def _bound(move: Move, holder: Link) -> Move:
+    """What outlived its connection has gone on on the one with which its robot was back, and stays there."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.status in UNDER_WAY and mission.sent_on is None and mission.robot == holder.name:
+            move = move.with_mission(index, sent_on=holder.slot)
+    return move
 
 
 def _adopted(move: Move, holder: Link, link: Link) -> Move:

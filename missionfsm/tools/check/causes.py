@@ -52,9 +52,8 @@ def latest(belief: Belief) -> tuple[str, ...]:
     for (kind, *_), exercises in belief.exercised_last:
         if kind is Settled:
             break
-        rules = [one for one in exercises if one not in known or known[one].code is None]
-        if rules and kind is not Received:
-            return tuple(rules)
+        if exercises and kind is not Received:
+            return tuple(one for one in exercises if one not in known or known[one].code is None)
     return ()
 
 

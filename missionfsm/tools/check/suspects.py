@@ -128,8 +128,8 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
 
     Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
     nothing to be wrong about. Nor is it where something is missing: without what it made nothing would be due. Where it
-    is what is shown, the rules of the only suspect that was refused come first. Those of the only one that was OK, and
-    of the only thing that may have had no effect, come second: what is wrong in what came is nearer.
+    is what is shown, the rules of the only suspect, and of the only thing that may have had no effect, come second:
+    what is wrong in what came is nearer.
     `readings` are those that the implementation has to follow.
     """
     history = violation.history
@@ -144,8 +144,8 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         notes += tuple(f"without this answer everything is explained: {one.says}" for one in found)
         if len(found) == 1 and not answered:
             own = rules_in_words(system.spec, found[0].rules)
-            nearer = 1 if found[0].code == OK else 0
-            rules = (*rules[:nearer], *own, *rules[nearer:])
+            rules = (*rules[:1], *own, *rules[1:])
+            notes += ("a call that is refused changes nothing",) if found[0].code != OK else ()
     if len(idle) in range(1, MAX_SUSPECTS + 1):
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
         own = rules_in_words(system.spec, idle[-1].rules)

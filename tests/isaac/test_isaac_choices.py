@@ -86,6 +86,21 @@ def test_a_mission_that_outlived_its_connection_may_stay_where_its_robot_was_bac
     assert not begin().settles.shows("SUCCESS", "QUEUED").judged(readings=known).conforms
 
 
+def test_a_robot_may_be_held_to_what_was_aborted_on_an_older_connection() -> None:
+    """AI-08 d: the older one drops, and the robot is free, or only once it has said how that one ended."""
+
+    def begin() -> History:
+        begun = sent().submit(2).robot(2).settles.waits(5).settles.shows("FAILED_TIMEDOUT", "QUEUED")
+        return begun.drive("disconnect", connection=1)
+
+    known = {**EXACT, "AI-08": "d", "AI-16": "a", "AI-16.under-way": "k", "AI-39.limits": "a"}
+    held = begin().settles.shows("FAILED_TIMEDOUT", "QUEUED")
+    assert held.judged(readings=known).conforms
+    assert held.reports(2, 1, "failure").sends(2, 2).settles.judged(readings=known).conforms
+    assert begin().sends(2, 2).settles.shows("FAILED_TIMEDOUT", "STARTED").judged(readings=known).conforms
+    assert not held.judged(readings={**known, "AI-08": "a"}).conforms
+
+
 def test_another_name_may_cost_the_connection() -> None:
     """AI-17 d: like a line that cannot be read."""
     begun = sent().says(1, "s").closes(1).settles.shows("FAILED_DISCONNECTED")

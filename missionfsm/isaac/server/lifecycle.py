@@ -241,11 +241,13 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
         for index, mission in enumerate(missions):
             if mission.robot == link.name and mission.status is Status.QUEUED:
                 move = stopped(move, index, (START, "connect"))
-    for index, mission in enumerate(missions):
-        if mission.lingers and _was_on(mission, link):
-            move = move.with_mission(index, lingers=False)
+    held = [index for index, mission in enumerate(missions) if mission.lingers and _was_on(mission, link)]
+    free = kept = move
+    for index in held:
+        free, kept = free.with_mission(index, lingers=False), kept.with_mission(index, sent_on=None)
     affected = [index for index, one in enumerate(missions) if one.status in UNDER_WAY and _was_on(one, link)]
-    moves = [move]
+    # AI-08 d: a robot that has a newer connection may be held to what was aborted on an older one that drops.
+    moves = [free, kept] if held and not link.serves else [free]
     for index in affected:
         moves = [after for one in moves for after in _lost_mission(one, index, still=still)]
     yield from moves

@@ -52,8 +52,9 @@ def latest(belief: Belief) -> tuple[str, ...]:
     for (kind, *_), exercises in belief.exercised_last:
         if kind is Settled:
             break
-        if exercises and kind is not Received:
-            return tuple(one for one in exercises if one not in known or known[one].code is None)
+        rules = [one for one in exercises if one not in known or known[one].code is None]
+        if rules and kind is not Received:
+            return tuple(rules)
     return ()
 
 

@@ -136,9 +136,11 @@ def _wrong_in_it(
 
 
 def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
-    """The rules of answers with another code that are allowed."""
-    due = (one for one in candidates if one.allowed and one.weight >= CODE)
-    return list(dict.fromkeys(rule for one in due for rule in one.rules))
+    """The rules of answers with another code that are allowed, those that need least to have happened unseen."""
+    due = [one for one in candidates if one.allowed and one.weight >= CODE]
+    nearest = min(((one.early, len(one.unseen), one.unusual) for one in due), default=None)
+    near = (one for one in due if (one.early, len(one.unseen), one.unusual) == nearest)
+    return list(dict.fromkeys(rule for one in near for rule in one.rules))
 
 
 def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:

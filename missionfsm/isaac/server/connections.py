@@ -62,7 +62,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
         if unnoticed is not None:
             yield from _served(unnoticed, holder)
     heirs = [one for one in move.state.links if one.name == gone.name and gone.name is not None]
-    if not gone.serves or not heirs:
+    if not gone.serves or not heirs or any(one.serves for one in heirs):
         yield move
         return
     at_once, later = split(move, AI_16_BACK, "p")  # else not before it says it again, or never
@@ -205,7 +205,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
         return
     slots = [one.slot for one in move.state.links]
     newer = slots.index(link.slot) > slots.index(holder.slot)
-    for letter, way in ways(move, AI_16, "a", "b", "d", "n"):
+    for letter, way in ways(move, AI_16, "a", "b", "d", "n", "s"):
         if letter == "n" and "b" in way.state.letters(AI_39):
             fresh = way.state.next_pass(way.at[1])
             yield from _takes_over(
@@ -215,6 +215,8 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
             yield from _takes_over(way, link, holder)
         elif letter == "d":
             yield from closed(way, Link(link.slot))
+        elif letter == "s":
+            yield from _served(way, link)
         else:
             yield way
 

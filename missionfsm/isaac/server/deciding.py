@@ -23,6 +23,8 @@ from missionfsm.isaac.server.readings import (
 from missionfsm.isaac.server.state import (
     DOOM,
     DROP,
+    HEARD,
+    SENT,
     SILENT,
     START,
     START_COUNTS_FROM,
@@ -62,7 +64,8 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
     if question.id == AI_39_ORDER.id and "s" not in letters:
         after = _in_order(after)
     if question.id == AI_08.id and "d" not in letters:
-        missions = tuple(evolve(one, lingers=False) if one.lingers else one for one in after.missions)
+        over = (SENT,) if "e" in letters else (SENT, HEARD)
+        missions = tuple(evolve(one, lingers="") if one.lingers in over else one for one in after.missions)
         after = evolve(after, missions=missions)
     if question.id in _ABOUT_CLOCKS:
         after = evolve(after, missions=tuple(_in_time(after, one) for one in after.missions))

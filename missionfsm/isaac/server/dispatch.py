@@ -25,6 +25,7 @@ from missionfsm.isaac.server.readings import (
     AI_12,
     AI_13,
     AI_15_SENT,
+    AI_16,
     AI_16_UNDER_WAY,
     AI_19,
     AI_24_WHOLE,
@@ -35,7 +36,9 @@ from missionfsm.isaac.server.readings import (
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
+    HEARD,
     RUN,
+    SENT,
     START,
     UNDER_WAY,
     WAITS,
@@ -84,14 +87,14 @@ def busy(state: Server, link: Link) -> set[str]:
     return {one.channel for one in _given(state, link) if one.status in UNDER_WAY}
 
 
-def _lingering(state: Server, link: Link) -> set[str]:
-    """The channels of the missions that were aborted and that a connection's robot may still run (AI-08 d)."""
-    return {one.channel for one in _given(state, link) if one.lingers}
+def _lingering(state: Server, link: Link, *words: str) -> set[str]:
+    """The channels of the missions that were aborted and that a connection's robot may still run (AI-08 d, e)."""
+    return {one.channel for one in _given(state, link) if one.lingers in words}
 
 
 def _given(state: Server, link: Link) -> Iterator[Mission]:
     """The missions of a connection's robot, but for those that were sent elsewhere and keep nobody busy."""
-    apart = state.letters(AI_16_UNDER_WAY) == "m"
+    apart = state.letters(AI_16_UNDER_WAY) == "m" or state.letters(AI_16) == "s"
     for one in state.missions:
         if one.robot == link.name and not (apart and one.sent_on is not None and one.sent_on != link.slot):
             yield one
@@ -163,12 +166,15 @@ def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
     queue = _queue(move.state, link)
     if not any(missions[index].ready for index in queue):
         return
-    taken, lingering = busy(move.state, link), _lingering(move.state, link)
-    idle, held = split(move, AI_08, "ac") if lingering else (move, None)
+    taken = busy(move.state, link)
+    sent, heard = _lingering(move.state, link, SENT), _lingering(move.state, link, HEARD)
+    idle, held = split(move, AI_08, "ac" if heard else "ace") if sent or heard else (move, None)
     if idle is not None:
         yield from _with_taken(idle, queue, taken)
-    if held is not None:
-        yield from _with_taken(held, queue, taken | lingering)
+    if held is None:
+        return
+    for letter, way in ways(held, AI_08, "d", "e"):
+        yield from _with_taken(way, queue, taken | heard | (sent if letter == "d" else set()))
 
 
 def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple[int | None, Move]]:

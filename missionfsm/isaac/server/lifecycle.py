@@ -33,8 +33,10 @@ from missionfsm.isaac.server.state import (
     DOOM,
     DROP,
     FAILURES,
+    HEARD,
     LIFECYCLE,
     RUN,
+    SENT,
     SILENT,
     START,
     START_COUNTS_FROM,
@@ -184,7 +186,7 @@ def _drop_noticed(move: Move, index: int) -> Moves:
 
 
 def aborted(move: Move, index: int, kind: str) -> Moves:
-    """A mission is aborted; its robot is not told, or (AI-08 c) loses its connection, or (d) is busy with it still."""
+    """A mission is aborted; its robot is not told, or loses its connection (AI-08 c), or stays busy (d, e)."""
     because = {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE}[kind].id
     mission = move.state.missions[index]
     after = ends(move, index, "time out", because)
@@ -194,10 +196,12 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
     if link is None or mission.status not in UNDER_WAY:
         yield after
         return
-    quiet, closing = split(after, AI_08, "ad")
+    quiet, closing = split(after, AI_08, "ade")
     if quiet is not None:
-        lingers = "d" in quiet.state.letters(AI_08)
-        yield quiet.with_mission(index, sent_on=link.slot, lingers=True) if lingers else quiet
+        heard = mission.status is Status.RUNNING
+        lingers = not set("de" if heard else "d").isdisjoint(quiet.state.letters(AI_08))
+        word = HEARD if heard else SENT
+        yield quiet.with_mission(index, sent_on=link.slot, lingers=word) if lingers else quiet
     if closing is not None:
         yield from closed(closing, link)
 
@@ -244,7 +248,7 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     held = [index for index, mission in enumerate(missions) if mission.lingers and _was_on(mission, link)]
     free = kept = move
     for index in held:
-        free, kept = free.with_mission(index, lingers=False), kept.with_mission(index, sent_on=None)
+        free, kept = free.with_mission(index, lingers=""), kept.with_mission(index, sent_on=None)
     affected = [index for index, one in enumerate(missions) if one.status in UNDER_WAY and _was_on(one, link)]
     # AI-08 d: a robot that has a newer connection may be held to what was aborted on an older one that drops.
     moves = [free, kept] if held and not link.serves else [free]

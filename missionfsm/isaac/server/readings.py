@@ -112,9 +112,10 @@ AI_08 = Ambiguity(
         "a": "nothing: it goes on until it is preempted",
         "c": "its connection is closed",
         "d": "nothing, and it is sent no other mission until it has said how that one ended",
+        "e": "nothing; if it has said that it runs that one, it is sent no other until it has said how that ended",
     },
     default="a",
-    flagged=frozenset("cd"),
+    flagged=frozenset("cde"),
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_09 = Ambiguity(
@@ -203,8 +204,10 @@ AI_16 = Ambiguity(
         "b": "the one that had the name first",
         "d": "that one, and the other is closed",
         "n": "the one that said the name later",
+        "s": "both: each is given what comes next",
     },
     default="a",
+    flagged=frozenset("s"),
 )
 AI_16_OLDER = Ambiguity(
     "AI-16.older",

@@ -125,13 +125,13 @@ def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves
 
 
 def _heard_out(move: Move, link: Link, report: Report) -> Moves:
-    """AI-08 d: how a mission ended that was aborted may be told in words that are about none, or about another."""
+    """AI-08 d, e: how a mission ended that was aborted may be told in words that are about none, or about another."""
     yield move
     missions = move.state.missions
     lingering = [index for index, one in enumerate(missions) if one.lingers and one.robot == link.name]
     if lingering and report.status != "running":
         for index in lingering:
-            move = move.with_mission(index, lingers=False)
+            move = move.with_mission(index, lingers="")
         yield move
 
 
@@ -190,7 +190,8 @@ def _happens(move: Move, index: int, report: Report) -> Moves:
 
 def _rests(move: Move, mission: Mission) -> Move:
     """AI-39.failed: a robot that has reported a failure may be given no other mission for a second."""
-    link = move.state.serving(mission.robot)
+    own = [one for one in move.state.links if one.serves and one.slot == mission.sent_on]
+    link = own[0] if own else move.state.serving(mission.robot)
     letters = move.state.letters
     if link is None or letters(AI_39) != "a" or "b" not in letters(AI_39_FAILED):
         return move
@@ -202,7 +203,7 @@ def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:
     final = {"success": Status.SUCCESS, "failure": Status.FAILED}.get(report.status)
     move = move.to(move.state, rules.LATE.id)
     if final is not None and mission.lingers:
-        move = move.with_mission(index, lingers=False)
+        move = move.with_mission(index, lingers="")
     if final is None or mission.status not in ENDED or mission.status is final:
         yield move
         return

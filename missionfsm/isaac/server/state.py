@@ -77,6 +77,8 @@ LIFECYCLE: Chart[Status] = Chart(
 """The lifecycle of one mission; being submitted is its start, and AI-09 b and c are no moves but corrections."""
 
 ENDED = frozenset(LIFECYCLE.final)
+SENT, HEARD = "sent", "heard"
+"""What a robot has said of a mission that was sent: nothing, or something."""
 WAITS = "send acknowledged"
 START_COUNTS_FROM = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}
 """What the time to start counts from (`Clock.since`), with the letter of AI-05."""
@@ -115,7 +117,8 @@ class Mission:
         waits: the upstreams that have not ended, by their index.
         doomed: how upstreams ended that did not succeed.
         fated: the upstreams that are as good as failed, however they end (AI-22.started j).
-        lingers: whether it was aborted and its robot has not said since how it ended (AI-08 d).
+        lingers: it was aborted and its robot has not said since how it ended (AI-08 d, e): `SENT` where it has never
+            said anything of it, else `HEARD`; empty where it does not linger.
         sent_on: the slot of the connection that it was sent on; None before, and where that is gone.
         sent: whether it was sent.
         depends: whether it has upstreams at all.
@@ -135,7 +138,7 @@ class Mission:
     sent: bool = False
     depends: bool = False
     fated: tuple[int, ...] = ()
-    lingers: bool = False
+    lingers: str = ""
 
     @property
     def ticking(self) -> tuple[Clock, ...]:

@@ -186,7 +186,7 @@ def test_time_that_passes_stands_before_what_comes_next() -> None:
         "  2. a robot connects",
         "  3. a robot says its name, 'r'",
         "  4. 0.5 s pass",
-        "  5. 1 s later, connection 1 showed a mission on mission with {}",
+        "  5. 1 s later, connection 1 showed a mission on mission with {} (uuid no. 1)",
         "  6. 2 s pass",
         "  7. (settled)",
         "  8. statuses() → OK ('started',) mission 1",

@@ -342,6 +342,8 @@ def test_a_connection_that_the_server_ends() -> None:
     assert (nameless.conforms, nameless.readings["AI-18.unnamed"]) == (True, ("d",))
     rubbish = History().robot(1).drive("line", connection=1, line="rubbish").closes(1).settles.judged()
     assert (rubbish.conforms, rubbish.readings["AI-26"]) == (True, ("f",))
+    blank = History().robot(1).drive("line", connection=1, line="").closes(1).settles.judged()
+    assert (blank.conforms, blank.readings["AI-26.blank"]) == (True, ("f",))
     served = History().robot(1).waits(30).closes(1).judged()
     assert served.violation is not None
     assert [one.id for one in served.violation.rules] == ["isaac.server/connection/what-means-nothing-has-no-effect"]

@@ -10,6 +10,7 @@ from typing import Any
 from missionfsm.isaac.server import inputs
 from missionfsm.isaac.server.inputs import (
     BAD,
+    BLANK,
     DEFECTS,
     FOREIGN,
     NAME,
@@ -268,7 +269,7 @@ def read_drive_result(given: JSON) -> tuple[Any, tuple[Name, ...]]:
 def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     """What a robot's line is to a server."""
     if not line.strip():
-        return Incoming(NOISE), ()
+        return Incoming(BLANK), ()
     data = line.encode(errors="surrogatepass")
     message = decode_line(data)[0]
     if isinstance(message, WireError):
@@ -298,11 +299,11 @@ def write_drive(event: Incident, names: tuple[Name, ...]) -> JSON:
         header["uuid"] = uuids[-1]
     if event.named:
         payload["uuid"] = uuids[0]
-    body = {"header": header, "payload": payload}
+    if event.kind == NOISE:  # a mission, which nobody sends to a server
+        payload = {"uuid": {"lower": "1", "upper": "1"}, "config": {"serialized": "{}"}}
+    essences = {BLANK: "", BAD: "no message", FOREIGN: "{}"}
     line = (
-        strictjson.compact(body)
-        if event.kind in (NAME, STATUS)
-        else {NOISE: "", BAD: "no message"}.get(event.kind, "{}")
+        essences[event.kind] if event.kind in essences else strictjson.compact({"header": header, "payload": payload})
     )
     return {"event": "line", **number, "line": line}
 

@@ -7,7 +7,7 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
-from missionfsm.isaac.server.inputs import BAD, FOREIGN, NAME, STATUS, Incoming
+from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
 from missionfsm.isaac.server.lifecycle import back, closed, lost, untimed
 from missionfsm.isaac.server.readings import (
     AI_16,
@@ -19,6 +19,7 @@ from missionfsm.isaac.server.readings import (
     AI_17_UNDER_WAY,
     AI_25_TAKEN,
     AI_26,
+    AI_26_BLANK,
     AI_37,
     AI_37_EMPTY,
     AI_38,
@@ -36,6 +37,7 @@ from missionfsm.isaac.server.state import (
     Server,
     Status,
 )
+from missionfsm.kernel.readings import Ambiguity
 
 
 def connects(move: Move) -> Move:
@@ -87,7 +89,7 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
     if heard.numeric:
         taken, refused = split(move, AI_25_TAKEN, "a")
         if refused is not None:
-            yield from _unreadable(refused, link)
+            yield from _unreadable(refused, link, AI_26)
         if taken is None:
             return
         move = taken
@@ -95,8 +97,8 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
         yield from _says_name(move, link, heard.what)
     elif heard.kind == STATUS:
         yield from reports(move, link, Report(heard.what, heard.channel, named, header))
-    elif heard.kind == BAD:
-        yield from _unreadable(move, link)
+    elif heard.kind in (BAD, BLANK):
+        yield from _unreadable(move, link, AI_26 if heard.kind == BAD else AI_26_BLANK)
     elif heard.kind == FOREIGN:
         skipped, closing = split(move, AI_38, "a")
         if skipped is not None:
@@ -107,8 +109,8 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
         yield means_nothing(move)
 
 
-def _unreadable(move: Move, link: Link) -> Moves:
-    skipped, closing = split(move, AI_26, "e")
+def _unreadable(move: Move, link: Link, question: Ambiguity) -> Moves:
+    skipped, closing = split(move, question, "e")
     if skipped is not None:
         yield means_nothing(skipped)
     if closing is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from missionfsm.isaac.server.inputs import (
     BAD,
+    BLANK,
     DEFAULT_START,
     FOREIGN,
     NAME,
@@ -65,11 +66,18 @@ def _submission(asked: Submission) -> str:
     return f"submit({', '.join(parts)})"
 
 
+_KINDS = {
+    NOISE: "a message for nobody",
+    BLANK: "an empty line",
+    BAD: "a line that is no message",
+    FOREIGN: "a message with buffers",
+}
+
+
 def _heard(heard: Incoming) -> str:
     if heard.kind == NAME:
         return f"a robot says its name, {heard.what!r}"
     if heard.kind == STATUS:
         about = "of a mission" if heard.named else "of no mission in particular"
         return f"a robot reports {heard.what.upper()} {about} on {heard.channel}"
-    kinds = {NOISE: "a message for nobody", BAD: "a line that is no message", FOREIGN: "a message with buffers"}
-    return f"a robot sends {kinds[heard.kind]}"
+    return f"a robot sends {_KINDS[heard.kind]}"

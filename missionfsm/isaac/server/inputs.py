@@ -6,8 +6,8 @@ from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
-NAME, STATUS, NOISE, BAD, FOREIGN = "name", "status", "noise", "bad", "foreign"
-"""What a line can be: a name, a status, a message for nobody, no message, one of another type."""
+NAME, STATUS, NOISE, BLANK, BAD, FOREIGN = "name", "status", "noise", "blank", "bad", "foreign"
+"""What a line can be: a name, a status, a message for nobody, empty, no message, one of another type."""
 
 DEFAULT_CHANNEL = "mission"
 """The channel of a mission that names none."""
@@ -81,8 +81,8 @@ class Drops:
 class Incoming:
     """A line that a robot sends.
 
-    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BAD`, or of a `FOREIGN`
-    type.
+    It is a text (`NAME`, on whatever channel), a `STATUS`, `NOISE` (a message for nobody), `BLANK`, `BAD`, or of a
+    `FOREIGN` type.
 
     Attributes:
         what: the name's text, or the status.

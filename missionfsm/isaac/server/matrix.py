@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from missionfsm.isaac.server.inputs import (
     BAD,
+    BLANK,
     DEFAULT_START,
     FOREIGN,
     NAME,
@@ -137,7 +138,11 @@ def _whose(server: Server, link: Link) -> str:
     return f"a robot that {_robot(server, link.name)}"
 
 
-_NO_MESSAGES = {BAD: "a line that is no message", FOREIGN: "a message of another type"}
+_NO_MESSAGES = {
+    BAD: "a line that is no message",
+    BLANK: "a line that is no message",
+    FOREIGN: "a message of another type",
+}
 
 
 def _of_line(server: Server, heard: Incoming, refs: Refs, link: Link) -> tuple[str, ...]:

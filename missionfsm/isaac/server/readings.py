@@ -340,6 +340,12 @@ AI_26 = Ambiguity(
     {"e": "it is skipped", "f": "its connection is closed"},
     default="e",
 )
+AI_26_BLANK = Ambiguity(
+    "AI-26.blank",
+    "What does a line do on which nothing stands?",
+    {"e": "nothing", "f": "its connection is closed, as by one that cannot be read"},
+    default="e",
+)
 AI_27_UUID = Ambiguity(
     "AI-27.uuid",
     "Whose is the uuid in a header?",

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import random
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from attrs import evolve, frozen
 
 from missionfsm import systems
 from missionfsm.kernel.alphabet import Alphabet, Input
+from missionfsm.kernel.codec import Codec
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.picture import Sketch
 from missionfsm.kernel.readings import Ambiguity, choose
@@ -63,7 +63,7 @@ TURNSTILE = Spec(
     request_operation=str,
     ambiguities=(SECOND,),
 )
-CODEC: Any = SimpleNamespace(
+CODEC = Codec(
     read_world=lambda _: None,
     split_request=lambda _, params: ((), params),
     read_request=lambda method, _: method,

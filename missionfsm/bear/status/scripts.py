@@ -173,6 +173,7 @@ def _happened(cast: Cast, robot: str) -> Iterator[tuple[ScriptStep, ...]]:
         changes = tuple(report(robot, parts[0], value) for value in APART[parts[0]][-3:])
         then = _driven(*changes)
         restart = _driven({"event": "restart", "robotId": robot})
+        yield (one, _SETTLE, one, _SETTLE, *then)
         yield (one, _SETTLE, one, _SETTLE, ends, _SETTLE, *then)
         yield (one, _SETTLE, *(ScriptStep("drive", change) for change in changes), _SETTLE, *restart, *then)
         yield (one, _SETTLE, *_driven(off, on), *then)

@@ -72,7 +72,8 @@ class Abstraction:
             ways, but for what is forgotten.
         indistinct: step that changes the state to one after which nobody can ever tell the difference, the same for all
             those; None where nothing of a state stays hidden for good.
-        compiled: what makes the steps of the system again, only faster.
+        compiled: what makes the steps of the system again, only faster; of states that go on in the same ways it may
+            keep one.
     """
 
     enabled_key: Callable[[State], Hashable] = lambda state: state

@@ -34,7 +34,7 @@ HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
 @functools.cache
 def found(code: str, *rules: str) -> Verdict:
-    return conform(MISSION, answering(code, *rules), drawn=5, tours=20, steps=20, seed=4, advice=False)
+    return conform(MISSION, answering(code, *rules), drawn=5, tours=60, steps=20, seed=4, advice=False)
 
 
 def history(verdict: Verdict) -> tuple[JSON, ...]:

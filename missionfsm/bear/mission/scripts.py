@@ -113,6 +113,23 @@ def _again(family: str, which: str) -> Iterator[tuple[ScriptStep, ...]]:
         yield (_SUBSCRIBE, *fault, *call("CreateMissionBatch", batch), *reached, *reached)
 
 
+def _left_behind(family: str, which: str) -> Iterator[tuple[ScriptStep, ...]]:
+    """A mission that has come some way ends, in every way, and another as long has its turn: nothing of it is left."""
+    long = _several(which, family)
+    begun, reached = (_SUBSCRIBE, *call("CreateMission", long)), drive("goalReached")
+    ends = (
+        drive("missionSucceeded"),
+        drive("missionFailed"),
+        commanded(0, CANCEL),
+        (*commanded(0, PAUSE), *commanded(0, CANCEL)),
+        (*commanded(0, FINISH), *reached),
+        (*reached, *reached),
+    )
+    for end in ends:
+        yield (*begun, *reached, *end, *call("CreateMission", long), *reached, *call("SkipGoal"))
+        yield (*begun, *call("AppendMission", long), *reached, *end, *reached, *call("SkipGoal"))
+
+
 def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
     """What should have been refused is followed to its end, if it was not: missions, and a command that is none."""
     for way in _ALIVE:
@@ -141,6 +158,13 @@ SCRIPTS = (
     *_patrols("servi", "deliveryPatrolMission", "bussingPatrolMission"),
     *_again("servi", "deliveryMission"),
     *_impossible(),
+    *_left_behind("servi", "deliveryMission"),
 )
-APART = {"carti": (*_patrols("carti", "traversePatrolMission"), *_again("carti", "traverseMission"))}
+APART = {
+    "carti": (
+        *_patrols("carti", "traversePatrolMission"),
+        *_again("carti", "traverseMission"),
+        *_left_behind("carti", "traverseMission"),
+    )
+}
 """Of a family that is not the usual one: its robots, too, go round and do again what was done once."""

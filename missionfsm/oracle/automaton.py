@@ -40,6 +40,11 @@ class Node:
         self.bytes = ENTRY + sum(map(explanation_bytes, self.explanations))
 
 
+def _retired(explanations: tuple[Explanation, ...], kept: Mapping[int, int]) -> tuple[int, ...]:
+    """The numbers of the names that are gone in an explanation and left in none."""
+    return tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in kept))
+
+
 def _forgetting(explanation: Explanation, kept: Mapping[int, int]) -> Explanation:
     """The explanation without the names that are gone in all of them: nobody has to know any more that they were."""
     return explanation.replace(gone=tuple(number for number in explanation.gone if number in kept))
@@ -168,7 +173,7 @@ class Automaton:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""
         explanations = tuple(successor.explanation for successor in found)
         new = surviving_names(explanations)
-        retired = tuple(dict.fromkeys(number for one in explanations for number in one.gone if number not in new))
+        retired = _retired(explanations, new)
         if retired:
             explanations = tuple(_forgetting(one, new) for one in explanations)
         keep = tuple(new)

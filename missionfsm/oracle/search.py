@@ -196,8 +196,8 @@ class Search:
             nearer, effort = min(stuck + FURTHER, horizon), USUAL + USUAL_EACH * horizon
             found = self._explains_under(0, nearer, min(FIRST_LOOK * effort, self.budget))
             if found is None and self.whole:
-                ways = (required & ~_near(blamed, stuck), 0)
-                if any(self._explains_under(way, horizon, effort) for way in ways):
+                fewer = required & ~_near(blamed, stuck)
+                if self._explains_under(fewer, horizon, effort) or self._explains_under(0, horizon, effort):
                     return True
                 found = self._explains_under(0, nearer, self.budget)
             if found is None:
@@ -205,11 +205,13 @@ class Search:
                 raise ExhaustedError
             if not found:
                 return False
-            left = required
-            for one in self.layers[-1].explanations:
-                left &= one.assumed
+            left = self._left_of(required)
             self._required = left if left != required and usual > 0 else 0
         return self._go_on(horizon, self.budget)
+
+    def _left_of(self, required: int) -> int:
+        """What is left of required readings in all that explains the events up to the last one that was reached."""
+        return functools.reduce(operator.and_, (one.assumed for one in self.layers[-1].explanations), required)
 
     def _explains_under(self, required: int, horizon: int, budget: int) -> bool | None:
         """Whether the first events up to a horizon are explained where readings have to stay; None: too dear."""

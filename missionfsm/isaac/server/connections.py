@@ -63,8 +63,8 @@ def _succeeded(move: Move, gone: Link) -> Moves:
         unnoticed, _ = split(move, AI_39, "b")
         if unnoticed is not None:
             yield from _served(unnoticed, holder)
-    heirs = [one for one in move.state.links if one.name == gone.name and gone.name is not None]
-    if not gone.serves or not heirs or any(one.serves for one in heirs):
+    heirs = _heirs(move.state, gone)
+    if not heirs:
         yield move
         return
     at_once, later = split(move, AI_16_BACK, "p")  # else not before it says it again, or never
@@ -73,6 +73,12 @@ def _succeeded(move: Move, gone: Link) -> Moves:
             yield from _served(at_once, heir)
     if later is not None:
         yield later
+
+
+def _heirs(server: Server, gone: Link) -> list[Link]:
+    """The connections of which one may be the robot now: none, where there is one left that is it."""
+    heirs = [one for one in server.links if one.name == gone.name and gone.name is not None]
+    return [] if not gone.serves or any(one.serves for one in heirs) else heirs
 
 
 def inherited(before: Server, move: Move) -> Moves:
@@ -235,13 +241,8 @@ def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False
 def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Moves:
     """A connection becomes the robot in the place of another, which is kept."""
     displaced = move.with_link(holder.slot, serves=False)
-    under_way = any(
-        (one.status in UNDER_WAY or one.lingers) and one.sent_on == holder.slot for one in move.state.missions
-    )
-    kept = any(
-        one.status in UNDER_WAY and one.sent_on is None and one.robot == holder.name for one in move.state.missions
-    )
-    if not under_way and not kept:
+    kept = _kept(move.state, holder)
+    if not kept and not _carries(move.state, holder):
         yield from _served(displaced, link)
         return
     for letter, way in ways(displaced, AI_16_UNDER_WAY, "k", "l", "m", "n"):
@@ -256,6 +257,16 @@ def _displaces(move: Move, link: Link, holder: Link, *, unnoticed: bool) -> Move
                 yield from _served(after, link)
         else:
             yield from _served(_untied(way, holder) if unnoticed else untimed(way, holder.slot), link)
+
+
+def _carries(server: Server, holder: Link) -> bool:
+    """Whether a mission that was sent on a connection is under way, or keeps its robot busy."""
+    return any((one.status in UNDER_WAY or one.lingers) and one.sent_on == holder.slot for one in server.missions)
+
+
+def _kept(server: Server, holder: Link) -> bool:
+    """Whether a mission of its robot is under way that outlived the connection on which it was sent."""
+    return any(one.status in UNDER_WAY and one.sent_on is None and one.robot == holder.name for one in server.missions)
 
 
 def _bound(move: Move, holder: Link) -> Move:

@@ -242,9 +242,7 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     """A connection is no robot's any more: what was sent on it goes on, is sent again, or has failed (AI-15)."""
     missions = move.state.missions
     if link.serves:
-        for index, mission in enumerate(missions):
-            if mission.robot == link.name and mission.status is Status.QUEUED:
-                move = stopped(move, index, (START, "connect"))
+        move = _unconnected(move, link)
     held = [index for index, mission in enumerate(missions) if mission.lingers and _was_on(mission, link)]
     free = kept = move
     for index in held:
@@ -255,6 +253,14 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     for index in affected:
         moves = [after for one in moves for after in _lost_mission(one, index, still=still)]
     yield from moves
+
+
+def _unconnected(move: Move, link: Link) -> Move:
+    """The time to start that counts from when a robot connects counts no more for what waits for it."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.robot == link.name and mission.status is Status.QUEUED:
+            move = stopped(move, index, (START, "connect"))
+    return move
 
 
 def dropped(mission: Mission) -> Ambiguity:

@@ -38,6 +38,7 @@ from missionfsm.isaac.server.state import (
     RUN,
     START,
     SYSTEM_NAME,
+    Link,
     Mission,
     Move,
     Server,
@@ -292,14 +293,18 @@ def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[
     link = server.link_of_topic(at)
     if link is None or not isinstance(content, LineContent) or any(ref is not None for ref in refs):
         return ()
-    queued = [one for one in server.missions if one.status is Status.QUEUED and _says(content, one)]
+    return _too_early(link, [one for one in server.missions if _says(content, one)])
+
+
+def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...]:
+    """The rules that are broken where one of these missions is sent on a connection though it is not due there."""
+    queued = [one for one in meant if one.status is Status.QUEUED]
     own = [one for one in queued if link.serves and one.robot == link.name]
-    canceled = (one for one in server.missions if one.status is Status.CANCELED and one.robot == link.name)
-    if not own and any(_says(content, one) for one in canceled):
+    if own:
+        return (rules.SENT.id,) if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
+    if any(one.status is Status.CANCELED and one.robot == link.name for one in meant):
         return (rules.CANCELED.id, rules.UPSTREAM.id)
-    if not own:
-        return (rules.UNNAMED.id,) if queued else ()
-    return (rules.SENT.id,) if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
+    return (rules.UNNAMED.id,) if queued else ()
 
 
 def _says(content: LineContent, mission: Mission) -> bool:

@@ -161,32 +161,27 @@ def the_workflow_is_for_another_family(robot: Situation, call: Call) -> bool:
     return any(_is_for_another_family(robot, wanted.kind) for wanted in _wanted(call))
 
 
-def _no_goal_is_free_of(robot: Situation, missions: tuple[Wanted, ...]) -> bool:
+def _no_goal_is_free(robot: Situation, missions: tuple[Wanted, ...]) -> bool:
     return any(
         wanted.kind in AUTOMATIC and bool(wanted.goals) and free_goal(wanted.goals, robot.world) == NOT_CHOSEN
         for wanted in missions
     )
 
 
-def _no_goal_is_free(robot: Situation, call: Call) -> bool:
-    return _no_goal_is_free_of(robot, _wanted(call))
-
-
 @refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=TAKEN)
 def no_goal_is_free(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is checked when it is created (AM-45)."""
-    return _no_goal_is_free(robot, call)
+    return _no_goal_is_free(robot, _wanted(call))
 
 
 @refusal(FAILED_PRECONDITION, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=TAKEN)
 def no_goal_is_free_now(robot: Situation, call: Call) -> bool:
     """Every goal of a NavigateAuto mission is taken, and that is a state that forbids to create it (AM-45)."""
-    return _no_goal_is_free(robot, call)
+    return _no_goal_is_free(robot, _wanted(call))
 
 
 def _none_is_free_at_once(robot: Situation, call: Call) -> bool:
-    first = _wanted(call)[:1]
-    return robot.active is None and not robot.queued and _no_goal_is_free_of(robot, first)
+    return robot.active is None and not robot.queued and _no_goal_is_free(robot, _wanted(call)[:1])
 
 
 @refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "NavigateAutoMission"], looks_at=TAKEN)

@@ -40,4 +40,11 @@ class Seen:
         return wide
 
 
+def expect(locator: Any) -> Any:
+    """What has to hold of a part of a page within five seconds: a page draws itself anew some time after a press."""
+    from playwright.sync_api import expect as waiting  # noqa: PLC0415 - only who has a browser has it
+
+    return waiting(locator)
+
+
 Opener = Callable[..., Seen]

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from browsing import expect
 from conftest import SIZES
 
 from missionfsm.app.dispatch import Dispatch, Settings
@@ -76,9 +77,9 @@ def test_dispatch_page_shows_the_graph(browser: Any, address: str, size: str) ->
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.goto(address)
     page.wait_for_selector("g[data-mission='2'][data-status='QUEUED']")
-    assert page.locator("svg path").count() == 2
-    assert "b<script>" in page.locator("#list").inner_text()
-    assert page.locator("#counts").inner_text() == "3 QUEUED"
+    expect(page.locator("svg path")).to_have_count(2)
+    expect(page.locator("#list")).to_contain_text("b<script>", use_inner_text=True)
+    expect(page.locator("#counts")).to_have_text("3 QUEUED", use_inner_text=True)
     assert page.locator("#list td:last-child").all_inner_texts() == ["its robot", "0", "1"]
     heights = page.locator("#list tr").evaluate_all("rows => rows.map((row) => row.getBoundingClientRect().height)")
     assert len(set(map(round, heights))) == 1

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browsing import Opener, missionfsm
+from browsing import Opener, expect, missionfsm
 from filelock import FileLock
 
 from missionfsm import systems
@@ -114,22 +114,22 @@ def test_it_fits_the_window(name: str, size: str, scheme: str, explorers: Explor
 def test_it_is_clicked_through(explorers: Explorers, open_page: Opener) -> None:
     """Steps lead on, a refusal changes nothing and says why, and the way can be gone back and forth."""
     page = open_page(explorers["bear.mission"]).page
-    assert page.locator("#path .nothing").is_visible()
+    expect(page.locator("#path .nothing")).to_be_visible()
     _walked(page)
     _comes_to(page, *AFTER)
-    assert page.locator("#path li").count() == 5
+    expect(page.locator("#path li")).to_have_count(5)
     refused = page.locator("[data-group='CreateMission'] .answer").first
-    assert refused.locator("button").inner_text() == "FAILED_PRECONDITION"
-    assert "A mission is running, paused or waiting" in refused.inner_text()
-    assert "[Mission › CreateMission › Errors]" in refused.inner_text()
+    expect(refused.locator("button")).to_have_text("FAILED_PRECONDITION", use_inner_text=True)
+    expect(refused).to_contain_text("A mission is running, paused or waiting", use_inner_text=True)
+    expect(refused).to_contain_text("[Mission › CreateMission › Errors]", use_inner_text=True)
     page.get_by_role("button", name="← Back").click()
     page.get_by_role("button", name="← Back").click()
     _comes_to(page, "mission-1 running serving table-1 table-2")
-    assert page.locator("#path li.ahead").count() == 2
+    expect(page.locator("#path li.ahead")).to_have_count(2)
     page.get_by_role("button", name="Forward →").click()
     page.get_by_role("button", name="Forward →").click()
     _comes_to(page, *AFTER)
-    assert page.get_by_role("button", name="Forward →").is_disabled()
+    expect(page.get_by_role("button", name="Forward →")).to_be_disabled()
     page.locator("#path li button").first.click()
     _comes_to(page, "mission-1 waiting serving table-1 table-2")
     page.get_by_role("button", name="Start again").click()
@@ -159,13 +159,13 @@ def test_a_link_restores_the_position(explorers: Explorers, open_page: Opener) -
     again = open_page(explorers["bear.mission"], fragment=fragment).page
     _comes_to(again, *AFTER)
     assert again.locator("#path li").all_inner_texts() == page.locator("#path li").all_inner_texts()
-    assert again.locator(f"[data-reading='{key}']").get_attribute("aria-pressed") == "false"
-    assert not again.locator("#told").is_visible()
+    expect(again.locator(f"[data-reading='{key}']")).to_have_attribute("aria-pressed", "false")
+    expect(again.locator("#told")).to_be_hidden()
     for wrong in (fragment.replace("g=", "g=0"), "#p=0.0.99999", "#p=rubbish&at=-1&off=AM-99=z"):
         stray = open_page(explorers["bear.mission"], fragment=wrong).page
         _comes_to(stray)
-        assert stray.locator("#told").is_visible()
-        assert "leads to the start" in stray.locator("#told").inner_text()
+        expect(stray.locator("#told")).to_be_visible()
+        expect(stray.locator("#told")).to_contain_text("leads to the start", use_inner_text=True)
 
 
 def test_a_reading_that_is_switched_off_hides_its_answers(explorers: Explorers, open_page: Opener) -> None:
@@ -181,10 +181,10 @@ def test_a_reading_that_is_switched_off_hides_its_answers(explorers: Explorers, 
         letter.click()
     left = chips.all_inner_texts()
     assert [text for text in left if text.partition(" = ")[0] == one] == []
+    expect(page.locator(".hidden-note")).not_to_have_count(0)
     assert page.locator(".answer").count() < every
-    assert page.locator(".hidden-note").count() > 0
     page.locator("#all-readings").click()
-    assert page.locator(".answer").count() == every
+    expect(page.locator(".answer")).to_have_count(every)
     page.locator("#reference-readings").click()
     asked_alone = page.evaluate(
         "[...document.querySelectorAll('.doing')].map((one) => one.querySelectorAll('.answer').length)"
@@ -198,9 +198,9 @@ def test_a_reading_is_explained(explorers: Explorers, open_page: Opener) -> None
     page.locator("#readings-card > summary").click()
     chip = page.locator(".assumes").first
     reading = page.locator(f"[data-ambiguity='{chip.inner_text().partition(' = ')[0]}']")
-    assert not reading.is_visible()
+    expect(reading).to_be_hidden()
     chip.click()
-    assert reading.is_visible()
+    expect(reading).to_be_visible()
     top = reading.evaluate("(one) => one.getBoundingClientRect().top")
     assert 0 <= top < page.evaluate("innerHeight")
 
@@ -210,8 +210,8 @@ def test_a_step_rules_readings_out(explorers: Explorers, open_page: Opener) -> N
     page = open_page(explorers["bear.mission"]).page
     _press(page, "UpdateMission", "COMMAND_CANCEL", "FAILED_PRECONDITION")
     ruled_out = page.locator("[data-reading]:disabled")
-    assert ruled_out.count() > 0
-    assert "ruled out by a step on the way" in ruled_out.first.inner_text()
+    expect(ruled_out).not_to_have_count(0)
+    expect(ruled_out.first).to_contain_text("ruled out by a step on the way", use_inner_text=True)
 
 
 @pytest.mark.parametrize("name", systems.names())
@@ -265,7 +265,7 @@ def test_the_map_shows_where_one_is_and_came_from_and_what_is_next(explorers: Ex
     """Shapes are called what the program calls them; one that is next leads on, one that was before leads back."""
     page = open_page(explorers["bear.mission"]).page
     assert (_shapes(page, "past"), _shapes(page, "here")) == ([], ["[no mission]"])
-    assert "one of 2 states" in page.locator("#stage .here").inner_text()
+    expect(page.locator("#stage .here")).to_contain_text("one of 2 states", use_inner_text=True)
     _press(page, "CreateMission", "servi delivery to", "OK")
     assert (_shapes(page, "past"), _shapes(page, "here")) == (["[no mission]"], ["[WAITING]"])
     page.locator("#stage .next[data-shape='[RUNNING at goal 0]']").click()
@@ -283,9 +283,10 @@ def test_several_ways_to_a_shape_are_shown_alone(explorers: Explorers, open_page
     some = page.locator("#stage .next[data-shape='[WAITING]']")
     ways = int(some.inner_text().partition("\n")[2].partition(" ways")[0])
     some.click()
-    assert page.locator(".answer").count() == ways < every
+    assert ways < every
+    expect(page.locator(".answer")).to_have_count(ways)
     page.get_by_role("button", name="Show all").click()
-    assert page.locator(".answer").count() == every
+    expect(page.locator(".answer")).to_have_count(every)
 
 
 def test_readings_are_painted_on_the_map(explorers: Explorers, open_page: Opener) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import orjson
 import pytest
-from browsing import Opener, missionfsm
+from browsing import Opener, expect, missionfsm
 
 from missionfsm.pages.outline import Standing
 from missionfsm.pages.render import specification_page
@@ -84,17 +84,18 @@ def test_it_tells_the_story(violating: Path, open_page: Opener) -> None:
     """The verdict, every line of the history in a row of its own, the last one wrong, and what was allowed."""
     verdict = json.loads(violating.with_suffix(".json").read_text())
     page = open_page(violating).page
-    assert page.locator(".verdict strong").inner_text() == verdict["verdict"] == "violates"
+    assert verdict["verdict"] == "violates"
+    expect(page.locator(".verdict strong")).to_have_text("violates", use_inner_text=True)
     rows = page.locator(".sequence .row")
-    assert rows.count() == len(verdict["violation"]["history"]) - 1
+    expect(rows).to_have_count(len(verdict["violation"]["history"]) - 1)
     wrong = page.locator(".row.wrong")
     assert (wrong.count(), rows.last.get_attribute("class")) == (1, wrong.get_attribute("class"))
-    assert verdict["violation"]["observed"] in page.locator(".wrong-box").inner_text()
-    assert "FAILED_PRECONDITION" in page.locator(".allowed").inner_text()
+    expect(page.locator(".wrong-box")).to_contain_text(verdict["violation"]["observed"], use_inner_text=True)
+    expect(page.locator(".allowed")).to_contain_text("FAILED_PRECONDITION", use_inner_text=True)
     line = wrong.locator("pre")
-    assert not line.is_visible()
+    expect(line).to_be_hidden()
     wrong.locator("summary").click()
-    assert line.is_visible()
+    expect(line).to_be_visible()
     assert json.loads(line.inner_text()) == verdict["violation"]["history"][-1]
 
 
@@ -108,14 +109,15 @@ def test_its_links_lead_somewhere(violating: Path, open_page: Opener) -> None:
     assert len(targets) > 100
     assert set(targets) <= known
     rule = page.locator(f"[id='{BROKEN}']")
-    assert not rule.is_visible()
+    expect(rule).to_be_hidden()
     page.locator(".wrong-box a").first.click()
-    assert rule.is_visible()
-    assert rule.locator(".mark").inner_text() == "violated"
+    expect(rule).to_be_visible()
+    expect(rule.locator(".mark")).to_have_text("violated", use_inner_text=True)
     # Folded again, the same link unfolds it again, though the address does not change.
     page.locator("button[data-folds='close']").first.click()
+    expect(rule).to_be_hidden()
     page.locator(".wrong-box a").first.click()
-    assert rule.is_visible()
+    expect(rule).to_be_visible()
 
 
 def test_its_map_has_every_clause(violating: Path, open_page: Opener) -> None:
@@ -128,14 +130,14 @@ def test_its_map_has_every_clause(violating: Path, open_page: Opener) -> None:
     guilty = page.locator(".clause.violated")
     assert "M-9" in guilty.locator(".number").all_inner_texts()
     page.locator("button[data-shows='violated']").click()
-    assert not guilty.first.is_visible()
+    expect(guilty.first).to_be_hidden()
     page.locator("button[data-shows='violated']").click()
-    assert guilty.first.is_visible()
+    expect(guilty.first).to_be_visible()
     shown = {one.value for one in Standing}
     assert set(page.locator(".clause > header .mark").all_inner_texts()) <= shown
     square = page.locator(".strip a.violated:visible").first
     square.click()
-    assert page.locator(".clause:target").count() == 1
+    expect(page.locator(".clause:target")).to_have_count(1)
 
 
 def test_its_history_is_judged_alike(violating: Path, open_page: Opener, tmp_path: Path) -> None:
@@ -161,9 +163,9 @@ def test_it_tells_what_is_followed(conforming: Path, open_page: Opener) -> None:
     """Of what conforms every ambiguity that mattered is told, with the readings that are left."""
     verdict = json.loads(conforming.with_suffix(".json").read_text())
     page = open_page(conforming).page
-    assert page.locator(".verdict strong").inner_text() == verdict["headline"]
+    expect(page.locator(".verdict strong")).to_have_text(verdict["headline"], use_inner_text=True)
     assert verdict["verdict"] == "conforms"
-    assert page.locator(".row.wrong").count() == 0
+    expect(page.locator(".row.wrong")).to_have_count(0)
     told = page.evaluate("""Object.fromEntries([...document.querySelectorAll(".question")].map((one) => [
         one.querySelector("strong").textContent,
         [...one.querySelectorAll("li:not(.out) .letter")].map((letter) => letter.textContent),
@@ -178,9 +180,9 @@ def test_it_fits_two_screens_of_a_phone(which: str, open_page: Opener, request: 
     page = open_page(request.getfixturevalue(which), "phone").page
     screen, height = page.evaluate("[innerHeight, document.documentElement.scrollHeight]")
     assert height <= 2 * screen
-    assert page.locator("details.part[open]").count() == 0
+    expect(page.locator("details.part[open]")).to_have_count(0)
     page.locator("nav a[href^='#map']").click()
-    assert page.locator("details.part[open] .map").count() == 1
+    expect(page.locator("details.part[open] .map")).to_have_count(1)
 
 
 def test_what_was_sent_is_text(open_page: Opener, tmp_path: Path) -> None:
@@ -190,8 +192,8 @@ def test_what_was_sent_is_text(open_page: Opener, tmp_path: Path) -> None:
     assert ended.status == 1
     page = open_page(tmp_path / "page.html").page
     assert page.evaluate("window.hacked") is None
-    assert MARKUP in page.locator(".sequence").inner_text()
-    assert MARKUP in page.locator("h1").inner_text()
+    expect(page.locator(".sequence")).to_contain_text(MARKUP, use_inner_text=True)
+    expect(page.locator("h1")).to_contain_text(MARKUP, use_inner_text=True)
 
 
 def test_many_histories_share_a_page(open_page: Opener, tmp_path: Path) -> None:
@@ -204,12 +206,12 @@ def test_many_histories_share_a_page(open_page: Opener, tmp_path: Path) -> None:
     page = seen.page
     assert not seen.overflows()
     assert page.locator("td .mark").all_inner_texts() == ["violates", "conforms"]
-    assert page.locator(".verdict strong").first.inner_text() == "violates"
-    assert page.locator(".map").count() == 1
-    assert page.locator("#story-1 .row.wrong").is_visible()
-    assert not page.locator("#story-2 .verdict").is_visible()
+    expect(page.locator(".verdict strong").first).to_have_text("violates", use_inner_text=True)
+    expect(page.locator(".map")).to_have_count(1)
+    expect(page.locator("#story-1 .row.wrong")).to_be_visible()
+    expect(page.locator("#story-2 .verdict")).to_be_hidden()
     page.get_by_role("link", name=str(good)).click()
-    assert page.locator("#story-2:target .verdict").is_visible()
+    expect(page.locator("#story-2:target .verdict")).to_be_visible()
 
 
 def test_nothing_half_written(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from browsing import Opener, missionfsm
+from browsing import Opener, expect, missionfsm
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +26,7 @@ def test_it_tells_what_was_noticed(size: str, scheme: str, bitten: Path, open_pa
     found = json.loads(bitten.with_suffix(".json").read_text())
     seen = open_page(bitten, size, scheme)
     assert not seen.overflows()
-    assert seen.page.locator(".score").inner_text() == f"{100 * found['score']:.0f} %"
+    expect(seen.page.locator(".score")).to_have_text(f"{100 * found['score']:.0f} %", use_inner_text=True)
     seen.page.get_by_role("button", name="Unfold all").click()
     assert not seen.overflows()
     marks = seen.page.locator(".bitten li .mark").all_inner_texts()

@@ -19,7 +19,7 @@ from traffic import walk
 from missionfsm import fleet
 from missionfsm.app import many
 from missionfsm.kernel.codec import UnreadableError
-from missionfsm.tools.check.rows import COLUMNS
+from missionfsm.reports.parquet import COLUMNS
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "fleet" / "fleet.py"
 FIRST = {"missionfsm": 1, "system": "bear.mission", "world": {}}

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -46,6 +49,35 @@ def test_junit_has_a_test_case_for_each_verdict(command_line: CommandLine, tmp_p
     failure = bad.find("failure")
     assert failure is not None
     assert (failure.get("message") or "").startswith("violates: bear.mission")
+
+
+NEW_FORMAT = """
+from missionfsm.reports.report import Report
+
+
+def written(report: Report) -> bytes:
+    return "".join(f"{one.file},{one.verdict.outcome.value}\\n" for one in report.findings).encode()
+"""
+REGISTERED = """
+from missionfsm.reports.formats import FORMATS, Format
+FORMATS["csv"] = Format("their_format", "Write a line for each file.")
+from missionfsm.cli import main
+main()
+"""
+
+
+def test_a_format_of_reports_is_a_module_and_a_row(tmp_path: Path) -> None:
+    """What a module makes of a report is written where the option of its name says; no command knows of it."""
+    (tmp_path / "their_format.py").write_text(NEW_FORMAT)
+    program = [sys.executable, "-c", REGISTERED]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", "")))}
+    ended = subprocess.run(
+        [*program, "check", GOOD, BAD, "--csv", "-"], env=environment, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (1, "")
+    assert ended.stdout == f"{GOOD},conforms\n{BAD},violates\n"
+    said = subprocess.run([*program, "conform", "--help"], env=environment, capture_output=True, text=True, check=True)
+    assert "Write a line for each file." in said.stdout
 
 
 def test_defaults_stand_in_pyproject(

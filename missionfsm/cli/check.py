@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import define, field, frozen
+from attrs import define, field
 
 from missionfsm.adapters.historyfile import STDIN
-from missionfsm.adapters.outputs import STDOUT
 from missionfsm.cli.common import (
     DONE,
     FAILED,
@@ -19,11 +18,9 @@ from missionfsm.cli.common import (
     readable,
     refuse_outputs,
     say_shown,
-    write_json,
 )
 from missionfsm.cli.options import (
     Github,
-    JunitFile,
     KnownFile,
     NoFlagged,
     ProfileName,
@@ -33,13 +30,12 @@ from missionfsm.cli.options import (
     finite,
 )
 from missionfsm.cli.overgrpc import Beginning
-from missionfsm.cli.pages import HtmlFile
-from missionfsm.cli.printing import JsonFile, say_verdict, stamped
+from missionfsm.cli.printing import made, say_verdict
 from missionfsm.cli.progress import Bar
-from missionfsm.cli.reports import Finding, Reports, known_violations
+from missionfsm.cli.reports import NO_REPORTS, Reports, annotate, known_violations, with_reports
 from missionfsm.kernel.codec import UnreadableError
 from missionfsm.kernel.text import printable
-from missionfsm.tools.check.verdict import Verdict
+from missionfsm.reports.report import Finding, Report
 
 if TYPE_CHECKING:
     from missionfsm.app.many import Judged
@@ -50,6 +46,7 @@ MANY = 20
 """Files, or robots of one, of which each verdict is told unless it is asked otherwise; more are summed up."""
 
 
+@with_reports(several=True)
 def check(  # noqa: PLR0913 - options of the command
     files: Annotated[
         list[str],
@@ -85,13 +82,7 @@ def check(  # noqa: PLR0913 - options of the command
         typer.Option("--summary/--no-summary", help="Only what all verdicts come to, as for folders; or every one."),
     ] = None,
     expect_violations: KnownFile = None,
-    json: JsonFile = None,
-    parquet: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="Write a row for each file and robot as Parquet; - is stdout."),
-    ] = None,
-    html: HtmlFile = None,
-    junit: JunitFile = None,
+    reports: Reports = NO_REPORTS,
     github: Github = None,
     verbose: Verbose = False,
 ) -> None:
@@ -110,13 +101,14 @@ def check(  # noqa: PLR0913 - options of the command
         "settled_after": settled_after,
     }
     known = Baseline(known_violations(expect_violations))
-    reports = _Tables(json=json, html=html, junit=junit, parquet=parquet, github=github)
     with one_line_errors():
         found = histories(files)
-        reports.refuse_impossible((*found, expect_violations))
+        refuse_outputs(reports.outputs, (*found, expect_violations))
+        reports.refuse_impossible()
     many = found != list(dict.fromkeys(files))
-    telling = _Telling(known, many or len(found) > MANY if summary is None else summary, summary is None, json, verbose)
-    told = Told(None if STDOUT not in (json, parquet) else STDOUT)
+    sums_up = many or len(found) > MANY if summary is None else summary
+    telling = _Telling(known, sums_up, summary is None, reports.taken, verbose)
+    told = Told(reports.taken)
     with one_line_errors(), Bar("files", len(found)) as bar:
         live = None if telling.sums_up else telling.say
         for one in _judged(found, readings, jobs=jobs, dask=dask, progress=bar.more, tell=live, **how):
@@ -124,8 +116,10 @@ def check(  # noqa: PLR0913 - options of the command
     telling.end(told)
     reached, troubles = telling.reached, telling.troubles
     if reached:
-        reports.write_all(reached, telling.seconds, telling.stale, troubles, many=many)
-    conform = not telling.stale and all(verdict.conforms for _, _, verdict in reached)
+        with troubles.kept():
+            annotate(reached, github, reports.taken)
+        reports.write(Report(tuple(reached), made(), telling.stale, several=many), troubles)
+    conform = not telling.stale and all(one.verdict.conforms for one in reached)
     troubles.end(DONE if conform else FAILED)
 
 
@@ -135,7 +129,7 @@ class _Telling:
 
     Attributes:
         sums_up: whether all is summed up; where `may_sum_up`, also from the first file on that has too many robots.
-        seconds: how long the file of each verdict took.
+        json: ``-`` where a report goes to stdout, so that nothing is told there.
     """
 
     known: Baseline
@@ -144,7 +138,6 @@ class _Telling:
     json: str | None
     verbose: bool
     reached: list[Finding] = field(factory=list)
-    seconds: list[float] = field(factory=list)
     troubles: Troubles = field(factory=Troubles)
 
     @property
@@ -166,10 +159,10 @@ class _Telling:
                 say_shown(line, json=self.json)
             self.sums_up = self.sums_up or (self.may_sum_up and len(one.verdicts) > MANY)
             for robot, judged in one.verdicts:
-                self.reached.append((readable(one.path), robot, with_known(judged, self.known)))
-                self.seconds.append(one.seconds)
+                found = Finding(with_known(judged, self.known), readable(one.path), robot, one.seconds)
+                self.reached.append(found)
                 if not self.sums_up:
-                    say_verdict(_headed(*self.reached[-1], verbose=self.verbose), json=self.json)
+                    say_verdict(_headed(found, verbose=self.verbose), json=self.json)
             if one.trouble:
                 raise UnreadableError(one.trouble)
 
@@ -177,7 +170,7 @@ class _Telling:
         """Sum up, and tell what was expected and not met."""
         if self.sums_up:
             with self.troubles.kept():
-                told.say(self.reached)
+                told.say((one.file, one.robot, one.verdict) for one in self.reached)
         for rule in self.stale:
             self.say(f"a violation of {rule} was expected and was not met: take it off the list")
 
@@ -207,53 +200,7 @@ def _judged(
     return fleet.judge(files, readings, scheduler=dask, workers=jobs, **how)
 
 
-@frozen
-class _Tables(Reports):
-    """The reports, with those of many verdicts at once: all as JSON, and a table of them."""
-
-    parquet: str | None
-
-    def refuse_impossible(self, inputs: Iterable[str | None]) -> None:
-        """Bad input, before anything is judged, where one of them cannot be written. Raises UnreadableError too."""
-        refuse_outputs({**self.outputs, "--parquet": self.parquet}, inputs)
-        if self.parquet is not None:
-            from missionfsm.adapters.parquet import refuse_without_parquet  # noqa: PLC0415 - loaded where it is needed
-
-            refuse_without_parquet()
-
-    def write_all(
-        self, reached: list[Finding], seconds: list[float], stale: tuple[str, ...], troubles: Troubles, *, many: bool
-    ) -> None:
-        """Write all that are wanted; what goes wrong with one is kept, and the others are written.
-
-        Args:
-            seconds: how long the file of each verdict took.
-            stale: rules whose violation was expected and was not met.
-            many: whether several verdicts were asked for, however many there are.
-        """
-        with troubles.kept():
-            self._write_json(reached, stale, many=many)
-        with troubles.kept():
-            self._write_parquet(reached, seconds)
-        self.write(reached, troubles)
-
-    def _write_json(self, reached: list[Finding], stale: tuple[str, ...], *, many: bool) -> None:
-        if self.json is None:
-            return
-        more = {"stale": list(stale)} if stale else {}
-        verdicts = [{"file": path, "robot": robot, **one.to_json(), **more} for path, robot, one in reached]
-        write_json(self.json, stamped(verdicts[0] if len(verdicts) == 1 and not many else verdicts))
-
-    def _write_parquet(self, reached: list[Finding], seconds: list[float]) -> None:
-        if self.parquet is None:
-            return
-        from missionfsm.adapters.parquet import write_parquet  # noqa: PLC0415 - loaded where it is needed
-        from missionfsm.tools.check.rows import COLUMNS, rows  # noqa: PLC0415 - as above
-
-        table = rows((*one, took) for one, took in zip(reached, seconds, strict=True))
-        write_parquet(self.parquet, table, COLUMNS)
-
-
-def _headed(path: str, robot: str | None, verdict: Verdict, *, verbose: bool) -> str:
+def _headed(found: Finding, *, verbose: bool) -> str:
     """The verdict with what it is about."""
-    return f"{printable(path)}{f' {printable(robot)}' if robot else ''}: {verdict.text(verbose=verbose)}"
+    robot = f" {printable(found.robot)}" if found.robot else ""
+    return f"{printable(found.file)}{robot}: {found.verdict.text(verbose=verbose)}"

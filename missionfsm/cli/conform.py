@@ -18,6 +18,7 @@ from missionfsm.cli.common import (
     DONE,
     FAILED,
     INTERRUPTED,
+    Troubles,
     choice,
     one_line_errors,
     profiled,
@@ -30,7 +31,6 @@ from missionfsm.cli.helping import SystemName
 from missionfsm.cli.options import (
     DAY,
     Github,
-    JunitFile,
     KnownFile,
     NoFlagged,
     ProfileName,
@@ -51,11 +51,11 @@ from missionfsm.cli.overgrpc import (
     Wire,
     WorldFile,
 )
-from missionfsm.cli.pages import HtmlFile
-from missionfsm.cli.printing import JsonFile, print_result
+from missionfsm.cli.printing import made, say_verdict
 from missionfsm.cli.progress import Bar
-from missionfsm.cli.reports import Reports, known_violations, write_record
+from missionfsm.cli.reports import NO_REPORTS, Reports, annotate, known_violations, with_reports, write_record
 from missionfsm.kernel.system import System
+from missionfsm.reports.report import Finding, Report
 
 if TYPE_CHECKING:
     from missionfsm.adapters.stdio import Trace
@@ -98,6 +98,7 @@ class TimeLimit:
         return self.seconds if self.began is None else max(0.0, self.began + self.seconds - time.monotonic())
 
 
+@with_reports(several=False)
 def conform(  # noqa: PLR0913 - options of the command, and what they do
     system: SystemName,
     command: Annotated[
@@ -178,9 +179,7 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
             metavar="FILE", help="Write the history of a violation; as a pytest function to .py, as Mermaid to .mmd."
         ),
     ] = None,
-    json: JsonFile = None,
-    html: HtmlFile = None,
-    junit: JunitFile = None,
+    reports: Reports = NO_REPORTS,
     github: Github = None,
     verbose: Verbose = False,
 ) -> None:
@@ -193,8 +192,9 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
     readings = profiled(profile, choice(reading), judged)
     calls = {option: _listed(judged, option, given) for option, given in (("only", only), ("without", without))}
     known = known_violations(expect_violations, judged=judged)
-    reports = Reports(json=json, html=html, junit=junit, github=github)
     refuse_outputs({"--record": record, **reports.outputs, "--trace": trace}, (expect_violations, missions))
+    with one_line_errors():
+        reports.refuse_impossible()
     sockets = Sockets(tcp, tcp_listen, missions, TOLERANCE if tolerance is None else tolerance)
     over_grpc = {
         "world": world,
@@ -230,14 +230,18 @@ def conform(  # noqa: PLR0913 - options of the command, and what they do
                     "progress": bar.conversation,
                 }
                 # What nobody is told need not be thought about: it takes as long as a third of the run.
-                advice = verbose or json is not None or html is not None
+                advice = verbose or reports.advises
                 verdict = reached.judge(plan, asked, {"distinguish": distinguish, "advice": advice, **calls})
         except ValueError as error:
             stop(str(error), BAD_INPUT)
         finally:
             reached.subject.close()
-    troubles = print_result(verdict, json, verbose=verbose)
-    reports.write([("", None, verdict)], troubles)
+    troubles, found = Troubles(), (Finding(verdict),)
+    with troubles.kept():
+        say_verdict(verdict.text(verbose=verbose), json=reports.taken)
+    with troubles.kept():
+        annotate(found, github, reports.taken)
+    reports.write(Report(found, made()), troubles)
     with troubles.kept():
         write_record(record, judged, verdict)
     status = DONE if verdict.conforms else FAILED

@@ -22,9 +22,6 @@ ProfileName = Annotated[
 NoFlagged = Annotated[
     bool, typer.Option("--no-flagged", help="What is explained, and yet departs from the text, is a violation.")
 ]
-JunitFile = Annotated[
-    str | None, typer.Option("--junit", metavar="FILE", help="Write the verdict as JUnit XML; - is stdout.")
-]
 Verbose = Annotated[
     bool, typer.Option("--verbose", "-v", help="Tell all readings, what would decide those that are open, rare rules.")
 ]

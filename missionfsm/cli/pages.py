@@ -9,11 +9,9 @@ import typer
 
 from missionfsm.adapters.outputs import STDOUT, write_whole
 from missionfsm.cli.printing import made
-from missionfsm.systems import system
 
 if TYPE_CHECKING:
     from missionfsm.kernel.system import System
-    from missionfsm.tools.check.verdict import Verdict
     from missionfsm.tools.explore.explore import Exploration
     from missionfsm.tools.mutate.teeth import MutationReport
 
@@ -33,15 +31,6 @@ HtmlFile = Annotated[
 def _write(path: str, page: Callable[[], str]) -> None:
     # What an implementation sent may hold halves of surrogate pairs, which no encoding has.
     write_whole(path, page().encode("utf-8", "xmlcharrefreplace"))
-
-
-def write_report(path: str | None, *judged: tuple[str, str | None, Verdict]) -> None:
-    """Write the page on some verdicts, each with the file and the robot that it is about, if it is wanted."""
-    if path is not None:
-        from missionfsm.pages.report import Judged, report  # noqa: PLC0415 - pages load what they need
-
-        judgements = [Judged(verdict, file, robot or "") for file, robot, verdict in judged]
-        _write(path, lambda: report(judgements, system, str(made())))
 
 
 def write_teeth(path: str | None, judged: System, found: MutationReport) -> None:

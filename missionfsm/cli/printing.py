@@ -12,13 +12,12 @@ import textwrap
 from typing import Annotated, Protocol
 
 import typer
-from attrs import frozen
 
 from missionfsm.adapters.outputs import STDOUT, to_stdout
 from missionfsm.cli.common import Troubles, readable, say, say_shown, write_json
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import clipped
-from missionfsm.tools.check.verdict import Verdict
+from missionfsm.reports.report import Made
 
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
 HANG = 4
@@ -35,26 +34,6 @@ _TITLE = re.compile(r"^ *(?:readings still open|readings followed|flagged|allowe
 _RULE = re.compile(r"\b[a-z]+\.[a-z]+/[\w/-]+")
 
 
-@frozen
-class Made:
-    """When, by which version and by which command something was made.
-
-    Attributes:
-        date: in UTC, as RFC 3339 has it.
-    """
-
-    version: str
-    date: str
-    command: str
-
-    def to_json(self) -> JSON:
-        """As it stands in what is written as JSON."""
-        return {"version": self.version, "date": self.date, "command": self.command}
-
-    def __str__(self) -> str:
-        return f"missionfsm {self.version}, {self.date}: {self.command}"
-
-
 def made() -> Made:
     """Now, by this program."""
     from missionfsm import __version__  # noqa: PLC0415 - seldom asked for
@@ -64,9 +43,7 @@ def made() -> Made:
 
 
 def stamped(value: JSON) -> JSON:
-    """A value, or each of a list of values, that also says how it was made."""
-    if isinstance(value, list):
-        return [stamped(one) for one in value]
+    """A value that also says how it was made."""
     return {**value, "made": made().to_json()}
 
 
@@ -129,11 +106,11 @@ class Result(Protocol):
         """As it is written for programs."""
 
 
-def print_result(found: Result, json: str | None, *, verbose: bool = False) -> Troubles:
+def print_result(found: Result, json: str | None) -> Troubles:
     """Print what was found and write it as JSON; what went wrong with either is kept."""
     troubles = Troubles()
     with troubles.kept():
-        say_verdict(found.text(verbose=verbose) if isinstance(found, Verdict) else str(found), json=json)
+        say_verdict(str(found), json=json)
     with troubles.kept():
         write_json(json, stamped(found.to_json()))
     return troubles

@@ -1,10 +1,12 @@
-"""Many verdicts as a table: a row for each file and robot, for whoever asks questions of a whole fleet's year."""
+"""Verdicts as a table in a file of Parquet: a row for each file and robot, for whoever asks of a whole fleet's year."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Mapping
+from typing import Any
 
-from missionfsm.tools.check.verdict import Verdict
+from missionfsm.reports.report import Finding, Report
 
 Cell = str | int | float | list[str] | None
 
@@ -24,22 +26,36 @@ COLUMNS: Mapping[str, type | None] = {
 """The columns in their order, with the type of what is in them; None for a list of texts."""
 
 
-def rows(judged: Iterable[tuple[str, str | None, Verdict, float]]) -> dict[str, list[Cell]]:
+def written(report: Report) -> bytes:
+    """The table."""
+    import pyarrow as pa  # noqa: PLC0415 - an extra
+    from pyarrow import parquet  # noqa: PLC0415 - as above
+
+    kinds: dict[type | None, Any] = {
+        str: pa.string(),
+        int: pa.int64(),
+        float: pa.float64(),
+        None: pa.list_(pa.string()),
+    }
+    schema = pa.schema([(name, kinds[kind]) for name, kind in COLUMNS.items()])
+    file = io.BytesIO()
+    parquet.write_table(pa.table(_columns(report.findings), schema=schema), file)
+    return file.getvalue()
+
+
+def _columns(findings: Iterable[Finding]) -> dict[str, list[Cell]]:
     """The columns of the table.
 
     Where there is nothing to say a cell is None: the robot of a file that names none, the rule, the line and the event
     of what conforms. Of several rules that are broken the first is told. `flagged` has a line for each reading that
-    departs from the text, and for whatever else was odd.
-
-    Args:
-        judged: file, robot, verdict, and the seconds that the file took to judge, all its robots together.
+    departs from the text, and for whatever else was odd. `seconds` are those that the whole file took.
     """
     found: dict[str, list[Cell]] = {name: [] for name in COLUMNS}
-    for path, robot, verdict, seconds in judged:
-        violation = verdict.violation
+    for one in findings:
+        verdict, violation = one.verdict, one.verdict.violation
         row: dict[str, Cell] = {
-            "file": path,
-            "robot": robot,
+            "file": one.file,
+            "robot": one.robot,
             "system": verdict.system,
             "verdict": verdict.outcome.value,
             "rule": violation.rules[0].id if violation and violation.rules else None,
@@ -47,7 +63,7 @@ def rows(judged: Iterable[tuple[str, str | None, Verdict, float]]) -> dict[str, 
             "observed": violation.observed if violation else None,
             "because": verdict.because or None,
             "events": verdict.events,
-            "seconds": seconds,
+            "seconds": one.seconds,
             "flagged": list(verdict.flagged),
         }
         for name, cell in row.items():
@@ -55,4 +71,4 @@ def rows(judged: Iterable[tuple[str, str | None, Verdict, float]]) -> dict[str, 
     return found
 
 
-__all__ = ["COLUMNS", "Cell", "rows"]
+__all__ = ["COLUMNS", "written"]

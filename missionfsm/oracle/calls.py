@@ -14,9 +14,10 @@ from attrs import define, field, frozen
 from missionfsm.kernel.history import Answer, Called, Returned
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.terms import Request, State
-from missionfsm.oracle.explanation import Explanation, InFlight, Ready, changes, with_lost, without_lost
+from missionfsm.oracle.explanation import Explanation, InFlight, Ready, with_lost, without_lost
 from missionfsm.oracle.successors import Successors
 from missionfsm.oracle.symbols import Symbol
+from missionfsm.oracle.taking import changes
 
 FEW = 20
 """How many explanations an event may cost where it can wait to be explained with others, all of them calls."""

@@ -8,16 +8,14 @@ become later; and it is what keeps the number of explanations small.
 
 from __future__ import annotations
 
-import itertools
 import operator
 import sys
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 
-from attrs import Factory, evolve, field
+from attrs import Factory, field
 
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
-from missionfsm.kernel.step import Emission, Step
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.terms import State, View
 from missionfsm.kernel.values import value
 
@@ -154,6 +152,11 @@ class Explanation:
             self.channels if channels is None else channels,
             self.gone if gone is None else gone,
         )
+
+
+def channel_names(explanation: Explanation) -> set[int]:
+    """The names of its channels."""
+    return {channel.name for channel in explanation.channels}
 
 
 def fresh(explanation: Explanation) -> Iterator[int]:
@@ -367,40 +370,6 @@ def within(lost: Lost, others: Lost) -> bool:
     return all(times <= most.get((request, args), 0) for request, args, times in lost)
 
 
-def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owed:
-    """The message that an emission owes, with its names looked up."""
-    names = after if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
-    optional = emission.optional or emission.stays
-    passing = (passing and not emission.certain) or optional or emission.only is not None
-    return Owed(emission.view, names, passing, emission.only, optional, emission.stays)
-
-
-def _owing(channel: Channel, added: Iterable[Owed]) -> Channel:
-    """The channel with more to show; an offer that it makes already is not made twice."""
-    if channel.done:
-        return channel
-    owed = channel.owed
-    for one in added:
-        if not (one.stays and owed and owed[-1] == one):
-            owed = (*owed, one)
-    return channel.owing(owed)
-
-
-def _relieved(channel: Channel, step: Step) -> Channel:
-    """The channel without what a step makes void."""
-    if channel.topic in step.clears:
-        return channel.owing() if channel.owed else channel
-    if channel.topic in step.withdraws and channel.owed:
-        return channel.owing(tuple(one for one in channel.owed if not one.optional))
-    return channel
-
-
-def _drained(channel: Channel) -> Channel:
-    """A channel that is gone, with what was on its way."""
-    owed = tuple(evolve(one, passing=True, optional=False, stays=False) for one in channel.owed)
-    return Channel(channel.name, DRAINED, channel.last, owed)
-
-
 def undrained(explanation: Explanation, *names: int) -> Explanation:
     """The explanation where nothing is on its way any more on channels that are gone: on any, or on those so named."""
     channels = explanation.channels
@@ -414,97 +383,3 @@ def reopened(explanation: Explanation) -> Explanation:
         return explanation
     channels = (Channel(one.name, one.topic, one.last, one.owed, one.foretold) for one in explanation.channels)
     return explanation.replace(channels=tuple(channels))
-
-
-def take(
-    explanation: Explanation,
-    step: Step,
-    given: Names,
-    *,
-    passing: bool,
-    concerns: Callable[[Hashable, Hashable], bool],
-) -> tuple[Explanation, Names] | None:
-    """The explanation after a step, and the names that its answer mentions; None where the step assumes too much.
-
-    Args:
-        given: the names that the event brought along.
-        passing: whether the state after it does not last, so that what it shows may never be seen.
-        concerns: `Spec.concerns`.
-    """
-    assumed = meet(explanation.assumed, step.assumes)
-    if not assumed:
-        return None
-    pool = _pool(explanation, step, given)
-    names, gone = _carried(explanation, step, pool)
-    channels = _channels_after(explanation.channels, step, pool, names, passing=passing, concerns=concerns)
-    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
-    return after, tuple([pool[ref] for ref in step.refs])
-
-
-def _pool(explanation: Explanation, step: Step, given: Names) -> Names:
-    """The names to which a step refers by position: those of the state, new ones, and those that were given."""
-    pool = explanation.names
-    referred = (*(step.names or ()), *step.refs, *[one.ref for one in step.opens])
-    added = max(referred) + 1 - len(pool) if referred else 0
-    if added > 0:
-        pool = (*pool, *itertools.islice(fresh(explanation), added))
-    # References below zero count from the front of what was given: -1 is the first.
-    return (*pool, *reversed(given)) if given else pool
-
-
-def _carried(explanation: Explanation, step: Step, pool: Names) -> tuple[Names, Names]:
-    """The names of the state after a step, and those that are gone then."""
-    names, gone = explanation.names, explanation.gone
-    if step.names is not None:
-        names = tuple([pool[ref] for ref in step.names])
-        lapsed = [name for name in set(explanation.names).difference(names) if name > GONE]
-        if lapsed:
-            gone = outlived(explanation, lapsed)
-    if step.ends:
-        ended = [one.name for one in explanation.channels if one.topic in step.ends and one.name > GONE]
-        gone = tuple(sorted({*gone, *ended}))
-    return names, gone
-
-
-def _channels_after(  # noqa: PLR0913 - as `take`
-    channels: tuple[Channel, ...],
-    step: Step,
-    pool: Names,
-    names: Names,
-    *,
-    passing: bool,
-    concerns: Callable[[Hashable, Hashable], bool],
-) -> tuple[Channel, ...]:
-    """The channels after a step, with what it shows; `names` are those of the state after it."""
-    if step.closes:
-        channels = tuple(one for one in channels if one.topic not in step.closes)
-    if step.clears or step.withdraws:
-        channels = tuple(_relieved(channel, step) for channel in channels)
-    if step.emits and channels:
-        shown = [(emission.topic, owes(emission, pool, names, passing=passing)) for emission in step.emits]
-        channels = tuple(
-            [_owing(one, [owed for topic, owed in shown if concerns(one.topic, topic)]) for one in channels]
-        )
-    if step.drains:
-        channels = _without_drained(channels, step)
-    return (*channels, *_opened(step, pool, names, passing=passing)) if step.opens else channels
-
-
-def _without_drained(channels: tuple[Channel, ...], step: Step) -> tuple[Channel, ...]:
-    """The channels, where some are gone and only what was on its way may still be seen, the step's own messages too."""
-    left = tuple(_drained(one) if one.topic in step.drains else one for one in channels)
-    return tuple(one for one in left if one.topic != DRAINED or one.owed)
-
-
-def _opened(step: Step, pool: Names, names: Names, *, passing: bool) -> Iterator[Channel]:
-    """The channels that a step opens."""
-    for one in step.opens:
-        owed = tuple(owes(emission, pool, names, passing=passing) for emission in one.owed)
-        yield Channel(pool[one.ref], one.topic, None, owed)
-
-
-def changes(state: State, step: Step) -> bool:
-    """Whether anybody could ever tell that the step was taken from the state."""
-    moved = step.after is not state and step.after != state
-    renamed = step.names is not None and step.names != tuple(range(len(step.names)))  # another in the place of one
-    return moved or renamed or bool(step.emits or step.opens or step.ends or step.clears or step.withdraws)

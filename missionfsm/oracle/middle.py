@@ -16,7 +16,7 @@ from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.spec import Glimpses, Spec
 from missionfsm.kernel.step import Match, Mismatch
-from missionfsm.kernel.terms import Content, State, View
+from missionfsm.kernel.terms import Content, State
 from missionfsm.oracle.explanation import (
     GONE,
     Channel,
@@ -29,7 +29,7 @@ from missionfsm.oracle.explanation import (
     tidy,
 )
 from missionfsm.oracle.successors import Successor, Successors
-from missionfsm.oracle.symbols import Part
+from missionfsm.oracle.symbols import Arrival, Part
 
 WILD = Ready(Answer("*"), (), (), ())
 """The answer of a call that took effect, or was refused, while nothing was known: any that some state allows."""
@@ -75,14 +75,8 @@ def answered(
         yield Successor(tidy(rest.replace(channels=channels)))
 
 
-def states_shown(  # noqa: PLR0913 - a message, and what is known
-    successors: Successors,
-    here: Explanation,
-    channel: int,
-    content: Content,
-    names: Names,
-    *,
-    then: bool = False,
+def states_shown(
+    successors: Successors, here: Explanation, arrival: Arrival, *, then: bool = False
 ) -> Iterator[Successor]:
     """The explanations in which a message shows the state, whatever it was before.
 
@@ -90,6 +84,7 @@ def states_shown(  # noqa: PLR0913 - a message, and what is known
         then: whether it has to be one that the state before may have become.
     """
     spec, glimpses = successors.spec, _glimpses(successors)
+    content, names = arrival.content, arrival.names
     if glimpses is None:
         return
     if GONE in names:
@@ -106,8 +101,8 @@ def states_shown(  # noqa: PLR0913 - a message, and what is known
             assumed = meet(here.assumed, match.assumes)
             own = _names(spec, here, state, match, names)
             if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
-                shown_as = spec.remembered(view, content)
-                after = _standing(here, state, own, channel, glimpses.topic(content), view, shown_as)
+                last = Owed(view, own, shown_as=spec.remembered(view, content))
+                after = _standing(here, state, Channel(arrival.channel, glimpses.topic(content), last))
                 yield Successor(tidy(after.replace(assumed=assumed)), match.rules)
 
 
@@ -125,25 +120,18 @@ def _all_wild(calls: tuple[InFlight, ...]) -> tuple[InFlight, ...]:
     )
 
 
-def _standing(  # noqa: PLR0913 - what a message fixes
-    here: Explanation,
-    state: State,
-    names: Names,
-    name: int,
-    topic: Hashable,
-    view: View,
-    shown_as: Hashable,
-) -> Explanation:
+def _standing(here: Explanation, state: State, showing: Channel) -> Explanation:
     """The explanation in that state, shown on one channel; the others may show it as well, or what was on its way."""
+    last = showing.last
+    assert last is not None, "a channel that shows something"  # noqa: S101
     channels = [
-        Channel(one.name, one.topic, one.last, (_FREE, Owed(view, names, passing=True)))
+        Channel(one.name, one.topic, one.last, (_FREE, Owed(last.view, last.names, passing=True)))
         for one in here.channels
-        if one.name != name
+        if one.name != showing.name
     ]
     calls = _all_wild(here.calls)
-    showing = Channel(name, topic, Owed(view, names, shown_as=shown_as))
-    gone = tuple(one for one in here.gone if one not in names)
-    return Explanation(state, names, here.assumed, calls, here.lost, (showing, *channels), gone)
+    gone = tuple(one for one in here.gone if one not in last.names)
+    return Explanation(state, last.names, here.assumed, calls, here.lost, (showing, *channels), gone)
 
 
 def joined(successors: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:
@@ -182,7 +170,7 @@ def unforeseen(
             continue
         if kind is Received:
             content, names, _, channel = what
-            yield from states_shown(successors, here, channel, content, names, then=True)
+            yield from states_shown(successors, here, Arrival(channel, content, names), then=True)
             yield from _late(here, channel, content)
         elif kind is Returned:
             answer, names, call = what

@@ -25,8 +25,6 @@ from missionfsm.oracle.explanation import (
     Names,
     Owed,
     Ready,
-    changes,
-    take,
     tidy,
     unify,
     within,
@@ -34,6 +32,7 @@ from missionfsm.oracle.explanation import (
 )
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import EACH_NAME, ENTRY, MEMORY, STEPS
+from missionfsm.oracle.taking import changes, take
 
 _EQUAL = (Match(),)
 """The one way in which equal answers agree."""

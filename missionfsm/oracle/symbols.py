@@ -20,6 +20,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from missionfsm.kernel.history import Answer
+from missionfsm.kernel.terms import Content
+from missionfsm.kernel.values import value
+
 T = TypeVar("T")
 
 Part = Any
@@ -48,3 +52,20 @@ def relations_of(symbol: Symbol) -> tuple[str, ...]:
     """How the numbers of a message compare with those before."""
     relations: tuple[str, ...] = symbol[3]
     return relations
+
+
+@value
+class Arrival:
+    """A message that came: on which channel, what it says, and the numbers of the names in it."""
+
+    channel: int
+    content: Content
+    names: tuple[int, ...]
+
+
+@value
+class Reply:
+    """An answer that came, and the numbers of the names in it."""
+
+    answer: Answer
+    names: tuple[int, ...]

@@ -25,11 +25,9 @@ from missionfsm.oracle.explanation import (
     Names,
     Owed,
     Ready,
-    changes,
     fresh,
     mentioned,
     rename,
-    take,
     tidy,
     undrained,
     unify,
@@ -37,6 +35,7 @@ from missionfsm.oracle.explanation import (
     within,
     without_lost,
 )
+from missionfsm.oracle.taking import changes, take
 
 OK = Answer("OK")
 ASKED = Ambiguity("E-1", "?", {"a": "yes", "b": "no"}, "a")

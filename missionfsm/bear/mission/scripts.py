@@ -7,7 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.bear.mission.samples import CANCEL, COMMANDS, FINISH, PAUSE, RESUME, TABLES, auto, base, of_family
+from missionfsm.bear.mission.samples import (
+    CANCEL,
+    COMMANDS,
+    FINISH,
+    PAUSE,
+    RESUME,
+    TABLES,
+    auto,
+    base,
+    goals_at,
+    of_family,
+)
 from missionfsm.kernel.alphabet import ANY_NAME, ScriptStep
 from missionfsm.kernel.codec import JSON
 
@@ -81,6 +92,24 @@ def _patrols(family: str, *kinds: str) -> Iterator[tuple[ScriptStep, ...]]:
         for command in COMMANDS:
             yield (*begun, *round_once, *commanded(0, command), *drive("goalReached"), *call("SkipGoal"))
         yield (*begun, *commanded(0, PAUSE), *commanded(0, RESUME), *round_once, *drive("goalReached"))
+
+
+def _made(family: str, patrol: str, *workflows: str) -> Iterator[tuple[ScriptStep, ...]]:
+    """A mission goes the same way whoever made it: a workflow, or a batch in which it is the second."""
+    reached, skip = drive("goalReached"), call("SkipGoal")
+    for name in workflows:
+        workflow = {"missionWorkflow": {f"{family}Workflow": {name: {"goals": goals_at(*TABLES)}}}}
+        begun = (_SUBSCRIBE, *call("CreateMissionWorkflow", workflow))
+        yield (*begun, *reached, *reached, *reached, *reached, *skip, *skip)
+        yield (*begun, *reached, *commanded(0, PAUSE), *commanded(0, RESUME), *reached, *reached, *commanded(0, FINISH))
+        yield (*begun, *APPENDED, *skip, *reached, *reached, *reached, *drive("missionSucceeded"))
+    ended = drive("missionSucceeded")
+    batch = {"missions": [_SINGLE, {"mission": of_family(family, patrol, *TABLES)}, _SINGLE]}
+    for begun in (
+        (*call("CreateMissionBatch", batch), *ended),
+        (*CREATED, *call("AppendMissionBatch", batch), *ended * 2),
+    ):
+        yield (_SUBSCRIBE, *begun, *reached, *reached, *reached, *reached, *skip, *skip, *ended)
 
 
 def _choices() -> Iterator[tuple[ScriptStep, ...]]:
@@ -157,6 +186,16 @@ SCRIPTS = (
     *_commands(),
     *_patrols("servi", "deliveryPatrolMission", "bussingPatrolMission"),
     *_again("servi", "deliveryMission"),
+    *_made(
+        "servi",
+        "deliveryPatrolMission",
+        "delivery",
+        "deliveryPatrol",
+        "bussing",
+        "bussingPatrol",
+        "hosting",
+        "hostingPatrol",
+    ),
     *_impossible(),
     *_left_behind("servi", "deliveryMission"),
 )
@@ -164,6 +203,7 @@ APART = {
     "carti": (
         *_patrols("carti", "traversePatrolMission"),
         *_again("carti", "traverseMission"),
+        *_made("carti", "traversePatrolMission", "traverse", "traversePatrol"),
         *_left_behind("carti", "traverseMission"),
     )
 }

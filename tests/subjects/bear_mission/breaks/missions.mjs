@@ -23,6 +23,16 @@ function moveBehind(robot, moved, place) {
   robot.missions.splice(robot.missions.indexOf(place) + 1, 0, moved);
 }
 
+/** Every mission that the operation adds is marked as its own. */
+function marking(operation, mark) {
+  replace(OPERATIONS[operation], 'perform', (perform) => (robot, request) => {
+    const before = [...robot.missions];
+    const answer = perform(robot, request);
+    robot.missions.filter((mission) => !before.includes(mission)).forEach((mission) => { mission[mark] = true; });
+    return answer;
+  });
+}
+
 /** Skipping goals of missions with several goals of which the current one is not the last. */
 function skippingMidway(skipOtherwise) {
   replace(Robot.prototype, 'skip', (skip) => function (mission) {
@@ -197,6 +207,30 @@ export const MISSION_BREAKS = {
   'patrol-wraps-to-second': [
     'Mission › ServiType enum, CartiType enum: after its first lap a patrol leaves out the first goal',
     () => routing(ROUTE.PATROL, (mission, next) => (isLast(mission) ? Math.min(1, mission.goalIndex) : next)),
+  ],
+  'patrol-of-workflow-ends-after-lap': [
+    'Mission › ServiType enum, CartiType enum: a patrol that a workflow made has succeeded after its last goal',
+    () => {
+      marking('CreateMissionWorkflow', 'ofWorkflow');
+      routing(ROUTE.PATROL, (mission, next) => (mission.ofWorkflow && isLast(mission) ? undefined : next));
+    },
+  ],
+  'patrol-of-batch-ends-after-lap': [
+    'Mission › ServiType enum, CartiType enum: a patrol that was created in a batch has succeeded after its last goal',
+    () => {
+      marking('CreateMissionBatch', 'ofBatch');
+      routing(ROUTE.PATROL, (mission, next) => (mission.ofBatch && isLast(mission) ? undefined : next));
+    },
+  ],
+  'goal-index-carried-over': [
+    'Mission › MissionState: a mission starts at the goal index that the one before it had come to',
+    () => replace(Robot.prototype, 'start', (start) => function (mission) {
+      const before = this.missions[this.missions.indexOf(mission) - 1];
+      if (mission.state === STATE.DEFAULT && before && mission.route !== ROUTE.SELECT) {
+        mission.goalIndex = Math.min(before.goalIndex, mission.goals.length - 1);
+      }
+      start.call(this, mission);
+    }),
   ],
   'auto-prefers-last': [
     'Mission › NavigateAutoMission: of the free goals the one with the highest index is selected',

@@ -10,63 +10,24 @@ from __future__ import annotations
 
 import bisect
 import operator
-from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 
 from attrs import define, field
 
-from missionfsm.kernel.history import Answer, Called, Cancelled, Ended, Received, Returned, Settled
+from missionfsm.kernel.history import Called
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.terms import State
-from missionfsm.kernel.transport import REDELIVERED
 from missionfsm.oracle.alignment import Alignment, Message, Showings
+from missionfsm.oracle.coming import Coming, Excerpt, Horizon, Led, Narrowed, Stretch
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, tidy, unify
 from missionfsm.oracle.foresight import Foresight
 from missionfsm.oracle.foretold import foretold
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
-from missionfsm.oracle.symbols import Symbol
-
-NEXT = 64
-"""How many of the messages that a stream shows next are compared with what it owes."""
 
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
-
-Narrowed = tuple[Channel, Assumption | None, bool]
-"""A channel without what is known never to be shown, what that assumes, and whether it is done: whatever becomes of
-the state now, the channel does not show it."""
-
-_Led = tuple[Narrowed | None, tuple[Message, int] | None]
-"""A channel that was narrowed, and the message that the state has to come to show, if there is one, with the position
-of the event before which it has."""
-
-
-@define(eq=False, slots=True)
-class _Stretch:
-    """What is known of a channel from some moment on.
-
-    Attributes:
-        due: the messages that it shows next, `NEXT` at most.
-        positions: where these stand.
-        before: what it has shown last, if that is known.
-        nothing: whether nothing of it is known.
-        rests: whether everything settles after the messages.
-        rest: the position of what settles next.
-        over: whether nothing else is shown after the messages.
-        led: what was found of channels with that name.
-        uncertain: those of them of which it is known that none of these messages is bound to be what they owe.
-    """
-
-    due: list[Message]
-    positions: list[int]
-    before: Message | None
-    rest: int
-    nothing: bool = field(kw_only=True)
-    rests: bool = field(kw_only=True)
-    over: bool = field(kw_only=True)
-    led: dict[tuple[Channel, bool, bool], _Led] = field(factory=dict)
-    uncertain: set[Channel] = field(factory=set)
 
 
 @define(eq=False, slots=True)
@@ -105,21 +66,17 @@ class _Resting:
     ways: tuple[bool, bool]
 
 
-class Lookahead:
+class Lookahead(Coming):
     """What the events of a window say of those before them.
 
     Args:
         spec: the system.
-        symbols: the events.
+        excerpt: the events.
         horizon: how many of them may be known beforehand.
-        beyond: the positions of those that the system does not explain; what follows says nothing of what is before.
-        latest: what each channel showed last before the window.
-        last: whether nothing comes after the horizon.
-        required: the bits of readings that have to stay possible; what contradicts one of them is withheld.
         rules: by the positions of messages the rules that those exercise which are foretold; added to.
 
     Attributes:
-        at: how many of them have been observed.
+        required: the bits of readings that have to stay possible; what contradicts one of them is withheld.
         withheld: whether anything was withheld since this was last set.
         blamed: the bits of readings that had to stay and for which something was withheld, by the position of the next
             event.
@@ -129,96 +86,31 @@ class Lookahead:
             come to the same under other readings of all others.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first four have a default
-        self,
-        spec: Spec,
-        symbols: Sequence[Symbol],
-        horizon: int,
-        latest: Mapping[int, Message],
-        *,
-        beyond: Collection[int] = (),
-        last: bool = False,
-        required: int = 0,
-        rules: dict[int, tuple[str, ...]] | None = None,
-    ) -> None:
+    def __init__(self, spec: Spec, excerpt: Excerpt, horizon: Horizon, rules: dict[int, tuple[str, ...]]) -> None:
+        super().__init__(excerpt, horizon)
         self.spec = spec
-        self.required, self.withheld, self.stopped = required, False, False
+        self.required, self.withheld, self.stopped = 0, False, False
         self.blamed: dict[int, int] = {}
-        self.last = last
-        self._horizon = horizon
-        self._beyond = sorted(beyond)
-        self.at = 0
         self.consulted = self.depends = 0
-        self.answers: dict[int, tuple[Answer, Names]] = {}
-        self._messages: dict[int, tuple[list[int], list[Message]]] = {}
-        self._same: dict[Message, Message] = {}
-        self._settled: list[int] = []
-        self._latest = latest
         self._room = Room(MEMORY // STEPS)
         self._led: dict[Hashable, bool] = {}
-        self._known: dict[tuple[int, int, int, int], _Stretch] = {}
-        self._stretches: dict[int, tuple[int, int, int, _Stretch]] = {}
         self._resting: dict[int, _Resting] = {}
-        self._rules = {} if rules is None else rules
-        self._irregular: dict[int, list[int]] = {}
-        self._at_cut, self._found_cut = -1, horizon
+        self._rules = rules
         self._showings = Showings(spec)
         self._way = _Way(None, 0, 0, (False, False), 0, withheld=False)
-        self._ended: dict[int, int] = {}
-        self._answered: dict[int, int] = {}
-        called = self._read(symbols[:horizon], beyond)
-        self._openings = self._opened(called)
         # Behind the answers that open streams which show something, and what settles.
         opened_by = [self._answered[call] for _, _, call, _ in self._openings]
         self._shown_from = max((-1, *opened_by, *self._settled, *self._beyond)) + 1
         # Calls that will succeed: when each was sent, and what it was.
         self._successes = [
             (at, call, request, args)
-            for call, (at, request, args) in called.items()
+            for call, (at, request, args) in self._called.items()
             if call in self.answers and self.answers[call][0].code == OK
         ]
         self._sent = [at for at, *_ in self._successes]
-        asked = [(at, what[0]) for at, (kind, *what) in enumerate(symbols[:horizon]) if kind is Called]
+        asked = [(at, what[0]) for at, (kind, *what) in enumerate(excerpt.symbols[: horizon.end]) if kind is Called]
         sent = [(at, spec.request_operation(request)) for at, request in asked]
         self._foresight = Foresight(spec, sent, self._make_room)
-
-    def _read(self, symbols: Sequence[Symbol], beyond: Collection[int]) -> dict[int, tuple[int, Hashable, Names]]:
-        """Note what comes; the calls that are sent: each with its position, what it asks for and its names."""
-        called: dict[int, tuple[int, Hashable, Names]] = {}
-        for position, (kind, *what) in enumerate(symbols):
-            if kind is Called:
-                called[what[-1]] = position, *what[:2]
-            elif kind is Returned:
-                answer, names, call = what
-                if call > GONE and position not in beyond:
-                    self.answers[call] = answer, names
-                    self._answered[call] = position
-            elif kind is Received:
-                content, names, relations, channel = what
-                if channel > GONE and not _REGULAR.issuperset(relations):
-                    self._irregular.setdefault(channel, []).append(position)
-                if channel > GONE and channel not in self._ended and REDELIVERED not in relations:
-                    positions, messages = self._messages.setdefault(channel, ([], []))
-                    positions.append(position)
-                    messages.append(self._same.setdefault((content, names), (content, names)))
-            elif kind is Settled:
-                self._settled.append(position)
-            elif kind in (Cancelled, Ended):
-                self._ended.setdefault(what[-1], position)
-        return called
-
-    def _opened(self, called: Mapping[int, tuple[int, Hashable, Names]]) -> list[tuple[int, int, int, Message]]:
-        """Of streams that are opened: when which message came first, when the call was sent, and what it is."""
-        opened = ((call, channel) for call, (_, names) in self.answers.items() for channel in names)
-        first = ((*self._messages[channel], call) for call, channel in opened if channel in self._messages)
-        return sorted(
-            ((at, called[call][0] if call in called else -1, call, message) for (at, *_), (message, *_), call in first),
-            key=operator.itemgetter(0),
-        )
-
-    def answer(self, call: int) -> tuple[Answer, Names] | None:
-        """What a call in flight comes back with, and with which names; None where it is not known."""
-        return self.answers.get(call)
 
     def consult(self, assumed: int, assumptions: Iterable[Assumption]) -> None:
         """Note what more is assumed of an explanation; what becomes of it depends on what is contradictory."""
@@ -252,12 +144,6 @@ class Lookahead:
     def rely(self) -> None:
         """Note that something was left out since something else assumes no more."""
         self.depends |= self.consulted
-
-    def lag(self, channel: Channel) -> int:
-        """How many messages that last a channel owes besides those that it is known to show."""
-        positions, _ = self._messages.get(channel.name, _NO_MESSAGES)
-        due = len(positions) - bisect.bisect_left(positions, self.at)
-        return sum(not one.passing for one in channel.owed) + channel.foretold - due
 
     @property
     def exercised(self) -> tuple[str, ...]:
@@ -426,60 +312,6 @@ class Lookahead:
         succeeds = self.spec.succeeds
         return succeeds is None or succeeds(explanation.state, explanation.names, request, args, names)
 
-    @property
-    def _cut(self) -> int:
-        """Up to where it is known what comes: to the next event that the system does not explain, or the horizon."""
-        if self._at_cut != self.at:
-            self._at_cut = self.at
-            self._found_cut = next((position for position in self._beyond if position >= self.at), self._horizon)
-        return self._found_cut
-
-    def _stretch(self, channel: Channel) -> _Stretch:
-        """What is known of a channel from now on, but for the messages that are foretold."""
-        name = channel.name
-        known = self._stretches.get(name)
-        if known is not None and known[0] <= self.at <= known[1] and known[2] == channel.foretold:
-            return known[3]
-        cut = self._cut
-        positions, _ = self._messages.get(name, _NO_MESSAGES)
-        coming, quiet = bisect.bisect_left(positions, self.at), bisect.bisect_left(self._settled, self.at)
-        first, end = coming + channel.foretold, min(self._ended.get(name, cut), cut)
-        found = self._known.get((name, first, quiet, end))
-        if found is None:
-            found = self._known[name, first, quiet, end] = self._stretch_from(name, first, quiet, end)
-        # Up to the next of these that is observed, no less is known.
-        until = min([cut, *positions[coming : coming + 1], *self._settled[quiet : quiet + 1]])
-        self._stretches[name] = self.at, until, channel.foretold, found
-        return found
-
-    def _stretch_from(self, name: int, first: int, quiet: int, end: int) -> _Stretch:
-        """What is known of a channel from one of its messages on.
-
-        Args:
-            first: the index of that message.
-            quiet: the index of what settles next.
-            end: the position up to which anything is known.
-        """
-        positions, messages = self._messages.get(name, _NO_MESSAGES)
-        cut, last = self._cut, bisect.bisect_left(positions, end)
-        rests = quiet < bisect.bisect_left(self._settled, end)
-        nothing = first >= last and not rests
-        # Nothing of it comes behind what is known either.
-        is_last = self.last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
-        if rests:
-            last = bisect.bisect_left(positions, self._settled[quiet], first)
-        shown = slice(first, min(last, first + NEXT))
-        over = end < cut or is_last
-        return _Stretch(
-            messages[shown],
-            positions[shown],
-            messages[first - 1] if first else self._latest.get(name),
-            self._settled[quiet] if rests else cut,
-            nothing=nothing,
-            rests=rests and last - first <= NEXT,
-            over=over and (nothing or (last - first <= NEXT and not rests)),
-        )
-
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
         stretch, name = self._stretch(channel), channel.name
         if stretch.nothing:
@@ -512,7 +344,7 @@ class Lookahead:
         self.withheld = self.withheld or known.withheld
         return known.ways
 
-    def _leading(self, channel: Channel, stretch: _Stretch, delivery: Delivery, *, skips: bool, repeats: bool) -> _Led:
+    def _leading(self, channel: Channel, stretch: Stretch, delivery: Delivery, *, skips: bool, repeats: bool) -> Led:
         """The channel, if the messages can be what it owes, in order, and after that what the state comes to show.
 
         Args:
@@ -531,7 +363,7 @@ class Lookahead:
             led = led[0], led[1] or assumes, led[2]
         return led, shows
 
-    def _until_shown(self, alignment: Alignment, stretch: _Stretch, position: int) -> _Led:
+    def _until_shown(self, alignment: Alignment, stretch: Stretch, position: int) -> Led:
         """The same where so many of the messages are what the channel owes, and the next one is not.
 
         It has to show what is to come then, and what is owed before it goes unsaid.
@@ -545,7 +377,7 @@ class Lookahead:
             narrowed = passed and (*passed, False)
         return narrowed, (stretch.due[position], stretch.positions[position])
 
-    def _after_shown(self, alignment: Alignment, stretch: _Stretch) -> _Led:
+    def _after_shown(self, alignment: Alignment, stretch: Stretch) -> Led:
         """The same where all of the messages are what the channel owes."""
         channel, place = alignment.channel, alignment.place
         owed, last = channel.owed, place - 1
@@ -559,7 +391,7 @@ class Lookahead:
         return (channel, None, False), (before, stretch.rest) if settles and before is not None else None
 
     def _without_unshown(
-        self, channel: Channel, stretch: _Stretch, delivery: Delivery, *, repeats: bool
+        self, channel: Channel, stretch: Stretch, delivery: Delivery, *, repeats: bool
     ) -> tuple[Channel, Assumption | None]:
         """The channel without what it owes before the first that can be what it shows next, and what that assumes."""
         echoes = repeats or delivery.echoes is not None
@@ -595,9 +427,3 @@ class Lookahead:
     def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
         """Whether the state may come to be shown so before an event."""
         return self._foresight.may_show(explanation, message, self.at, position)
-
-
-_REGULAR = frozenset({"first", "larger"})
-"""How the numbers of messages compare with those before them where nothing is special about that."""
-
-_NO_MESSAGES: tuple[list[int], list[Message]] = ([], [])

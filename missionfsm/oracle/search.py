@@ -18,14 +18,13 @@ from attrs import define, field
 from missionfsm.kernel.history import Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED
-from missionfsm.oracle.alignment import Message
 from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
+from missionfsm.oracle.coming import Excerpt, Horizon
 from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, bytes_besides
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight
-from missionfsm.oracle.symbols import Symbol
 from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")
@@ -107,8 +106,7 @@ class Search:
     Args:
         transitions: the transition function.
         start: all explanations of what was before.
-        symbols: the events of the window.
-        latest: what each channel showed last before the window.
+        excerpt: the events of the window.
         budget: how many explanations may be looked at.
         memory: how many bytes those may take, by estimate, that are remembered.
 
@@ -121,20 +119,19 @@ class Search:
             is asked for them.
     """
 
-    def __init__(  # noqa: PLR0913 - what it is given
+    def __init__(
         self,
         transitions: TransitionFunction,
         start: Sequence[Explanation],
-        symbols: Sequence[Symbol],
-        latest: Mapping[int, Message],
+        excerpt: Excerpt,
         budget: int,
         memory: int = MEMORY,
     ) -> None:
         self.transitions = transitions
         self.successors: Successors = transitions.successors
         self._start = tuple(start)
-        self._symbols = symbols
-        self._latest = latest
+        self._excerpt = excerpt
+        self._symbols = symbols = excerpt.symbols
         ambiguities = transitions.spec.ambiguities
         self._defaults = choose(ambiguities) & functools.reduce(operator.or_, (one.group for one in ambiguities), 0)
         # Of several explanations one is followed first that reads most in its usual way.
@@ -228,15 +225,9 @@ class Search:
         """
         before, self._explained = self._explained, None
         anew = before is None or before > horizon or self._built & ~self._required or self._alone
-        self._ahead = ahead = Lookahead(
-            self.transitions.spec,
-            self._symbols,
-            horizon,
-            self._latest,
-            beyond=self.beyond,
-            last=self.whole and (self._alone or horizon == len(self._symbols)),
-            rules=self._rules,
-        )
+        last = self.whole and (self._alone or horizon == len(self._symbols))
+        known = Horizon(horizon, last, self.beyond)
+        self._ahead = ahead = Lookahead(self.transitions.spec, self._excerpt, known, self._rules)
         self._horizon, self._built = horizon, self._required
         self.successors.reset()
         if anew:

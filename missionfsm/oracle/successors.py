@@ -1,7 +1,8 @@
 """What one explanation can become: by a step that is known, or unseen, when nobody has said anything.
 
 A call in flight takes effect, a lost one does, the system and its surroundings act by themselves. `Successors` says so
-for one explanation at a time; `missionfsm.oracle.transition` puts it together with what is observed.
+for one explanation at a time; `missionfsm.oracle.said` remembers what the spec says of that, and
+`missionfsm.oracle.transition` puts it together with what is observed.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, by_bit, meet
 from missionfsm.kernel.spec import Failure, Spec
-from missionfsm.kernel.step import ONCE_HAD, Match, Mismatch, Step
-from missionfsm.kernel.terms import Refs, Request, State
+from missionfsm.kernel.step import ONCE_HAD, Step
+from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.transport import MADE_BY_CLIENTS, MADE_UP
 from missionfsm.kernel.values import value
 from missionfsm.oracle.explanation import (
@@ -23,7 +24,6 @@ from missionfsm.oracle.explanation import (
     InFlight,
     Lost,
     Names,
-    Owed,
     Ready,
     tidy,
     unify,
@@ -31,11 +31,9 @@ from missionfsm.oracle.explanation import (
     without_lost,
 )
 from missionfsm.oracle.lookahead import Lookahead
-from missionfsm.oracle.memory import EACH_NAME, ENTRY, MEMORY, STEPS
-from missionfsm.oracle.taking import changes, take
-
-_EQUAL = (Match(),)
-"""The one way in which equal answers agree."""
+from missionfsm.oracle.memory import MEMORY
+from missionfsm.oracle.said import Said
+from missionfsm.oracle.taking import take
 
 Place = tuple[Hashable, ...]
 Seen = dict[Place, list[tuple[int, Lost]]]
@@ -66,18 +64,14 @@ FocusOf = Callable[[Explanation], Focus]
 """What is observed next, seen from an explanation."""
 
 
-class Successors:
-    """What a spec lets one explanation become, unseen or with a step; remembered, so that it is worked out once.
+class Successors(Said):
+    """What a spec lets one explanation become, unseen or with a step.
 
-    But for `live` and `ahead` it holds caches and nothing that could change an answer. While it is `live`, nobody can
-    be asked what comes later; it is said before the first question, since it decides which steps are told apart.
+    But for what it counts, and `ahead`, it holds nothing that could change an answer.
 
     Args:
-        spec: the system.
-        driven: the drives that a tester commands; what the others do may happen at any time by itself.
-        assumed: what every explanation assumes; steps that contradict it are left out from the start.
+        spec, driven, assumed, memory: see `Said`.
         budget: explanations that a single event may cost.
-        memory: of how many bytes it may take its share (see `missionfsm.oracle.memory`).
     """
 
     def __init__(
@@ -89,160 +83,16 @@ class Successors:
         *,
         memory: int = MEMORY,
     ) -> None:
-        self.spec = spec.decided(assumed) if spec.decided and assumed != UNCONSTRAINED else spec
-        self.driven = frozenset(driven) - (spec.middle.undriven if spec.middle and spec.anywhere else frozenset())
-        self.assumed = assumed
+        super().__init__(spec, driven, assumed, memory)
         self.budget = budget
-        self._room = memory // STEPS
-        self.bytes = 0
         self.groups = by_bit(spec.ambiguities)
-        self._outcomes: dict[Hashable, tuple[Step, ...]] = {}
-        self._effects: dict[Hashable, tuple[Step, ...]] = {}
-        self._idle: dict[Hashable, tuple[Step, ...]] = {}
-        self._urgent: dict[Hashable, tuple[Step, ...]] = {}
-        self._unseen: dict[Hashable, tuple[Step, ...]] = {}
-        self._focused: dict[Hashable, tuple[Step, ...]] = {}
-        self._matches: dict[Hashable, tuple[Match, ...] | Mismatch] = {}
         self.ahead: Lookahead | None = None
-        self.live = True
         self.spent = 0
         self.limit = budget
 
     def reset(self) -> None:
         """Start counting against the budget anew."""
         self.spent = 0
-
-    # What the spec says, remembered.
-
-    def forget(self) -> None:
-        """Drop what the spec said; it will say the same again."""
-        self.bytes = 0
-        for memory in (
-            self._outcomes,
-            self._effects,
-            self._idle,
-            self._urgent,
-            self._unseen,
-            self._focused,
-            self._matches,
-        ):
-            memory.clear()
-
-    def outcomes(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
-        """Every answer to a request in a state."""
-        key = (state, request, refs)
-        found = self._outcomes.get(key)
-        if found is None:
-            found = self._possible(state, self.spec.outcomes(state, request, refs))
-            self._make_room(state, found)
-            self._outcomes[key] = found
-        return found
-
-    def _make_room(self, state: State, steps: tuple[Step, ...]) -> None:
-        """Count what is going to be remembered of a state; forget the rest where that becomes too much."""
-        others = sum([step.after is not state for step in steps])
-        self.bytes += ENTRY + (ENTRY + EACH_NAME * self.spec.names(state)) * others
-        if self.bytes > self._room:
-            self.forget()
-
-    def _possible(self, state: State, steps: Iterable[Step]) -> tuple[Step, ...]:
-        """Those steps that do not contradict what everybody assumes.
-
-        Where the events are recorded, steps that nobody can tell apart become one; whoever chooses what is tried next
-        sees them as they are.
-        """
-        possible = tuple([step for step in steps if meet(self.assumed, step.assumes)])
-        indistinct = self.spec.abstraction.indistinct
-        if indistinct is None or self.live:
-            return possible
-        merged = [step if step.after is state else indistinct(step) for step in possible]
-        return possible if all(map(operator.is_, merged, possible)) else tuple(dict.fromkeys(merged))
-
-    def effects(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
-        """The outcomes of a request in a state that change something."""
-        key = (state, request, refs)
-        found = self._effects.get(key)
-        if found is None:
-            steps = self.outcomes(state, request, refs)
-            found = self._effects[key] = tuple(step for step in steps if changes(state, step))
-        return found
-
-    def idle(self, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
-        """The outcomes of a request in a state that have an answer and change nothing."""
-        key = (state, request, refs)
-        found = self._idle.get(key)
-        if found is None:
-            found = self._idle[key] = tuple(
-                step
-                for step in self.outcomes(state, request, refs)
-                if step.answer is not None and step.applied and not changes(state, step)
-            )
-        return found
-
-    def urgent(self, state: State) -> tuple[Step, ...]:
-        """What must happen before things have settled."""
-        found = self._urgent.get(state)
-        if found is None:
-            found = self._possible(state, self.spec.urgent(state))
-            self._make_room(state, found)
-            self._urgent[state] = found
-        return found
-
-    def unseen(self, state: State) -> tuple[Step, ...]:
-        """What may happen at any time although nobody asked for it."""
-        found = self._unseen.get(state)
-        if found is None:
-            steps = list(self.spec.spontaneous(state))
-            for drive in self.spec.drives.values():
-                if drive.name not in self.driven:
-                    for event in drive.by_itself:
-                        steps += drive.steps(state, event, ())
-            found = self._possible(state, steps)
-            self._make_room(state, found)
-            self._unseen[state] = found
-        return found
-
-    def _silent(self, explanation: Explanation, focus: FocusOf | None) -> Iterator[Step]:
-        """What may happen without a call, as far as what is observed next can tell."""
-        state = explanation.state
-        if self.spec.silent_for is not None and focus is not None:
-            key = (state, focus(explanation))
-            found = self._focused.get(key)
-            if found is None:
-                found = self._possible(state, self.spec.silent_for(*key))
-                self._make_room(state, found)
-                self._focused[key] = found
-            yield from found
-            return
-        yield from self.urgent(state)
-        if self._may_go_on(explanation):
-            channels = explanation.channels
-            shown = not channels or not all(channel.owed for channel in channels)
-            for step in self.unseen(state):
-                if shown or not step.alone:
-                    yield step
-
-    def matches(self, owed: Owed, content: Hashable) -> tuple[Match, ...] | Mismatch:
-        """The ways in which a message shows what is owed."""
-        key = (owed.view, content)
-        found = self._matches.get(key)
-        if found is None:
-            found = self._matches[key] = self.spec.matches(owed.view, content)
-        return found
-
-    def agreements(self, allowed: Answer, given: Answer) -> tuple[Match, ...]:
-        """The ways in which an answer is the one that is allowed."""
-        if allowed == given:
-            return _EQUAL
-        if self.spec.answers is None or (allowed.code, allowed.unordered) != (given.code, given.unordered):
-            return ()
-        key = (allowed, given)
-        found = self._matches.get(key)
-        if found is None:
-            found = self._matches[key] = self.spec.answers(allowed.shape, given.shape)
-        return () if isinstance(found, Mismatch) else found
-
-    # How one explanation goes on.
 
     def meet(self, assumed: int, assumptions: Iterable[Assumption]) -> int:
         """What is assumed once these are assumed as well; 0 when that is contradictory."""
@@ -413,6 +263,20 @@ class Successors:
             step.opens and step.after is state and not (step.emits or step.closes or step.clears or step.withdraws)
             for step in effects
         )
+
+    def _silent(self, explanation: Explanation, focus: FocusOf | None) -> Iterator[Step]:
+        """What may happen without a call, as far as what is observed next can tell."""
+        state = explanation.state
+        if self.spec.silent_for is not None and focus is not None:
+            yield from self.unseen_before(state, focus(explanation))
+            return
+        yield from self.urgent(state)
+        if self._may_go_on(explanation):
+            channels = explanation.channels
+            shown = not channels or not all(channel.owed for channel in channels)
+            for step in self.unseen(state):
+                if shown or not step.alone:
+                    yield step
 
     def _may_go_on(self, explanation: Explanation) -> bool:
         """Whether the subscribers, if there are any, are near enough to the state for more to be imagined.

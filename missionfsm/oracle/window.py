@@ -10,6 +10,7 @@ import itertools
 
 from missionfsm.kernel.history import Called, Event, Returned
 from missionfsm.oracle.belief import Belief
+from missionfsm.oracle.coming import Excerpt
 from missionfsm.oracle.explanation import Explanation, reopened, with_lost
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
@@ -79,7 +80,7 @@ class Window:
         search = None if lost else self._search
         if search is None or search.calls_alone:
             transitions, memory = self._belief.automaton.transitions, self._belief.automaton.memory
-            search = Search(transitions, start, symbols, self._latest, budget, memory)
+            search = Search(transitions, start, Excerpt(symbols, self._latest), budget, memory)
         search.budget, search.whole = budget, lost is not None
         self._search = None if lost else search
         return search

@@ -7,43 +7,23 @@ import collections
 import contextlib
 import logging
 import signal
-import ssl
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
-
-import attrs
 
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
+from missionfsm.adapters.isaac.settings import LOOPBACK, Settings
 from missionfsm.adapters.isaac.statuspage import StatusPage, answers
-from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer, fresh_uuid
+from missionfsm.adapters.isaac.tcp import TcpMissionServer, fresh_uuid
 from missionfsm.app.ending import told_to_end
 from missionfsm.isaac.runtime.graph import topological_order
 from missionfsm.isaac.runtime.log import Entry, Level, Narrator
 from missionfsm.isaac.runtime.missionfile import MissionFile
 from missionfsm.isaac.runtime.missions import INCOMPLETE, Effect, Snapshot, Status, StatusChanged
-from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
-from missionfsm.isaac.wire.framing import MAX_LINE
 from missionfsm.isaac.wire.messages import Uuid
 from missionfsm.kernel.codec import UnreadableError
 
 _LOOPBACK = ("127.", "localhost:", "[::1]:")
-
-
-@attrs.frozen
-class Settings:
-    """Where a server listens and what it follows; see `TcpMissionServer`."""
-
-    host: str = LOOPBACK
-    port: int = DEFAULT_PORT
-    name_channel: str = "name"
-    profile: Profile = DOCUMENTED
-    line_limit: int = MAX_LINE
-    journal: str | None = None
-    resume: str = "fail"
-    tokens: Mapping[str, str] | None = attrs.field(default=None, repr=False)
-    tls: ssl.SSLContext | None = None
-    http: int | None = None
 
 
 class JournalMismatchError(Exception):
@@ -98,18 +78,7 @@ class Dispatch:
         self.narrator.name(uuids)
         for mission in kept:
             self._stands(mission)
-        server = TcpMissionServer(
-            host=settings.host,
-            port=settings.port,
-            name_channel=settings.name_channel,
-            profile=settings.profile,
-            line_limit=settings.line_limit,
-            journal=journal,
-            resume=settings.resume,
-            tokens=settings.tokens,
-            tls=settings.tls,
-            observer=self._observe,
-        )
+        server = TcpMissionServer(settings, journal=journal, observer=self._observe)
         self.narrator.peer = server.peer
         await server.start()
         try:

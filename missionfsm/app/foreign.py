@@ -193,7 +193,7 @@ def judge(name: str, subject: Subject, seed: int, seconds: float) -> Judged:
     )
 
 
-def judge_all(  # noqa: PLR0913 - all but the first two have a default on the command line
+def judge_all(
     name: str,
     given: Sequence[Subject],
     *,

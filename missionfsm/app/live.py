@@ -41,7 +41,7 @@ class Live:
         UnreadableError: the world is none.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first and the clock have a default
+    def __init__(
         self,
         system: System,
         world: JSON = None,

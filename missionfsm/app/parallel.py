@@ -17,7 +17,7 @@ _MORE = "one more"
 """What a process tells the one that shows the progress, before it tells what it found."""
 
 
-def teeth_on(  # noqa: PLR0913 - options of the command
+def teeth_on(
     jobs: int, name: str, *, seed: int, only: str, every: int = 1, progress: Callable[[], None]
 ) -> MutationReport:
     """Judge every mutant of a system in so many processes; the same number of them finds the same.

@@ -88,7 +88,7 @@ class Recorder(Generic[Item]):
         OSError: the file cannot be written.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first two have a default
+    def __init__(
         self,
         head: dict[str, JSON],
         reader: Callable[[], Read[Item]],

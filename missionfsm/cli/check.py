@@ -47,7 +47,7 @@ MANY = 20
 
 
 @with_reports(several=True)
-def check(  # noqa: PLR0913 - options of the command
+def check(
     files: Annotated[
         list[str],
         typer.Argument(metavar="FILE…", help="Recorded histories, folders of them or patterns ('*.gz'); - is stdin."),

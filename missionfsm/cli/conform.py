@@ -99,7 +99,7 @@ class TimeLimit:
 
 
 @with_reports(several=False)
-def conform(  # noqa: PLR0913 - options of the command, and what they do
+def conform(
     system: SystemName,
     command: Annotated[
         list[str] | None, typer.Argument(help="The adapter to judge, after --; the built-in reference if left out.")

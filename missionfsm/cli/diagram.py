@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # drawing is loaded when something is drawn
 _WITHOUT_DOT = "SVG is drawn by Graphviz, whose program dot was not found: install the package graphviz"
 
 
-def diagram(  # noqa: PLR0913 - options of the command
+def diagram(
     what: Annotated[
         list[str] | None,
         typer.Argument(metavar="[SYSTEM…]", help="Systems, or pictures such as bear.mission/queue; all if left out."),

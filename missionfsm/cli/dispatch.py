@@ -17,7 +17,8 @@ from missionfsm.cli.common import BAD_INPUT, complain, refuse_given, stop
 from missionfsm.kernel.codec import UnreadableError
 
 if TYPE_CHECKING:
-    from missionfsm.app.dispatch import Dispatch, Settings
+    from missionfsm.adapters.isaac.settings import Settings
+    from missionfsm.app.dispatch import Dispatch
     from missionfsm.isaac.runtime.missionfile import MissionFile
     from missionfsm.isaac.runtime.profile import Profile
 
@@ -52,7 +53,7 @@ class LevelName(enum.StrEnum):
     ERROR = "error"
 
 
-def dispatch(  # noqa: PLR0913 - the options
+def dispatch(
     context: typer.Context,
     file: Annotated[Path, typer.Argument(help="The missions, as a JSON file; - is stdin.")],
     host: Annotated[
@@ -90,7 +91,8 @@ def dispatch(  # noqa: PLR0913 - the options
     """
     from missionfsm.adapters.historyfile import read_whole  # noqa: PLC0415 - commands load what they need
     from missionfsm.adapters.isaac.secrets import server_tls, tokens  # noqa: PLC0415
-    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
+    from missionfsm.adapters.isaac.settings import Settings  # noqa: PLC0415 - commands load what they need
+    from missionfsm.app.dispatch import Dispatch  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
     from missionfsm.isaac.runtime.profile import PROFILES  # noqa: PLC0415
 

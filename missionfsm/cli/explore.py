@@ -13,7 +13,7 @@ from missionfsm.cli.pages import HtmlFile, write_explorer
 from missionfsm.cli.printing import JsonFile, print_result
 
 
-def explore(  # noqa: PLR0913 - options of the command
+def explore(
     system: SystemName,
     missions: Annotated[int, typer.Option(min=0, max=8, help="Listed missions, at most.")] = 2,
     goals: Annotated[int, typer.Option(min=1, max=8, help="Goals of a mission, at most.")] = 2,

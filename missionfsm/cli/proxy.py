@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from missionfsm.adapters.grpc.proxy import Proxy
 
 
-def proxy(  # noqa: PLR0913 - options of the command
+def proxy(
     system: SystemArgument,
     grpc: Annotated[str, typer.Option("--grpc", metavar="HOST:PORT", help="The robot.")],
     listen: Annotated[int, typer.Option(metavar="PORT", min=0, max=65535, help="Where clients connect.")],

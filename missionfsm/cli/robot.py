@@ -14,9 +14,8 @@ import typer
 from missionfsm.cli.common import complain, one_line_errors, refuse_given, stop
 
 if TYPE_CHECKING:
-    from ssl import SSLContext
-
-    from missionfsm.isaac.runtime.robot import Behavior
+    from missionfsm.adapters.isaac.settings import Dialling
+    from missionfsm.isaac.runtime.robot import RobotCore
 
 
 class Outcome(enum.StrEnum):
@@ -27,7 +26,7 @@ class Outcome(enum.StrEnum):
     HANG = "hang"
 
 
-def robot(  # noqa: PLR0913 - the options
+def robot(
     context: typer.Context,
     name: Annotated[str, typer.Option(help="The robot's name, as missions call it.")],
     host: Annotated[str, typer.Option(help="Where the mission server is.")] = "127.0.0.1",
@@ -48,8 +47,9 @@ def robot(  # noqa: PLR0913 - the options
 
     from missionfsm.adapters.isaac.secrets import client_tls  # noqa: PLC0415
     from missionfsm.adapters.isaac.secrets import token as read_token  # noqa: PLC0415
+    from missionfsm.adapters.isaac.settings import Dialling  # noqa: PLC0415
     from missionfsm.app.ending import said  # noqa: PLC0415
-    from missionfsm.isaac.runtime.robot import Behavior, ScriptProblem, parse_script  # noqa: PLC0415
+    from missionfsm.isaac.runtime.robot import Behavior, RobotCore, ScriptProblem, parse_script  # noqa: PLC0415
 
     if script is not None:
         refuse_given(context, {"behavior": "--behavior"}, "with --script, which says how each mission goes")
@@ -71,31 +71,22 @@ def robot(  # noqa: PLR0913 - the options
     with one_line_errors():
         secret = None if token is None else read_token(str(token))
         tls = None if tls_ca is None else client_tls(str(tls_ca))
+    core = RobotCore(name, script=steps, token=secret)
     ended: list[signal.Signals] = []
     try:
-        asyncio.run(_be_a_robot(name, host, port, steps, line_limit, secret, tls, ended))
+        asyncio.run(_be_a_robot(core, Dialling(host, port, tls), line_limit, ended))
     except KeyboardInterrupt:
         ended = [signal.SIGINT]
     stop(said(ended[0]), 128 + ended[0])
 
 
-async def _be_a_robot(  # noqa: PLR0913 - the options
-    name: str,
-    host: str,
-    port: int,
-    script: "tuple[Behavior, ...]",
-    line_limit: int,
-    secret: str | None,
-    tls: "SSLContext | None",
-    ended: list[signal.Signals],
-) -> None:
+async def _be_a_robot(core: "RobotCore", dialling: "Dialling", line_limit: int, ended: list[signal.Signals]) -> None:
     """Be a robot until a signal ends it, which is then in `ended`."""
     import asyncio  # noqa: PLC0415
 
     from missionfsm.adapters.isaac.tcp import TcpRobot  # noqa: PLC0415
     from missionfsm.app.ending import told_to_end  # noqa: PLC0415
     from missionfsm.cli.isaac_view import Log, robot_line  # noqa: PLC0415
-    from missionfsm.isaac.runtime.robot import RobotCore  # noqa: PLC0415
 
     log = Log()
     last: list[str] = []
@@ -106,8 +97,7 @@ async def _be_a_robot(  # noqa: PLR0913 - the options
             last[:] = [line]
             log.say(line)
 
-    core = RobotCore(name, script=script, token=secret)
-    robot = TcpRobot(core, host=host, port=port, line_limit=line_limit, tls=tls, observer=observe, notes=log.say)
+    robot = TcpRobot(core, dialling, line_limit=line_limit, observer=observe, notes=log.say)
     work = asyncio.ensure_future(robot.run())
 
     def end(by: signal.Signals) -> None:

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     pass
 
 
-def serve(  # noqa: PLR0913 - options of the command
+def serve(
     context: typer.Context,
     system: SystemArgument,
     grpc: Annotated[int, typer.Option("--grpc", metavar="PORT", min=0, max=65535, help="The port; 0 is any free one.")],

@@ -18,7 +18,7 @@ SECONDS = 120.0
 """How long a foreign subject is judged at most, where nobody says."""
 
 
-def teeth(  # noqa: PLR0913 - options of the command
+def teeth(
     system: SystemName,
     subjects: Annotated[
         str | None,
@@ -57,7 +57,7 @@ def teeth(  # noqa: PLR0913 - options of the command
     troubles.end(FAILED if found.survived or found.untested else DONE)
 
 
-def _foreign(  # noqa: PLR0913 - options of the command
+def _foreign(
     system: str, folder: Path, only: str, every: int, seed: int, seconds: float, jobs: int, json: str | None
 ) -> None:
     """Judge the implementations of others in a folder, and end the command."""

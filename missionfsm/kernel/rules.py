@@ -200,7 +200,7 @@ class Operation:
     system: str = ""
 
     @classmethod
-    def with_rules(  # noqa: PLR0913 - one line of a table
+    def with_rules(
         cls,
         name: str,
         system: str,

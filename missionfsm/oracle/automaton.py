@@ -87,7 +87,7 @@ class Automaton:
         tally: how often each set of rules was exercised by all beliefs that walked here and count nowhere else.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first have a default
+    def __init__(
         self,
         spec: Spec,
         driven: Iterable[str] = (),

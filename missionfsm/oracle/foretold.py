@@ -35,7 +35,7 @@ class Foretold:
     rules: tuple[tuple[int, tuple[str, ...]], ...]
 
 
-def foretold(  # noqa: PLR0913 - what a message is made of
+def foretold(
     spec: Spec,
     showings: Showings,
     channel: Channel,

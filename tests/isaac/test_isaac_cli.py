@@ -277,7 +277,8 @@ def test_isaac_cli_the_table_shows_what_matters() -> None:
     """On a terminal: robots, missions, statuses and counts, as many rows as fit; names cannot control the terminal."""
     from rich.console import Console  # noqa: PLC0415
 
-    from missionfsm.app.dispatch import Dispatch, Settings  # noqa: PLC0415
+    from missionfsm.adapters.isaac.settings import Settings  # noqa: PLC0415
+    from missionfsm.app.dispatch import Dispatch  # noqa: PLC0415
     from missionfsm.cli.isaac_view import TableView  # noqa: PLC0415
 
     file = MissionFile(

@@ -11,6 +11,7 @@ from isaac_helpers import RUNNING, SUCCESS, Driver, says_name, uuid
 
 from missionfsm.adapters.background import BackgroundLines
 from missionfsm.adapters.isaac.lines import address
+from missionfsm.adapters.isaac.settings import Settings
 from missionfsm.adapters.isaac.tcp import TcpMissionServer, fresh_uuid
 from missionfsm.isaac.runtime.log import Level, Narrator
 from missionfsm.isaac.runtime.missions import MissionRequest, RobotTakenOver, Status, StatusChanged
@@ -59,7 +60,7 @@ def test_isaac_tcp_a_robot_that_reports_and_hangs_up_gets_no_mission_into_the_dy
 
     async def scenario() -> None:
         async with asyncio.timeout(20):
-            server = TcpMissionServer(port=0)
+            server = TcpMissionServer(Settings(port=0))
             await server.start()
             missions = [fresh_uuid() for _ in range(2)]
             for mission in missions:
@@ -85,7 +86,7 @@ def test_isaac_tcp_a_server_on_any_address_takes_both_families() -> None:
     """`::` is IPv4 as well, on one port; addresses are written as people write them."""
 
     async def scenario() -> None:
-        server = TcpMissionServer(host="::", port=0)
+        server = TcpMissionServer(Settings(host="::", port=0))
         await server.start()
         assert server.addresses == (f"[::]:{server.port}",)
         for host in ("127.0.0.1", "::1"):

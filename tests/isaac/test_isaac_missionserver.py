@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from missionfsm.adapters.isaac.missionserver import AsyncMissionServer, Mission, MissionRefusedError, MissionServer
+from missionfsm.adapters.isaac.settings import Dialling
 from missionfsm.adapters.isaac.tcp import TcpRobot
 from missionfsm.isaac.runtime.codelet import Codelet
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED
@@ -36,7 +37,7 @@ def fleet(server: MissionServer) -> Iterator[None]:
             RobotCore(name, script=(Behavior("succeed", 0.02),), codelet=Codelet(period=0.01))
             for name in ("carter-01", "carter-02")
         ]
-        await asyncio.gather(*(TcpRobot(core, port=server.port, first_delay=0.02).run() for core in cores))
+        await asyncio.gather(*(TcpRobot(core, Dialling(port=server.port, first_delay=0.02)).run() for core in cores))
 
     task = loop.create_task(robots())
     thread = threading.Thread(target=lambda: loop.run_until_complete(asyncio.wait([task])))
@@ -255,7 +256,7 @@ def test_isaac_facade_statuses_can_be_iterated() -> None:
                 return [status.name async for status in server.statuses(one)]
 
             readers = [asyncio.create_task(follow(one)) for one in (mission, mission, never)]
-            robot = asyncio.create_task(TcpRobot(core, port=server.port).run())
+            robot = asyncio.create_task(TcpRobot(core, Dialling(port=server.port)).run())
             expected = ["QUEUED", "STARTED", "RUNNING", "SUCCESS"]
             assert await asyncio.gather(*readers[:2]) == [expected, expected]
             robot.cancel()

@@ -16,6 +16,7 @@ from isaac_helpers import Driver, says_name
 from missionfsm.adapters.isaac.mission import Mission
 from missionfsm.adapters.isaac.missionserver import MissionServer
 from missionfsm.adapters.isaac.secrets import client_tls, server_tls, token, tokens
+from missionfsm.adapters.isaac.settings import Dialling, Settings
 from missionfsm.adapters.isaac.tcp import TcpMissionServer, TcpRobot, fresh_uuid
 from missionfsm.isaac.runtime.missions import Close, MissionRequest, RobotOnline, RobotTakenOver, Send
 from missionfsm.isaac.runtime.robot import Behavior, RobotCore
@@ -85,7 +86,7 @@ def test_isaac_tcp_missions_go_over_tls_with_tokens(tmp_path: Path) -> None:
     async def scenario() -> None:
         seen: list[object] = []
         server = TcpMissionServer(
-            port=0, tls=server_tls(certificate, key), tokens={"r": "secret"}, observer=seen.append
+            Settings(port=0, tls=server_tls(certificate, key), tokens={"r": "secret"}), observer=seen.append
         )
         await server.start()
         mission = fresh_uuid()
@@ -93,10 +94,12 @@ def test_isaac_tcp_missions_go_over_tls_with_tokens(tmp_path: Path) -> None:
         assert server.submit(mission) is None
         notes: list[str] = []
         stranger = TcpRobot(
-            RobotCore("r"), port=server.port, tls=ssl.create_default_context(), first_delay=0.02, notes=notes.append
+            RobotCore("r"),
+            Dialling(port=server.port, tls=ssl.create_default_context(), first_delay=0.02),
+            notes=notes.append,
         )
         core = RobotCore("r", script=(Behavior("succeed", 0.0),), token="secret")  # noqa: S106 - a test's
-        robot = TcpRobot(core, port=server.port, tls=client_tls(certificate))
+        robot = TcpRobot(core, Dialling(port=server.port, tls=client_tls(certificate)))
         tasks = [asyncio.create_task(one.run()) for one in (stranger, robot)]
         async with asyncio.timeout(20):
             while server.core.unfinished or not notes:  # noqa: ASYNC110 - what is waited for tells nobody
@@ -124,7 +127,7 @@ def test_isaac_missionserver_takes_what_dispatch_takes(tmp_path: Path) -> None:
             if says == "disconnected":
                 dropped.set()
 
-        robot = TcpRobot(RobotCore("carter", token=said), port=port, tls=client_tls(certificate), notes=note)
+        robot = TcpRobot(RobotCore("carter", token=said), Dialling(port=port, tls=client_tls(certificate)), notes=note)
         running = asyncio.create_task(robot.run())
         await dropped.wait()
         running.cancel()

@@ -14,6 +14,7 @@ from isaac_helpers import RUNNING, SUCCESS, says_name
 
 from missionfsm.adapters.isaac.lines import LineConnection
 from missionfsm.adapters.isaac.missionserver import AsyncMissionServer, Mission
+from missionfsm.adapters.isaac.settings import Dialling, Settings
 from missionfsm.adapters.isaac.tcp import TcpMissionServer, TcpRobot, fresh_uuid
 from missionfsm.isaac.runtime.codelet import Codelet
 from missionfsm.isaac.runtime.missions import MissionRequest
@@ -42,9 +43,7 @@ async def robots(port: int, *names: str, duration: float = 0.02, outcome: str = 
         asyncio.create_task(
             TcpRobot(
                 RobotCore(name, script=(Behavior(outcome, duration),), codelet=Codelet(period=0.02)),
-                port=port,
-                first_delay=0.02,
-                longest_delay=0.1,
+                Dialling(port=port, first_delay=0.02, longest_delay=0.1),
             ).run()
         )
         for name in names
@@ -100,7 +99,7 @@ class Peer:
 
 @contextlib.asynccontextmanager
 async def serving(**settings: Any) -> AsyncIterator[TcpMissionServer]:
-    server = TcpMissionServer(host="127.0.0.1", port=0, **settings)
+    server = TcpMissionServer(Settings(host="127.0.0.1", port=0, **settings))
     await server.start()
     try:
         yield server
@@ -375,9 +374,7 @@ def test_isaac_tcp_a_robot_backs_off_within_bounds() -> None:
             notes: list[float] = []
             robot = TcpRobot(
                 RobotCore("r"),
-                port=taken.getsockname()[1],
-                first_delay=0.01,
-                longest_delay=0.04,
+                Dialling(port=taken.getsockname()[1], first_delay=0.01, longest_delay=0.04),
                 notes=lambda _: notes.append(time.monotonic()),
             )
             task = asyncio.create_task(robot.run())
@@ -394,7 +391,7 @@ def test_isaac_tcp_an_address_in_use_is_an_oserror() -> None:
 
     async def scenario() -> None:
         async with serving() as server:
-            second = TcpMissionServer(host="127.0.0.1", port=server.port)
+            second = TcpMissionServer(Settings(host="127.0.0.1", port=server.port))
             with pytest.raises(OSError, match="Address already in use"):
                 await second.start()
             await second.close()

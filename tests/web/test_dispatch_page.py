@@ -14,7 +14,8 @@ import pytest
 from browsing import expect
 from conftest import SIZES
 
-from missionfsm.app.dispatch import Dispatch, Settings
+from missionfsm.adapters.isaac.settings import Settings
+from missionfsm.app.dispatch import Dispatch
 from missionfsm.isaac.runtime.log import Entry
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
 

@@ -288,7 +288,7 @@ class Server:
         OSError: it cannot listen there, or a file of `security` cannot be read.
     """
 
-    def __init__(  # noqa: PLR0913 - each with a default
+    def __init__(
         self,
         live: Robots,
         *,

@@ -10,13 +10,12 @@ from types import TracebackType
 from typing import Any, Self
 from weakref import WeakValueDictionary
 
-import attrs
-
 from missionfsm.adapters.isaac.journal import Journal
 from missionfsm.adapters.isaac.lines import LOG
 from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError, not_submitted
+from missionfsm.adapters.isaac.settings import DEFAULT_PORT, LOOPBACK, Settings
 from missionfsm.adapters.isaac.statuspage import StatusPage, answers
-from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK, TcpMissionServer
+from missionfsm.adapters.isaac.tcp import TcpMissionServer
 from missionfsm.isaac.runtime.missions import Effect, Refused, StatusChanged
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
@@ -25,20 +24,6 @@ from missionfsm.isaac.wire.messages import Uuid
 
 Callback = Callable[[Mission, MissionStatus], object]
 """Is called with a mission and its new status."""
-
-
-@attrs.frozen
-class _Settings:
-    port: int
-    name_channel: str
-    host: str
-    profile: Profile
-    line_limit: int
-    journal: str | Path | None
-    resume: str
-    tokens: Mapping[str, str] | None
-    tls: ssl.SSLContext | None
-    http: int | None
 
 
 class AsyncMissionServer:
@@ -71,7 +56,7 @@ class AsyncMissionServer:
         tls: ssl.SSLContext | None = None,
         http: int | None = None,
     ) -> None:
-        self._settings = _Settings(port, name_channel, host, profile, line_limit, journal, resume, tokens, tls, http)
+        self._settings = Settings(host, port, name_channel, profile, line_limit, journal, resume, tokens, tls, http)
         self._page: StatusPage | None = None
         self._tcp: TcpMissionServer | None = None
         self._journal: Journal | None = None
@@ -90,18 +75,7 @@ class AsyncMissionServer:
             for kept in self._journal.missions():
                 upstream = [self._restored[one] for one in kept.request.upstream if one in self._restored]
                 self._restored[kept.uuid] = self._missions[kept.uuid] = Mission.restored(kept, upstream, self)
-        self._tcp = TcpMissionServer(
-            host=settings.host,
-            port=settings.port,
-            name_channel=settings.name_channel,
-            profile=settings.profile,
-            line_limit=settings.line_limit,
-            journal=self._journal,
-            resume=settings.resume,
-            tokens=settings.tokens,
-            tls=settings.tls,
-            observer=self._observe,
-        )
+        self._tcp = TcpMissionServer(settings, journal=self._journal, observer=self._observe)
         self._tcp.failed.add_done_callback(lambda _: self._changed.set())
         await self._tcp.start()
         if settings.http is not None:

@@ -140,7 +140,7 @@ class ServerBridge(_Bridge):
 
     drives = ("connect", "line", "disconnect", "advance")
 
-    def __init__(  # noqa: PLR0913 - an address, and the ways in which missions come
+    def __init__(
         self,
         host: str,
         port: int,

@@ -12,7 +12,9 @@ import json
 import sqlite3
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Final
+from typing import Final, Self
+
+import attrs
 
 from missionfsm.isaac.runtime.missions import Effect, MissionRequest, Snapshot, Status, StatusChanged
 from missionfsm.isaac.runtime.server import MissionServerCore
@@ -78,7 +80,7 @@ class Journal:
                 "SELECT uuid, robot, channel, status_channel, config, start_timeout, timeout, upstream, "
                 "status, attempt, number FROM missions ORDER BY id"
             ).fetchall()
-            return tuple(_snapshot(*row) for row in rows)
+            return tuple(_Row(*row).snapshot() for row in rows)
 
     def write(self, new: Iterable[Snapshot] = (), changed: Iterable[Snapshot] = (), gone: Iterable[Uuid] = ()) -> None:
         """Write what is new, what has changed and what is forgotten: all of it or nothing, on the disk on return."""
@@ -87,7 +89,7 @@ class Journal:
             self._sql.executemany(
                 "INSERT INTO missions (uuid, robot, channel, status_channel, config, start_timeout, timeout, upstream, "
                 "status, attempt, number) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                map(_row, new),
+                (attrs.astuple(_Row.of(one)) for one in new),
             )
             self._sql.executemany(
                 "UPDATE missions SET status = ?, attempt = ?, number = ? WHERE uuid = ?",
@@ -159,46 +161,54 @@ def _status(mission: Snapshot) -> str:
     return str(status.value)
 
 
-def _row(mission: Snapshot) -> tuple[object, ...]:
-    request = mission.request
-    return (
-        str(mission.uuid),
-        request.robot,
-        request.channel,
-        request.status_channel,
-        request.config,
-        request.start_timeout,
-        request.timeout,
-        json.dumps([str(one) for one in request.upstream]),
-        _status(mission),
-        str(mission.attempt),
-        mission.number,
-    )
+@attrs.frozen
+class _Row:
+    """A row of the table of missions."""
 
+    uuid: str
+    robot: str | None
+    channel: str
+    status_channel: str | None
+    config: str
+    start_timeout: float
+    timeout: float
+    upstream: str
+    status: str
+    attempt: str
+    number: int
 
-def _snapshot(  # noqa: PLR0913 - the columns
-    uuid: str,
-    robot: str | None,
-    channel: str,
-    status_channel: str | None,
-    config: str,
-    start_timeout: float,
-    timeout: float,
-    upstream: str,
-    status: str,
-    attempt: str,
-    number: int,
-) -> Snapshot:
-    request = MissionRequest(
-        robot,
-        channel,
-        status_channel,
-        config,
-        start_timeout,
-        timeout,
-        tuple(map(_uuid, json.loads(upstream))),
-    )
-    return Snapshot(_uuid(uuid), request, Status[status], _uuid(attempt), number)
+    @classmethod
+    def of(cls, mission: Snapshot) -> Self:
+        """The row of a mission."""
+        request = mission.request
+        upstream = json.dumps([str(one) for one in request.upstream])
+        return cls(
+            str(mission.uuid),
+            request.robot,
+            request.channel,
+            request.status_channel,
+            request.config,
+            request.start_timeout,
+            request.timeout,
+            upstream,
+            _status(mission),
+            str(mission.attempt),
+            mission.number,
+        )
+
+    def snapshot(self) -> Snapshot:
+        """The mission."""
+        upstream = tuple(map(_uuid, json.loads(self.upstream)))
+        request = MissionRequest(
+            self.robot,
+            self.channel,
+            self.status_channel,
+            self.config,
+            self.start_timeout,
+            self.timeout,
+            upstream,
+        )
+        return Snapshot(_uuid(self.uuid), request, Status[self.status], _uuid(self.attempt), self.number)
 
 
 def _uuid(text: str) -> Uuid:

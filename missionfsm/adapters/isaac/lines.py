@@ -33,7 +33,7 @@ class LineConnection(asyncio.Protocol):
     loop has looked once more whether the connection still stands.
     """
 
-    def __init__(  # noqa: PLR0913 - what it reports to, and two settings
+    def __init__(
         self,
         decoder: Decoder,
         *,

@@ -34,7 +34,7 @@ class Mission:
 
     Status = MissionStatus
 
-    def __init__(  # noqa: PLR0913 - the documented keys
+    def __init__(
         self,
         robot: str | None = None,
         channel: str = "mission",

@@ -23,7 +23,7 @@ from typing import Any, Self, TypeVar
 from missionfsm.adapters.isaac.asyncserver import AsyncMissionServer, Callback
 from missionfsm.adapters.isaac.lines import LOG
 from missionfsm.adapters.isaac.mission import Mission, MissionRefusedError
-from missionfsm.adapters.isaac.tcp import DEFAULT_PORT, LOOPBACK
+from missionfsm.adapters.isaac.settings import DEFAULT_PORT, LOOPBACK
 from missionfsm.isaac.runtime.missions import Status as MissionStatus
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.wire.framing import MAX_LINE

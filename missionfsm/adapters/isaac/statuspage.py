@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from typing import Any, Final
 
-from missionfsm.adapters.isaac.tcp import LOOPBACK
+from missionfsm.adapters.isaac.settings import LOOPBACK
 
 Answer = Callable[[], bytes]
 """Makes a body; is called on the event loop."""

@@ -13,15 +13,13 @@ from collections.abc import Iterable
 from missionfsm.isaac.runtime import missionfile
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
 from missionfsm.isaac.runtime.missions import (
-    DEFAULT_CHANNEL,
-    DEFAULT_STATUS_CHANNEL,
     Close,
     Effect,
     Refused,
     Send,
 )
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
-from missionfsm.isaac.runtime.robot import RobotCore, RobotEffect, Transmit
+from missionfsm.isaac.runtime.robot import Channels, RobotCore, RobotEffect, Transmit
 from missionfsm.isaac.runtime.server import MissionServerCore, elapse
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import Decoder, encode
@@ -102,12 +100,9 @@ class RobotSubject(_InProcess):
         self._now = 0.0
         self._fresh = _Identifiers()
         self._decoder = Decoder()
-        self._core = RobotCore(
-            world.get("name", "robot"),
-            channel=world.get("channel", DEFAULT_CHANNEL),
-            status_channel=world.get("statusChannel", DEFAULT_STATUS_CHANNEL),
-            name_channel=world.get("nameChannel", "name"),
-        )
+        keys = {"nameChannel": "name", "channel": "missions", "statusChannel": "statuses"}
+        channels = Channels(**{keys[key]: value for key, value in world.items() if key in keys})
+        self._core = RobotCore(world.get("name", "robot"), channels=channels)
         self._is_connected = True
         self._core.connected(self._now)
 

@@ -12,26 +12,22 @@ import errno
 import os
 import random
 import socket
-import ssl
 import time
 import uuid as uuids
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final
 
 from missionfsm.adapters.isaac.journal import Bookkeeper, Journal, JournalError
-from missionfsm.adapters.isaac.lines import LOG, WRITE_TIMEOUT, Alarm, LineConnection, address
+from missionfsm.adapters.isaac.lines import LOG, Alarm, LineConnection, address
+from missionfsm.adapters.isaac.settings import Dialling, Settings
 from missionfsm.isaac.runtime.graph import topological_order
 from missionfsm.isaac.runtime.missionfile import MissionFile, submit_all
 from missionfsm.isaac.runtime.missions import Close, Effect, Ignored, MissionRequest, Refused, Send
-from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.runtime.robot import RobotCore, RobotEffect, Transmit
 from missionfsm.isaac.runtime.server import MissionServerCore
 from missionfsm.isaac.wire.framing import MAX_LINE, Decoder, WireError, encode
 from missionfsm.isaac.wire.messages import Message, Payload, Uuid, stamp
 
-DEFAULT_PORT: Final = 9998
-LOOPBACK: Final = "127.0.0.1"
-"""Where is listened unless somebody asks for more: whoever can connect can say any robot's name."""
 BACKLOG: Final = 1024
 _NOT_HERE: Final = (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT)
 _GRACE: Final = 0.5  # seconds for what is written to go out when the server closes
@@ -72,34 +68,25 @@ async def listening(host: str, port: int) -> tuple[socket.socket, ...]:
 class TcpMissionServer:
     """A mission server that listens. Made and used on one event loop; `observer` is told of every effect.
 
-    `port` 0 is any free one; `port` then says which, once started. Lines longer than `line_limit` bytes are neither
-    read nor sent: a mission that needs more is refused. What a `journal` has is restored on start; `resume` says what
-    becomes of a mission that was under way, see `RESUME`. A journal that cannot be written ends the server: `failed`
-    then has the reason, nothing more is sent, and every connection is dropped. `tokens` are those of
-    :class:`~missionfsm.isaac.runtime.server.MissionServerCore`; with `tls` everything is encrypted.
+    `port` says where, once started. What a `journal` has is restored on start. A journal that cannot be written ends
+    the server: `failed` then has the reason, nothing more is sent, and every connection is dropped.
     """
 
-    def __init__(  # noqa: PLR0913 - all by keyword, each with a default
+    def __init__(
         self,
+        settings: Settings = Settings(),
         *,
-        host: str = LOOPBACK,
-        port: int = DEFAULT_PORT,
-        name_channel: str = "name",
-        profile: Profile = DOCUMENTED,
-        line_limit: int = MAX_LINE,
-        write_timeout: float = WRITE_TIMEOUT,
         journal: Journal | None = None,
-        resume: str = "fail",
-        tokens: Mapping[str, str] | None = None,
-        tls: ssl.SSLContext | None = None,
         observer: Callable[[Effect], None] = _nothing,
     ) -> None:
-        self.core = MissionServerCore(profile, name_channel=name_channel, line_limit=line_limit, tokens=tokens)
-        self.host = host
-        self.port = port
-        self._profile = profile
-        self._line_limit = line_limit
-        self._write_timeout = write_timeout
+        self._settings = settings
+        self.core = MissionServerCore(
+            settings.profile,
+            name_channel=settings.name_channel,
+            line_limit=settings.line_limit,
+            tokens=settings.tokens,
+        )
+        self.port = settings.port
         self._observer = observer
         self._alarm = Alarm(self._ring)
         self._servers: list[asyncio.Server] = []
@@ -107,9 +94,7 @@ class TcpMissionServer:
         self._numbers: dict[LineConnection, int] = {}
         self._connections: dict[int, LineConnection] = {}
         self.failed: asyncio.Future[JournalError] = asyncio.get_running_loop().create_future()
-        self._tls = tls
         self._journal = journal
-        self._resume = resume
         self._books = None if journal is None else Bookkeeper(self.core, journal)
         self._peers: dict[int, str] = {}
         self._accepted = 0
@@ -120,13 +105,13 @@ class TcpMissionServer:
         if self._journal is not None and self._books is not None:
             snapshots = self._journal.missions()
             self._books.restore(snapshots)
-            self._perform(self.core.restore(snapshots, self._resume, fresh_uuid, self._alarm.now()))
+            self._perform(self.core.restore(snapshots, self._settings.resume, fresh_uuid, self._alarm.now()))
             if self.failed.done():
                 raise self.failed.result()
-        sockets = await listening(self.host, self.port)
+        sockets = await listening(self._settings.host, self.port)
         loop = asyncio.get_running_loop()
         self._servers = [
-            await loop.create_server(self._accept, sock=one, backlog=BACKLOG, ssl=self._tls) for one in sockets
+            await loop.create_server(self._accept, sock=one, backlog=BACKLOG, ssl=self._settings.tls) for one in sockets
         ]
         self.addresses = tuple(address(one.getsockname()) for one in sockets)
         self.port = sockets[0].getsockname()[1]
@@ -202,13 +187,13 @@ class TcpMissionServer:
 
     def _accept(self) -> LineConnection:
         return LineConnection(
-            Decoder(limit=self._line_limit, numbers=self._profile.ai_25 == "a"),
+            Decoder(limit=self._settings.line_limit, numbers=self._settings.profile.ai_25 == "a"),
             opened=self._opened,
             arrived=self._arrived,
             closed=self._closed,
             leaving=self._leaving,
-            read_last_line=self._profile.ai_26_last == "c",
-            write_timeout=self._write_timeout,
+            read_last_line=self._settings.profile.ai_26_last == "c",
+            write_timeout=self._settings.write_timeout,
         )
 
     def _opened(self, connection: LineConnection) -> None:
@@ -270,41 +255,27 @@ class TcpMissionServer:
         connection = self._connections.get(effect.connection)
         if connection is not None:
             message = stamp(effect.payload, effect.channel, pubtime=time.time_ns(), uuid=fresh_uuid())
-            connection.send(encode(message, header_uuid_as_numbers=self._profile.header_uuid_as_numbers))
+            connection.send(encode(message, header_uuid_as_numbers=self._settings.profile.header_uuid_as_numbers))
 
 
 class TcpRobot:
     """A robot that connects, and connects again when the connection drops, for as long as `run` runs.
 
-    Between two attempts lie `first_delay` seconds, twice as many after each failure, never more than `longest_delay`,
-    each cut by up to a half at random so that a fleet does not come back all at once. `observer` is told of every
-    effect, `notes` of what happens to the connection.
+    `observer` is told of every effect, `notes` of what happens to the connection.
     """
 
-    def __init__(  # noqa: PLR0913 - all by keyword, each with a default
+    def __init__(
         self,
         core: RobotCore,
+        dialling: Dialling = Dialling(),
         *,
-        host: str = "127.0.0.1",
-        port: int = DEFAULT_PORT,
-        first_delay: float = 0.1,
-        longest_delay: float = 5.0,
-        connect_timeout: float = 5.0,
         line_limit: int = MAX_LINE,
-        write_timeout: float = WRITE_TIMEOUT,
-        tls: ssl.SSLContext | None = None,
         observer: Callable[[RobotEffect], None] = _nothing,
         notes: Callable[[str], None] = _nothing,
     ) -> None:
         self.core = core
-        self._host = host
-        self._port = port
-        self._first_delay = first_delay
-        self._longest_delay = longest_delay
-        self._connect_timeout = connect_timeout
-        self._tls = tls
+        self._dialling = dialling
         self._line_limit = line_limit
-        self._write_timeout = write_timeout
         self._observer = observer
         self._notes = notes
         self._alarm: Alarm | None = None
@@ -313,14 +284,14 @@ class TcpRobot:
     async def run(self) -> None:
         """Be a robot until cancelled."""
         self._alarm = Alarm(self._ring)
-        delay = self._first_delay
+        delay = self._dialling.first_delay
         try:
             while True:
                 began = self._alarm.now()
                 if await self._one_connection() and self._alarm.now() - began > delay:
-                    delay = self._first_delay
+                    delay = self._dialling.first_delay
                 await asyncio.sleep(delay * random.uniform(0.5, 1.0))  # noqa: S311 - no secret
-                delay = min(2 * delay, self._longest_delay)
+                delay = min(2 * delay, self._dialling.longest_delay)
         finally:
             self._alarm.set(None)
             if (connection := self._connection) is not None:
@@ -330,12 +301,12 @@ class TcpRobot:
 
     async def _one_connection(self) -> bool:
         """Connect and stay until the connection drops; False if it could not be made."""
-        loop = asyncio.get_running_loop()
+        loop, where = asyncio.get_running_loop(), self._dialling
         try:
-            async with asyncio.timeout(self._connect_timeout):
-                _, connection = await loop.create_connection(self._make, self._host, self._port, ssl=self._tls)
+            async with asyncio.timeout(where.connect_timeout):
+                _, connection = await loop.create_connection(self._make, where.host, where.port, ssl=where.tls)
         except OSError as error:  # a TimeoutError is one too
-            self._notes(f"cannot connect to {address((self._host, self._port))}: {error or type(error).__name__}")
+            self._notes(f"cannot connect to {address((where.host, where.port))}: {error or type(error).__name__}")
             return False
         await connection.gone
         return True
@@ -346,7 +317,6 @@ class TcpRobot:
             opened=self._opened,
             arrived=self._arrived,
             closed=self._closed,
-            write_timeout=self._write_timeout,
         )
 
     def _opened(self, connection: LineConnection) -> None:

@@ -39,7 +39,7 @@ WAITING: Mapping[str, str] = {
 """Situations in which missions wait and none is active."""
 
 
-def _each(  # noqa: PLR0913 - an ambiguity and its parts
+def _each(
     entry: str,
     question: str,
     readings: Mapping[str, str],

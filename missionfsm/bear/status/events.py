@@ -127,7 +127,7 @@ def _unset(robot: Robot, endpoint: Endpoint, letter: str) -> View | None:
 _UNSET = tuple(one for one in Endpoint if one.value in AS_09_UNSET)
 
 
-def _reporting_steps(  # noqa: PLR0913 - what a report is made of
+def _reporting_steps(
     fleet: Fleet, before: Robot, after: Robot, part: str, assumes: Assumed, *, unset: View | None = None
 ) -> Iterator[Step]:
     """What a change of a robot shows, in every combination of the readings that matter."""
@@ -161,7 +161,7 @@ def _of_others(robot: Robot, part: str) -> Iterator[Emission]:
             yield Emission(About(endpoint, robot.id, robot.location), shown, (), only=only)
 
 
-def _addressed(  # noqa: PLR0913 - an emission's own fields
+def _addressed(
     robot: Robot,
     endpoint: Endpoint,
     shown: View,

@@ -126,9 +126,7 @@ def _of_event(fleet: Fleet, streams: Streams, event: Event) -> str:
     return _of_report(robot, topics, event, whose, offline, many=len(streams) > 1)
 
 
-def _of_report(  # noqa: PLR0913 - what the robot and the streams say
-    robot: Robot, topics: list[Topic], event: Event, whose: str, offline: str, *, many: bool
-) -> str:
+def _of_report(robot: Robot, topics: list[Topic], event: Event, whose: str, offline: str, *, many: bool) -> str:
     if not any(event.part in _parts_of(one.endpoint) for one in topics):
         return f"{whose} reports what is not shown"
     change = _change(robot.part(event.part), event.value)

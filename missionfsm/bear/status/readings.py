@@ -38,7 +38,7 @@ class Question:
         return iter(self.parts.values())
 
 
-def _asked(  # noqa: PLR0913 - an ambiguity's own fields
+def _asked(
     calls: tuple[str, ...],
     name: str,
     question: str,

@@ -77,6 +77,15 @@ class Did:
 RobotEffect = Transmit | Did
 
 
+@attrs.frozen
+class Channels:
+    """Where a robot says its name, listens for missions and sends statuses."""
+
+    name: str = "name"
+    missions: str = DEFAULT_CHANNEL
+    statuses: str = DEFAULT_STATUS_CHANNEL
+
+
 class RobotCore:
     """See the module.
 
@@ -85,15 +94,13 @@ class RobotCore:
     kept (the last 16) and sent after the name on the next connection.
     """
 
-    def __init__(  # noqa: PLR0913 - all by keyword, each with the documented or shipped default
+    def __init__(
         self,
         name: str,
         *,
         script: tuple[Behavior, ...] = (),
         codelet: Codelet | None = None,
-        name_channel: str = "name",
-        channel: str = DEFAULT_CHANNEL,
-        status_channel: str = DEFAULT_STATUS_CHANNEL,
+        channels: Channels = Channels(),
         name_period: float = NAME_PERIOD,
         token: str | None = None,
     ) -> None:
@@ -103,9 +110,7 @@ class RobotCore:
         self.name = name
         self.codelet = Codelet(DEFAULT_PERIOD) if codelet is None else codelet
         self._script = script
-        self._name_channel = name_channel
-        self._channel = channel
-        self._status_channel = status_channel
+        self._channels = channels
         self._name_period = name_period
         self._token = token
         self._connected = False
@@ -127,8 +132,8 @@ class RobotCore:
         self._next_name = now + self._name_period
         if self._token is not None:
             effects.append(Transmit(TOKEN_CHANNEL, TextProto(self._token)))
-        effects.append(Transmit(self._name_channel, TextProto(self.name)))
-        effects += [Transmit(self._status_channel, status) for status in self._kept]
+        effects.append(Transmit(self._channels.name, TextProto(self.name)))
+        effects += [Transmit(self._channels.statuses, status) for status in self._kept]
         self._kept.clear()
         return tuple(effects)
 
@@ -145,7 +150,7 @@ class RobotCore:
         if (
             isinstance(message, Message)
             and isinstance(message.payload, MissionProto)
-            and message.header.channel == self._channel
+            and message.header.channel == self._channels.missions
         ):
             effects += self._step(machine.mission_arrives(self.codelet, message.payload, now), now)
         return tuple(effects)
@@ -166,7 +171,7 @@ class RobotCore:
         if self._next_name is not None and self._next_name <= now:
             following = self._next_name + self._name_period
             self._next_name = following if following > now else now + self._name_period
-            effects.append(Transmit(self._name_channel, TextProto(self.name)))
+            effects.append(Transmit(self._channels.name, TextProto(self.name)))
         ends, behavior = self._behavior_ends, self._behavior
         if ends is not None and behavior is not None and ends <= now:
             self._behavior_ends = None
@@ -197,7 +202,7 @@ class RobotCore:
 
     def _say(self, status: MissionStatusProto) -> list[RobotEffect]:
         if self._connected:
-            return [Transmit(self._status_channel, status)]
+            return [Transmit(self._channels.statuses, status)]
         if status.mission_status is not WireStatus.RUNNING:
             self._kept.append(status)
         return []

@@ -122,7 +122,7 @@ class Nearest:
                     problems = self._answered(here, event, given, step.answer, names, step.assumes)
                     yield self._candidate(successor, step.answer, names, rules, step.assumes, problems)
 
-    def _candidate(  # noqa: PLR0913 - what a candidate is made of
+    def _candidate(
         self,
         successor: Successor,
         answer: Answer,
@@ -154,7 +154,7 @@ class Nearest:
             code=answer.code,
         )
 
-    def _answered(  # noqa: PLR0913 - what is compared
+    def _answered(
         self,
         here: Explanation,
         event: Returned,

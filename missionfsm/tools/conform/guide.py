@@ -233,7 +233,7 @@ class Guide:
         self.said[proposal.phase, proposal.edge[1:]] += 1
         self.visited[proposal.leads_to] += 1
 
-    def _edge(  # noqa: PLR0913 - what leads anywhere
+    def _edge(
         self,
         conversation: Conversation,
         here: Explanation,

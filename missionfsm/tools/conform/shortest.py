@@ -21,7 +21,7 @@ MAX_TRIED = 3_000
 """How many things are done at most."""
 
 
-def shortest(  # noqa: PLR0913 - the last two have a default
+def shortest(
     found: Conversation,
     attempt: Callable[[tuple[Action, ...]], Conversation],
     alphabet: Alphabet,

@@ -24,7 +24,7 @@ def unexplained(conversation: Conversation) -> bool:
     return not conversation.right and not conversation.judge.exhausted
 
 
-def shrink(  # noqa: PLR0913 - the last three have a default
+def shrink(
     found: Conversation,
     attempt: Attempt,
     simpler: Callable[[JSON, str], tuple[Input, ...]],

@@ -113,7 +113,7 @@ def fill(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
     return True
 
 
-def _filled(  # noqa: PLR0913 - what one conversation needs
+def _filled(
     run: Run, reach: Reach, draw: random.Random, world: int, way: tuple[ScriptStep, ...], steps: int
 ) -> int | None:
     """How much was done where it was done too seldom; None where something cannot be explained."""
@@ -138,7 +138,7 @@ def look(run: Run, world: int) -> bool:
     return run.settle() and (asked is None or run.do(asked.method, asked.params))
 
 
-def tour(  # noqa: PLR0913 - the last two have a default
+def tour(
     run: Run,
     draw: random.Random,
     conversations: int,

@@ -99,7 +99,7 @@ class Lab:
         spent: how many the last one took.
     """
 
-    def __init__(  # noqa: PLR0913 - the last two have a default
+    def __init__(
         self,
         guide: Guide,
         info: AdapterInfo,

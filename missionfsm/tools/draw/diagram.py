@@ -146,7 +146,7 @@ def of_quotient(title: str, shown: Quotient, *, refusals: bool = False) -> Diagr
     return _drawn(title, {Side.BOTH: shown}, refusals=refusals)
 
 
-def of_contrast(  # noqa: PLR0913 - the last ones have defaults
+def of_contrast(
     title: str,
     first: Quotient,
     second: Quotient,

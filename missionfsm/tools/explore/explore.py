@@ -160,7 +160,7 @@ def steps(spec: Spec, state: State, actions: Actions) -> Iterator[Transition]:
         yield Transition(None, step)
 
 
-def reachable(  # noqa: PLR0913 - every one but the first four has a default
+def reachable(
     spec: Spec,
     start: State,
     actions: Actions,
@@ -252,7 +252,7 @@ def _reach(start: Code, successors: Callable[[Code], Iterable[Code]]) -> dict[Co
     return found
 
 
-def explore(  # noqa: PLR0913 - every one has a default
+def explore(
     system: System,
     bounds: Bounds | None = None,
     *,
@@ -369,7 +369,7 @@ def bindings(spec: Spec, here: State, free: Free) -> Iterable[Refs]:
     return itertools.product(*(positions if one else (None,) for one in free))
 
 
-def _counterexample(  # noqa: PLR0913 - what a way through the graph is made of
+def _counterexample(
     spec: Spec,
     actions: Actions,
     found: Reached,

@@ -108,7 +108,7 @@ class ReferenceSteps:
         return found
 
 
-def allowed_under(  # noqa: PLR0913 - what an implementation is made of
+def allowed_under(
     reference: ReferenceSteps,
     model: Reference,
     rule: str,
@@ -168,7 +168,7 @@ class _Explorer:
         rules_differ: whether the model differs in the rules of the operation, and not just by a mutation of a step.
     """
 
-    def __init__(  # noqa: PLR0913 - what an exploration is made of
+    def __init__(
         self,
         system: System,
         model: Reference,
@@ -353,7 +353,7 @@ def renderings(
     return tuple(found)
 
 
-def _explaining(  # noqa: PLR0913 - a step and where it is taken
+def _explaining(
     system: System,
     here: State,
     request: Request,

@@ -147,7 +147,7 @@ class MutationReport:
         return "\n".join(lines)
 
 
-def teeth(  # noqa: PLR0913 - all but the system have a default
+def teeth(
     system: System,
     *,
     seed: int = 0,

@@ -253,7 +253,7 @@ class Reference:
                 made.append(self.system.naming.make(kind, number) if kind else self._mint(number))
         return made
 
-    def _send(  # noqa: PLR0913 - what a message is made of
+    def _send(
         self,
         here: Snapshot,
         channels: list[Open],

@@ -1,4 +1,4 @@
-"""The mission server that somebody else made (tests/strangers), with two of its choices about limits at a time.
+"""The mission server that somebody else made (tests/strangers), with two or three choices about limits at a time.
 
 Each choice by itself is judged by ``missionfsm teeth``; what is accepted alone has to be accepted together.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import json
 import random
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import closing
@@ -27,17 +28,76 @@ FOLDER = Path(__file__).parent.parent / "strangers" / "isaac.server"
 PROGRAM = """
 import sys
 sys.path.insert(0, ".")
+import dispatch
+import limits
 from adapter import Adapter
+from mission import Status
 from variants import Variant
+
+WAITING = (Status.QUEUED, Status.STARTED)
 
 class Several(Variant):
     def __call__(self, name):
         super().__call__(name)
         return name in sys.argv[1:]
 
+class Dispatch(dispatch.Dispatch):
+    def limits(self):
+        for mission in self._missions.values():
+            if not hasattr(mission, "there_at"):
+                there = self._connections.serving(mission.robot) is not None
+                mission.there_at = mission.submitted_at if there else None
+        return super().limits()
+
+    def end(self, mission, status, now):
+        sent, held = mission.active, self._held.get(mission.robot)
+        super().end(mission, status, now)
+        if not sent and held is not mission:
+            self.release(mission)
+            if held is not None:
+                self._held[mission.robot] = held
+
+    def left(self, robot):
+        super().left(robot)
+        self._there(robot, None)
+
+    def arrived(self, connection, others, now):
+        super().arrived(connection, others, now)
+        self._there(connection.name, now)
+
+    def _there(self, robot, since):
+        for mission in self._missions.values():
+            if mission.robot == robot and mission.status is Status.QUEUED:
+                mission.there_at = since
+
+def begins(mission):
+    if "start-limit-from-submitting" in sys.argv:
+        return mission.submitted_at
+    if "start-limit-from-connection" in sys.argv:
+        return mission.there_at
+    if any(one.status is not Status.SUCCESS for one in mission.upstream):
+        return None
+    return max([mission.submitted_at] + [one.ended_at for one in mission.upstream])
+
+def start_limit_at(mission, variant):
+    if not any(one.startswith("start-limit-from") for one in sys.argv):
+        return limits.start_limit_at(mission, variant)
+    since = begins(mission) if mission.status in WAITING else None
+    if since is None or mission.start_limit is None:
+        return None
+    return limits._strikes(since, mission.start_limit, variant)
+
+def run_limit_at(mission, limit, variant):
+    if "run-limit-from-submitting" not in sys.argv or limit is None or mission.ended:
+        return limits.run_limit_at(mission, limit, variant)
+    return limits._strikes(mission.submitted_at, limit, variant)
+
+import mission_server
+dispatch.start_limit_at, dispatch.run_limit_at = start_limit_at, run_limit_at
+mission_server.Dispatch = Dispatch
 Adapter("several", sys.stdout, Several()).run(sys.stdin)
 """
-"""Their server with as many variants as the command names."""
+"""Their server with as many variants as the command names, and with limits that count from elsewhere."""
 
 LIMITS = (
     "limits-every-second",
@@ -50,9 +110,30 @@ LIMITS = (
     "run-limit-from-sending",
     "held-after-abort",
     "abort-closes",
+    "run-limit-from-submitting",
+    "start-limit-from-submitting",
+    "start-limit-from-readiness",
+    "start-limit-from-connection",
 )
 """The choices about when a limit is over and what that does."""
-PAIRS = tuple(itertools.combinations(LIMITS, 2))
+
+
+COUNTS_EARLIER = re.compile(".*-limit-from-(?!sending)").match
+ROUNDED, LOOKED_AT = "limit-rounded-up", {"limits-every-second", "pass-every-second"}
+
+
+def combined(size: int) -> Iterator[tuple[str, ...]]:
+    """So many choices at a time, of those that a server can make together and be no more than a second late."""
+    for several in itertools.combinations(LIMITS, size):
+        questions = [one.partition("-from-")[0] for one in several if "-from-" in one]
+        # A limit that counts from an odd moment, is rounded up and then looked at in whole seconds: up to two seconds.
+        too_late = questions and ROUNDED in several and not LOOKED_AT.isdisjoint(several)
+        if len(questions) == len(set(questions)) and not too_late:
+            yield several
+
+
+PAIRS = tuple(combined(2))
+TRIPLES = tuple(random.Random(13).sample(list(combined(3)), 60))
 
 
 class Life(History):
@@ -137,6 +218,21 @@ def watched(life: Life) -> Life:
     return life
 
 
+def waited(life: Life) -> Life:
+    """Missions that wait: for their robot, for the one before, for an upstream; and looked at around their limits."""
+    life.goes_on(0.3).mission(start_timeout=1.4).mission(start_timeout=2.5, timeout=4)
+    for step in (1.3, 0.2, 0.3, 0.3, 0.4):
+        life.goes_on(step)
+    life.mission(robot="s", timeout=1.7).robots().goes_on(0.9).mission(start_timeout=0.8)
+    for step in (0.2, 0.5, 0.2, 0.2, 0.4, 0.5):
+        life.goes_on(step)
+    life.tells(0, "running").mission(upstream=[1], start_timeout=1.2, timeout=3.1).goes_on(1.1)
+    life.tells(0, "success")
+    for step in (0.2, 0.7, 0.4, 0.2, 0.3, 0.4, 0.6, 1):
+        life.goes_on(step)
+    return life
+
+
 def random_life(life: Life, draw: random.Random) -> Life:
     """A few missions and a robot; time passes mostly to moments when a limit could be over, or a little later."""
     now = draw.choice([0.1, 0.3, 0.6, 0.8])
@@ -166,15 +262,31 @@ def random_life(life: Life, draw: random.Random) -> Life:
 
 
 @pytest.mark.parametrize("pair", PAIRS, ids="+".join)
-def test_two_choices_about_limits_are_accepted_together(pair: tuple[str, str]) -> None:
+def test_two_choices_about_limits_are_accepted_together(pair: tuple[str, ...]) -> None:
     """Whoever may look at limits now and then, or count otherwise, may do both."""
     for life in lives(*pair):
         assert watched(life).judged().conforms
 
 
+@pytest.mark.parametrize("pair", [one for one in PAIRS if any(map(COUNTS_EARLIER, one))], ids="+".join)
+def test_limits_of_missions_that_wait_are_accepted_too(pair: tuple[str, ...]) -> None:
+    """A limit may be noticed up to a second late, whatever it counts from, also of a mission that was never sent."""
+    for life in lives(*pair):
+        assert waited(life).judged().conforms
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("triple", TRIPLES, ids="+".join)
+def test_three_choices_about_limits_are_accepted_together(triple: tuple[str, ...]) -> None:
+    """So may whoever makes a third choice as well."""
+    for lead in (watched, waited):
+        for life in lives(*triple):
+            assert lead(life).judged().conforms
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("pair", PAIRS, ids="+".join)
-def test_two_choices_about_limits_are_accepted_together_on_random_lives(pair: tuple[str, str]) -> None:
+def test_two_choices_about_limits_are_accepted_together_on_random_lives(pair: tuple[str, ...]) -> None:
     """So they are whatever happens to the missions."""
     for seed in range(3):
         for life in lives(*pair):

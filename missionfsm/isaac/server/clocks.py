@@ -37,16 +37,15 @@ Moves = Iterator[Move]
 
 def _noticed_by(clock: Clock, state: Server, due: int) -> int:
     """When a timeout that is over at a moment is noticed at the latest, in microseconds."""
-    late = state.letters(AI_39) == "b" or state.letters(AI_39_LIMITS) == "b" or _left_open(clock, state)
+    late = state.letters(AI_39) == "b" or state.letters(AI_39_LIMITS) == "b" or left_open(clock, state)
     return state.tolerance + (state.next_pass(due) if late else due)
 
 
-def _left_open(clock: Clock, state: Server) -> bool:
+def left_open(clock: Clock, state: Server) -> bool:
     """Whether a clock strikes at its moment or when a server looks, and nobody asks which of the two.
 
-    AI-39.limits b allows all that a does. Of a clock that counts as documented a is tried first, so that what follows
-    is known to the moment; of one that counts from the sending too it would be asked of every mission twice. What
-    waits in a queue and counts from another moment has no clock of either kind: there may be many, all due at once.
+    AI-39.limits b allows all that a does. Of most clocks a is tried first, so that what follows is known to the moment;
+    of a run limit that counts from the sending it would be asked of every mission twice.
     """
     return clock.kind == RUN and clock.since in ("send", WAITS) and "b" in state.letters(AI_39_LIMITS)
 
@@ -62,7 +61,7 @@ def with_later_clocks(move: Move) -> Move:
 
 def _later(state: Server, clock: Clock) -> Clock:
     """The clock of a server that looks now and then; whole seconds are looked at so anyway."""
-    in_a_pass = clock.whole or clock.kind in (DROP, DOOM) or _left_open(clock, state)
+    in_a_pass = clock.whole or clock.kind in (DROP, DOOM) or left_open(clock, state)
     return clock if clock.hi is None or in_a_pass else evolve(clock, hi=state.next_pass(clock.hi))
 
 

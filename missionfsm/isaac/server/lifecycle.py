@@ -9,7 +9,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.clocks import START_CLOCKS, Moves, started, stopped, ticking, with_later_clocks
+from missionfsm.isaac.server.clocks import START_CLOCKS, Moves, left_open, started, stopped, ticking, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.readings import (
@@ -119,8 +119,11 @@ def failures_that_cancel(mission: Mission) -> str:
     return "a" + ("b" if reported else "") + ("c" if direct else "")
 
 
-def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
-    """Where a clock that is over aborts its mission, and where it does not: it means nothing, or strikes later."""
+def strikes(move: Move, index: int, clock: Clock, *, due: bool) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
+    """Where a clock that is over aborts its mission, and where it does not: it means nothing, or strikes later.
+
+    Where it is not `due`, it may as well strike later as it is, and only the first are asked for.
+    """
     if clock.kind == DROP:
         return tuple(_drop_noticed(move, index)), ()
     if clock.kind == DOOM:
@@ -132,20 +135,28 @@ def strikes(move: Move, index: int, clock: Clock) -> tuple[tuple[Move, ...], tup
     if alike is None:
         return (), (move,)
     aborting, meaningless = _aborting(alike, index, clock)
-    late = (with_later_clocks(one) for way in aborting if (one := _late(way, clock)) is not None)
+    noticed = [_noticed(way, clock) if due else (way, None) for way in aborting]
     return (
-        tuple(one for way in aborting for one in aborted(way, index, clock.kind)),
-        (*(stopped(way, index, (clock.kind, clock.since)) for way in meaningless), *late, *filter(None, (unlike,))),
+        tuple(one for at_once, _ in noticed for one in aborted(at_once, index, clock.kind)),
+        (
+            *(stopped(way, index, (clock.kind, clock.since)) for way in meaningless),
+            *(with_later_clocks(later) for _, later in noticed if later is not None),
+            *filter(None, (unlike,)),
+        ),
     )
 
 
-def _late(move: Move, clock: Clock) -> Move | None:
-    """AI-39.limits b: a server that sends at once may notice a timeout later, when it looks; None for all others."""
-    letters = move.state.letters
-    documented = (clock.kind, clock.since) in ((START, "send"), (RUN, "status"))
-    if not documented or clock.whole or letters(AI_39) != "a" or letters(AI_39_LIMITS) != "ab":
-        return None
-    return split(move, AI_39_LIMITS, "b")[0]
+def _noticed(move: Move, clock: Clock) -> tuple[Move, Move | None]:
+    """AI-39.limits: the move where a timeout is noticed at once, and the one where the server has yet to look, if any.
+
+    A server that looks now and then may do what one does that notices all at once, so that nothing is lost where the
+    first is one of those from here on: the question is asked once, and not of each of many missions that wait.
+    """
+    asked = move.state.letters(AI_39) != "b" and move.state.letters(AI_39_LIMITS) == "ab"
+    if clock.kind == SILENT or clock.whole or not asked or left_open(clock, move.state):
+        return move, None
+    at_once, later = split(move, AI_39_LIMITS, "a")
+    return at_once or move, later
 
 
 def _aborting(move: Move, index: int, clock: Clock) -> tuple[list[Move], list[Move]]:

@@ -276,11 +276,12 @@ def _after_pass(move: Move, slot: int, part: Part) -> Iterator[Move]:
 def _strike(here: _Moment, part: Part, index: int, clock: Clock, until: int) -> Iterator[_Moment]:
     low = max(here.low, clock.lo)
     when = (low, max(low, until if clock.hi is None else min(clock.hi, until)))
-    aborting, meaningless = strikes(evolve(here.move, at=when), index, clock)
+    due = clock.hi is not None and clock.hi <= until
+    aborting, meaningless = strikes(evolve(here.move, at=when), index, clock, due=due)
     for one in aborting:
         for heard in inherited(here.move.state, one):
             yield from (_moment(after, low, part, here.awaited) for after in _followed(heard, part))
-    if clock.hi is not None and clock.hi <= until:
+    if due:
         for one in meaningless:
             yield from (_moment(after, here.low, part, here.awaited) for after in _followed(one, part))
 
@@ -353,7 +354,7 @@ def _struck(state: Server, part: Part) -> Iterator[Move]:
     for index in part.missions:
         for clock in state.missions[index].ticking:
             if clock.lo <= 0:
-                for one in strikes(Move(state, at=(clock.lo, 0)), index, clock)[0]:
+                for one in strikes(Move(state, at=(clock.lo, 0)), index, clock, due=False)[0]:
                     yield from inherited(state, one)
 
 

@@ -198,3 +198,35 @@ def test_a_period_of_grace_is_one() -> None:
     again = next(iter(lost(once, link)))
     assert len(once.state.missions[0].clocks) == 1
     assert again.state.missions == once.state.missions
+
+
+@pytest.mark.parametrize("gone", [1, 2])
+def test_a_robot_with_two_connections_is_there_until_both_have_dropped(gone: int) -> None:
+    """AI-16 s: a start limit that counts from when the robot is connected counts on while one of them is open."""
+    history = History().robot(1).robot(2).submit(1).sends(1, 1).submit(2).sends(2, 2).submit(3, start_timeout=3)
+    history = history.settles.waits(1).drive("disconnect", connection=gone).settles.waits(1.5).settles
+    others = ["STARTED", "STARTED"]
+    others[gone - 1] = "FAILED_DISCONNECTED"
+    shared = {"AI-16": "s", "AI-05": "d"}
+    assert (
+        history.shows(*others, "QUEUED")
+        .waits(1)
+        .settles.shows(*others, "FAILED_TIMEDOUT")
+        .judged(readings=shared)
+        .conforms
+    )
+
+
+def test_a_robot_is_connected_once_though_it_connects_twice() -> None:
+    """AI-16 s: a start limit that counts from when the robot is connected begins with the first connection."""
+    history = History().submit(1).submit(2).submit(3, start_timeout=3).robot(1).sends(1, 1).settles.waits(1)
+    history = history.robot(2).sends(2, 2).settles.waits(1.5).settles.shows("STARTED", "STARTED", "QUEUED").waits(1)
+    late = history.settles.shows("STARTED", "STARTED", "FAILED_TIMEDOUT")
+    assert late.judged(readings={"AI-16": "s", "AI-05": "d"}).conforms
+
+
+def test_a_robot_that_took_another_name_is_gone() -> None:
+    """AI-17 b, under-way k: a start limit that counts from when the robot is connected stops for what waits for it."""
+    history = History().robot(1).submit(1).sends(1, 1).submit(2, start_timeout=3).settles.waits(1).says(1, "q")
+    readings = {"AI-05": "d", "AI-17": "b", "AI-17.under-way": "k"}
+    assert history.waits(5).settles.shows("STARTED", "QUEUED").judged(readings=readings).conforms

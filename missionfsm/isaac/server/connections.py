@@ -8,7 +8,7 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import back, closed, lost, untimed
+from missionfsm.isaac.server.lifecycle import back, closed, lost, shared, unconnected, untimed
 from missionfsm.isaac.server.readings import (
     AI_16,
     AI_16_AGAIN,
@@ -176,7 +176,7 @@ def _renamed(move: Move, link: Link, key: str) -> Moves:
         return
     under_way = any(one.status in UNDER_WAY and one.sent_on == link.slot for one in bound.state.missions)
     stays, dropping = split(bound, AI_17_UNDER_WAY, "k") if under_way else (None, bound)
-    left = () if stays is None else (stays,)
+    left = () if stays is None else (unconnected(stays, link),)
     for after in (*left, *(() if dropping is None else lost(dropping, link))):
         for free in _succeeded(after.with_link(link.slot, name=None, serves=False), link):
             yield from _claims(free, link, key)
@@ -298,8 +298,9 @@ def _served(move: Move, link: Link) -> Moves:
     found = move.state.link_at(link.slot)
     assert found is not None, "the connection is open"  # noqa: S101 - callers have it from the state
     move = move.with_link(link.slot, serves=True, early=())
+    there = shared(move.state, link, found.name)
     for index, mission in enumerate(move.state.missions):
-        if mission.robot == found.name and mission.status is Status.QUEUED:
+        if not there and mission.robot == found.name and mission.status is Status.QUEUED:
             move = started(move, index, START, "connect")
     moves = list(back(move, found.name))
     for report in found.early:

@@ -46,6 +46,7 @@ from missionfsm.isaac.server.state import (
     Link,
     Mission,
     Move,
+    Server,
     Status,
 )
 from missionfsm.kernel.readings import Ambiguity
@@ -252,8 +253,7 @@ def forgotten(move: Move, gone: Link) -> Move:
 def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     """A connection is no robot's any more: what was sent on it goes on, is sent again, or has failed (AI-15)."""
     missions = move.state.missions
-    if link.serves:
-        move = _unconnected(move, link)
+    move = unconnected(move, link)
     held = [index for index, mission in enumerate(missions) if mission.lingers and _was_on(mission, link)]
     free = kept = move
     for index in held:
@@ -266,8 +266,15 @@ def lost(move: Move, link: Link, *, still: bool = False) -> Moves:
     yield from moves
 
 
-def _unconnected(move: Move, link: Link) -> Move:
-    """The time to start that counts from when a robot connects counts no more for what waits for it."""
+def shared(server: Server, link: Link, name: str | None) -> bool:
+    """Whether a robot is there on another connection than this one (AI-16 s)."""
+    return any(one.serves and one.name == name and one.slot != link.slot for one in server.links)
+
+
+def unconnected(move: Move, link: Link) -> Move:
+    """The time to start that counts from when a robot connects counts no more for what waits for one that has gone."""
+    if not link.serves or shared(move.state, link, link.name):
+        return move
     for index, mission in enumerate(move.state.missions):
         if mission.robot == link.name and mission.status is Status.QUEUED:
             move = stopped(move, index, (START, "connect"))

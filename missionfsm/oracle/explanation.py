@@ -306,10 +306,10 @@ def tidy(explanation: Explanation) -> Explanation:
     """
     if len(explanation.channels) > 1:
         explanation = _in_order(explanation)
-    unseen = dict.fromkeys(_unseen(explanation))
-    if not unseen:
+    found = _unseen(explanation)
+    if not found or found == [*range(GONE - 1, GONE - 1 - len(found), -1)]:
         return explanation
-    new = {name: GONE - 1 - position for position, name in enumerate(unseen)}
+    new = {name: GONE - 1 - position for position, name in enumerate(dict.fromkeys(found))}
     return explanation if all(map(operator.eq, new, new.values())) else rename(explanation, new)
 
 

@@ -96,8 +96,10 @@ class Successors(Said):
 
     def meet(self, assumed: int, assumptions: Iterable[Assumption]) -> int:
         """What is assumed once these are assumed as well; 0 when that is contradictory."""
+        if self.ahead is None:
+            return meet(assumed, assumptions)
         assumptions = tuple(assumptions)
-        return self.ahead.meet(assumed, assumptions) if self.ahead and assumptions else meet(assumed, assumptions)
+        return self.ahead.meet(assumed, assumptions) if assumptions else assumed
 
     def rely(self) -> None:
         """Something is left out since something else assumes no more."""

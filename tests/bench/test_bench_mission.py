@@ -296,5 +296,5 @@ def test_bench_mission_sixteen_lost_and_an_impossible_answer(benchmark: Any) -> 
 
 def test_bench_mission_conform(benchmark: Any) -> None:
     """Events a second of a whole run of ``conform`` with the reference in this process, search included."""
-    verdict = benchmark.pedantic(conform, (MISSION, ReferenceSubject(MISSION)), {"examples": 50, "seed": 1}, rounds=1)
+    verdict = benchmark.pedantic(conform, (MISSION, ReferenceSubject(MISSION)), {"drawn": 50, "seed": 1}, rounds=1)
     print(f"\n{verdict.events / benchmark.stats.stats.min:,.0f} events a second on {sys.platform}")

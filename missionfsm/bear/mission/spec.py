@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import operator
 from collections.abc import Iterator, Mapping
 
 from attrs import evolve
@@ -89,8 +88,8 @@ def _edited(
     """
     if not edit:
         return robot, None, (), ()
-    after = apply(edit, robot)
     names, gone = renumber(edit, robot)
+    after = apply(edit, robot, names)
     before, shown = listing(robot), listing(after)
     if after.pending and not (robot.active or robot.pending or robot.world.blocked):
         shown = evolve(shown, created=call)
@@ -106,7 +105,8 @@ def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
     """AM-09, AM-10: a mission may be seen to have ended before those that wait end or vanish with it."""
     kept = tuple((op, what) for op, what in edit if op not in (Op.END_QUEUE, Op.DROP_QUEUE))
     if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
-        yield _shown(apply(kept, robot), renumber(kept, robot)[0], optional=True)
+        names, _ = renumber(kept, robot)
+        yield _shown(apply(kept, robot, names), names, optional=True)
 
 
 def _shown(robot: Robot, names: tuple[int, ...], *, only: Assumption | None = None, optional: bool = False) -> Emission:
@@ -123,10 +123,14 @@ def _indistinct(step: Step) -> Step:
     """The step without the goals at which missions have ended."""
     robot = step.after
     done = without_place(robot.done)
-    emits = tuple(map(_without_place, step.emits))
-    if done is robot.done and all(map(operator.is_, emits, step.emits)):
-        return step
-    return evolve(step, after=robot if done is robot.done else evolve(robot, done=done), emits=emits)
+    if done is robot.done:
+        for one in step.emits:
+            if _without_place(one) is not one:
+                break
+        else:
+            return step
+    after = robot if done is robot.done else evolve(robot, done=done)
+    return evolve(step, after=after, emits=tuple(map(_without_place, step.emits)))
 
 
 def _without_place(emission: Emission) -> Emission:
@@ -190,8 +194,8 @@ def _growing(robot: Robot, edit: Edit, only: Assumption) -> Iterator[Emission]:
     fewest = 0 if any(op is Op.OVERTAKE for op, _ in edit) else 1
     for size in range(fewest, len(added)):
         part = tuple((op, what[:size]) if op is Op.ADD else (op, what) for op, what in edit)
-        grown = apply(part, robot)
-        names = renumber(part, robot)[0]
+        names, _ = renumber(part, robot)
+        grown = apply(part, robot, names)
         yield _shown(grown, names, only=only)
         if grown.active is None and len(added) <= LARGEST_SEEN_STARTING:
             for start, _ in due(grown.world, None, grown.pending[0], halted=grown.halted, queued=True):

@@ -281,34 +281,41 @@ _REARRANGED: Mapping[Op, Callable[[Listed, Any], Listed]] = {
 """What an operation makes of the missions; the others set what their name says."""
 
 
-def apply(edit: Edit, robot: Robot) -> Robot:
-    """The robot after an edit; the same object where it is empty."""
+def apply(edit: Edit, robot: Robot, names: tuple[int, ...] | None = None) -> Robot:
+    """The robot after an edit; the same object where it is empty.
+
+    Args:
+        names: those that the edit keeps (see `renumber`), for those who know them already.
+    """
     if not edit:
         return robot
     listed: Listed = (robot.done, robot.active, robot.pending)
     settings: dict[Op, Any] = {}
-    fresh = robot.fresh
+    fresh, overtakes = robot.fresh, False
     for op, what in edit:
         rearranged = _REARRANGED.get(op)
         if rearranged is None:
             settings[op] = what
-        else:
-            listed = rearranged(listed, what)
-            fresh = fresh and op not in ADDING
+            continue
+        listed = rearranged(listed, what)
+        if op in ADDING:
+            fresh, overtakes = False, overtakes or op is Op.OVERTAKE
     done, active, pending = listed
-    halted = settings.get(Op.HALT, robot.halted) and bool(pending)
-    fault, world = settings.get(Op.ARM, robot.fault), settings.get(Op.WORLD, robot.world)
-    return Robot(world, done, active, pending, halted, fresh, fault, _assigned(edit, robot))
+    halted, fault, world = robot.halted, robot.fault, robot.world
+    if settings:
+        halted, fault = settings.get(Op.HALT, halted), settings.get(Op.ARM, fault)
+        world = settings.get(Op.WORLD, world)
+    assigned: tuple[int, ...] = ()
+    if overtakes or robot.assigned:
+        assigned = _assigned(robot, renumber(edit, robot)[0] if names is None else names)
+    return Robot(world, done, active, pending, halted and bool(pending), fresh, fault, assigned)
 
 
 ADDING = (Op.ADD, Op.PUT_FIRST, Op.OVERTAKE)
 
 
-def _assigned(edit: Edit, robot: Robot) -> tuple[int, ...]:
-    """How the missions are listed after an edit; see `Robot.assigned`."""
-    if not robot.assigned and all(op is not Op.OVERTAKE for op, _ in edit):
-        return ()
-    names, _ = renumber(edit, robot)
+def _assigned(robot: Robot, names: tuple[int, ...]) -> tuple[int, ...]:
+    """How the missions are listed after an edit that keeps these names; see `Robot.assigned`."""
     before = robot.assigned or tuple(range(len(robot.turns)))
     places = [before[name] if name < len(before) else name for name in names]
     ranks = {place: rank for rank, place in enumerate(sorted(places))}

@@ -13,8 +13,11 @@ from missionfsm.tools.check.verdict import CitedRule
 
 def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[CitedRule, ...]:
     """Rules as a person is told them, each once."""
-    known = {**spec.implied, **spec.rules_by_id}
-    found = (known[one] for one in dict.fromkeys(rule_ids) if one in known)
+    named = list(dict.fromkeys(rule_ids))
+    known = spec.rules_by_id
+    if not known.keys() >= set(named):
+        known = {**spec.implied, **known}
+    found = (known[one] for one in named if one in known)
     return tuple(CitedRule(rule.id, rule.says, str(rule.cite)) for rule in found)
 
 

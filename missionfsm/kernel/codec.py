@@ -92,6 +92,23 @@ def plainly(value: object) -> JSON:
 
 
 @frozen
+class DriveForm:
+    """The JSON of a drive that says more than its name.
+
+    Attributes:
+        read: what a tester or the author of a log wrote to the event and its names. Raises UnreadableError.
+        write: (event, names) to its members besides ``event``.
+        members: JSON Schemas of those members.
+        needed: those that may not be missing.
+    """
+
+    read: Callable[[JSON], tuple[Incident, tuple[Name, ...]]]
+    write: Callable[[Incident, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}
+    members: Mapping[str, JSON] = field(factory=dict)
+    needed: tuple[str, ...] = ()
+
+
+@frozen
 class Codec:
     """The JSON of one system.
 
@@ -102,7 +119,8 @@ class Codec:
     Attributes:
         methods: the documented calls; those of the specification, where none are given, as with the next two.
         streams: those among them that open a stream.
-        events: drives that are `Happening` each, with nothing to say but the name.
+        events: drives that are `Happening` each, with nothing to say but the name, unless `drives` has them.
+        drives: the others, each with its JSON.
         names: keys whose texts are names, wherever they stand in params and messages; the key is the kind.
         answers: method to the key of the one name that it answers with; one that is not here answers with nothing, or
             with the number of its stream.
@@ -113,13 +131,12 @@ class Codec:
         split_message: a message to its parts, each with its names, its marks and what is left of it, which is JSON
             again. Most messages are one part; one about several robots has a part for each.
         read_content: what is left of a part to its content.
-        read_drive: a drive's JSON to the event and its names.
+        read_drive: a drive's JSON to the event and its names, in the place of `drives`.
         write_request: (request, names) to params.
         write_answer: (method, answer, names) to a result.
         write_message: (view, names, choice, number, seconds) to a message: the sequence number is `number`, the
             timestamp so many seconds after the epoch.
         write_world: a world to the parameters of `reset`.
-        write_drive: (event, names) to JSON.
         write_drive_result: (event, names) to what the result of a drive says besides that it happened.
         read_drive_result: the JSON of a drive that happened, with what its result says, to the event and its names,
             among them those that only the environment could give.
@@ -135,6 +152,7 @@ class Codec:
     _methods: tuple[str, ...] | None = None
     streams: tuple[str, ...] = ()
     events: tuple[str, ...] = ()
+    drives: Mapping[str, DriveForm] = field(factory=dict)
     names: tuple[str, ...] = ()
     answers: Mapping[str, str] = field(factory=dict)
     read_world: Callable[[JSON], World] = lambda _given: None
@@ -148,7 +166,6 @@ class Codec:
     _write_answer: Callable[[str, Answer, tuple[Name, ...]], JSON] | None = None
     _write_message: Callable[[View, tuple[Name, ...], int, int, float], JSON] | None = None
     write_world: Callable[[World], JSON] = lambda _world: {}
-    write_drive: Callable[[Incident, tuple[Name, ...]], JSON] = lambda event, _names: {"event": event.name}
     write_drive_result: Callable[[Incident, tuple[Name, ...]], dict[str, JSON]] = lambda _event, _names: {}
     _read_drive_result: Callable[[JSON], tuple[Incident, tuple[Name, ...]]] | None = None
     measured: tuple[str, ...] = ()
@@ -207,9 +224,27 @@ class Codec:
         if self._read_drive is not None:
             return self._read_drive(given)
         event = given.get("event") if isinstance(given, dict) else None
+        if not isinstance(event, str):
+            raise UnreadableError(f"drive: {brief(given)} names no event")
+        if event in self.drives:
+            return self.drives[event].read(given)
         if event in self.events:
             return Happening(event), ()
-        raise UnreadableError(f"drive.event: {brief(event)} is not a drive; those are {', '.join(self.events)}")
+        there_are = ", ".join(dict.fromkeys((*self.drives, *self.events)))
+        raise UnreadableError(f"drive.event: {brief(event)} is not a drive; those are {there_are}")
+
+    def write_drive(self, event: Incident, names: tuple[Name, ...] = ()) -> JSON:
+        """The JSON of an event."""
+        form = self.drives.get(event.name)
+        return {"event": event.name, **(form.write(event, names) if form else {})}
+
+    @property
+    def drive_members(self) -> dict[str, tuple[Mapping[str, JSON], tuple[str, ...]]]:
+        """What the JSON of each drive has besides its name, and what of that it needs; none where that is not said."""
+        if self._read_drive is not None:
+            return {}
+        plain: dict[str, tuple[Mapping[str, JSON], tuple[str, ...]]] = {one: ({}, ()) for one in self.events}
+        return {**plain, **{name: (one.members, one.needed) for name, one in self.drives.items()}}
 
     def read_drive_result(self, given: JSON) -> tuple[Incident, tuple[Name, ...]]:
         """The event of a drive that happened and its names, by default as they were asked for."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming, ScriptStep, as_text, member, new, pick, upcoming
 from missionfsm.kernel.chart import Chart
-from missionfsm.kernel.codec import JSON, NAMED, Codec, Happening, Malformed, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, NAMED, Codec, DriveForm, Happening, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.mutations import (
@@ -70,6 +70,7 @@ __all__ = [
     "Delivery",
     "Document",
     "Drive",
+    "DriveForm",
     "Emission",
     "Failure",
     "Happening",

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, Naming
 from missionfsm.kernel.codec import JSON, Codec
 from missionfsm.kernel.matrix import Matrix
 from missionfsm.kernel.mutations import MessageMutation, StepMutation
 from missionfsm.kernel.picture import Plan, Sketch
-from missionfsm.kernel.shapes import Shapes
+from missionfsm.kernel.shapes import Shapes, record
 from missionfsm.kernel.spec import Spec
 
 
@@ -46,7 +46,7 @@ class System:
     reaching: Mapping[str, Mapping[str, str]] = field(factory=dict)
     sketches: tuple[Sketch, ...] = ()
     plans: tuple[Plan, ...] = ()
-    shapes: Callable[[], Shapes] = Shapes
+    _shapes: Callable[[], Shapes] = Shapes
     profiles: Mapping[str, Mapping[str, str]] = field(factory=dict)
     matrix: Matrix | None = None
     minutes_at: int | None = None
@@ -56,6 +56,15 @@ class System:
         operations = self.spec.operations
         streams = tuple(name for name, one in operations.items() if one.streaming)
         object.__setattr__(self, "codec", self._codec.completed(tuple(operations), streams, tuple(self.spec.drives)))
+
+    def shapes(self) -> Shapes:
+        """The JSON Schemas of what its lines carry, those of its drives as the codec has them."""
+        drives = {
+            name: record({"event": {"const": name}, **members}, ("event", *needed))
+            for name, (members, needed) in self.codec.drive_members.items()
+        }
+        own = self._shapes()
+        return evolve(own, drives={**drives, **own.drives})
 
     def alphabet(self, world: JSON, bounds: Bounds) -> Alphabet:
         """What is worth trying in a world, within bounds."""

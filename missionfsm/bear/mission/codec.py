@@ -20,9 +20,10 @@ from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import MissionStates
 from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, camel, key_of, read, unknown_fields, write
-from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, DriveForm, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
+from missionfsm.kernel.shapes import BOOLEAN, TEXT
 from missionfsm.kernel.text import brief
 
 # Requests: which member of which oneof means which kind of mission.
@@ -294,40 +295,50 @@ def write_world(one: World) -> JSON:
     }
 
 
-def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
-    """The event of a drive."""
-    if not isinstance(given, dict) or not isinstance(given.get("event"), str):
-        message = f"drive: {brief(given)} names no event"
+def _changed(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+    """A world that changes."""
+    changed = _world_fields({key: value for key, value in given.items() if key != "event"})
+    if "family" in changed:
+        message = "drive.family: the family changes only with reset"
         raise UnreadableError(message)
-    name, fields = given["event"], {key: value for key, value in given.items() if key != "event"}
-    if name == "world":
-        changed = _world_fields(fields)
-        if "family" in changed:
-            message = "drive.family: the family changes only with reset"
-            raise UnreadableError(message)
-        return Event("world", tuple(sorted(changed.items()))), ()
-    if name == "fault":
-        status, applied = fields.get("status"), fields.get("applied", False)
-        if status not in (INTERNAL, DEADLINE_EXCEEDED) or not isinstance(applied, bool):
-            wanted = "status INTERNAL or DEADLINE_EXCEEDED and applied true or false"
-            message = f"drive: a fault has {wanted}, not {brief(fields)}"
-            raise UnreadableError(message)
-        return Event("fault", Fault(status, applied)), ()
-    if name not in PLAIN_EVENTS:
-        message = f"drive.event: {brief(name)} is not a drive of bear.mission"
-        raise UnreadableError(message)
-    return Event(name), ()
+    return Event("world", tuple(sorted(changed.items()))), ()
 
 
-def write_drive(event: Event, _: tuple[Name, ...] = ()) -> JSON:
-    """The JSON of a drive."""
-    what = event.what
-    if isinstance(what, Fault):
-        return {"event": "fault", "status": what.status, "applied": what.applied}
-    fields = {}
-    if isinstance(what, tuple):
-        fields = {camel(name): list(value) if isinstance(value, tuple) else value for name, value in what}
-    return {"event": event.name, **fields}
+def _fault(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+    """A fault of the next call."""
+    status, applied = given.get("status"), given.get("applied", False)
+    if status not in (INTERNAL, DEADLINE_EXCEEDED) or not isinstance(applied, bool):
+        wanted = "status INTERNAL or DEADLINE_EXCEEDED and applied true or false"
+        said = brief({key: value for key, value in given.items() if key != "event"})
+        message = f"drive: a fault has {wanted}, not {said}"
+        raise UnreadableError(message)
+    return Event("fault", Fault(status, applied)), ()
+
+
+_TEXTS = {"type": "array", "items": TEXT}
+CHANGING = {
+    "contactDock": BOOLEAN,
+    "chargingLocation": BOOLEAN,
+    "destinations": _TEXTS,
+    "occupied": _TEXTS,
+    "blocked": BOOLEAN,
+}
+"""What of a world may change."""
+
+DRIVES = {
+    **dict.fromkeys(PLAIN_EVENTS, DriveForm(lambda given: (Event(given["event"]), ()))),
+    "world": DriveForm(
+        _changed,
+        lambda event, _: {camel(key): list(one) if isinstance(one, tuple) else one for key, one in event.what},
+        CHANGING,
+    ),
+    "fault": DriveForm(
+        _fault,
+        lambda event, _: {"status": event.what.status, "applied": event.what.applied},
+        {"status": {"enum": [INTERNAL, DEADLINE_EXCEEDED]}, "applied": BOOLEAN},
+        ("status",),
+    ),
+}
 
 
 STREAMS = tuple(name for name, operation in OPERATIONS.items() if operation.streaming)
@@ -340,12 +351,11 @@ CODEC = Codec(
     read_answer=read_answer,
     split_message=split_message,
     read_content=read_content,
-    read_drive=read_drive,
+    drives=DRIVES,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
     write_world=write_world,
-    write_drive=write_drive,
     skim=skim,
     carries=carries,
     robot_in_params=True,

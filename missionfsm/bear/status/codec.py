@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import attrs
 
 from missionfsm.bear.status import messages as wire
-from missionfsm.bear.status.drive_codec import drive, field, read_state, world, write_drive, write_state, write_world
+from missionfsm.bear.status.drive_codec import DRIVES, field, read_state, world, write_state, write_world
 from missionfsm.bear.status.messages import ErrorCodes
 from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import (
@@ -298,12 +298,11 @@ CODEC = Codec(
     read_answer=read_answer,
     split_message=split_message,
     read_content=read_content,
-    read_drive=drive,
+    drives=DRIVES,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
     write_world=write_world,
-    write_drive=write_drive,
     carries=carries,
 )
 __all__ = ["CODEC"]

@@ -23,9 +23,10 @@ from missionfsm.bear.status.values import clamped, single
 from missionfsm.bear.status.views import Seen, canonical, canonical_state
 from missionfsm.bear.wire.messages import MissionState, Pose
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, write
-from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.codec import JSON, DriveForm, UnreadableError
 from missionfsm.kernel.history import Name
 from missionfsm.kernel.rules import INTERNAL
+from missionfsm.kernel.shapes import TEXT
 from missionfsm.kernel.text import brief
 
 _KINDS: Mapping[str, type] = {
@@ -131,23 +132,13 @@ def write_world(one: World) -> JSON:
     }
 
 
-def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
-    """The event of a drive."""
-    if not isinstance(given, dict) or not isinstance(given.get("event"), str):
-        raise UnreadableError(f"drive: {brief(given)} names no event")
-    name = given["event"]
-    if name == "fault":
-        if given.get("status") != INTERNAL:
-            raise UnreadableError(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
-        return Event("fault", value=INTERNAL), ()
-    if name not in ("report", "restart", "move"):
-        raise UnreadableError(f"drive.event: {brief(name)} is not a drive of bear.status")
-    robot = _text(given, "robotId", "drive")
-    if name == "restart":
-        return Event("restart", robot), ()
-    if name == "move":
-        return Event("move", robot, value=_text(given, "locationId", "drive")), ()
-    named = given.get("part")
+def _whose(given: JSON) -> str:
+    return _text(given, "robotId", "drive")
+
+
+def _report(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+    """A robot reports a part."""
+    robot, named = _whose(given), given.get("part")
     part = _PARTS.get(named) if isinstance(named, str) else None
     if part is None:
         raise UnreadableError(f"drive.part: {brief(given.get('part'))} is not a part of a robot's state")
@@ -158,16 +149,39 @@ def drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     return Event("report", robot, part, value), ()
 
 
-def write_drive(event: Event, _: tuple[Name, ...] = ()) -> JSON:
-    """The JSON of a drive."""
-    if event.name == "fault":
-        return {"event": "fault", "status": event.value}
-    if event.name == "restart":
-        return {"event": "restart", "robotId": event.robot}
-    if event.name == "move":
-        return {"event": "move", "robotId": event.robot, "locationId": event.value}
+def _reported(event: Event, _: tuple[Name, ...]) -> dict[str, JSON]:
     value: Any = None if event.value is None else write(event.value)
-    return {"event": "report", "robotId": event.robot, "part": camel(event.part), "value": value}
+    return {"robotId": event.robot, "part": camel(event.part), "value": value}
+
+
+def _fault(given: JSON) -> tuple[Event, tuple[Name, ...]]:
+    """A fault of the next call."""
+    if given.get("status") != INTERNAL:
+        raise UnreadableError(f"drive.status: a fault has status INTERNAL, not {brief(given.get('status'))}")
+    return Event("fault", value=INTERNAL), ()
+
+
+DRIVES = {
+    "report": DriveForm(
+        _report,
+        _reported,
+        {"robotId": TEXT, "part": {"enum": [camel(one) for one in PARTS]}, "value": {}},
+        ("robotId", "part"),
+    ),
+    "restart": DriveForm(
+        lambda given: (Event("restart", _whose(given)), ()),
+        lambda event, _: {"robotId": event.robot},
+        {"robotId": TEXT},
+        ("robotId",),
+    ),
+    "move": DriveForm(
+        lambda given: (Event("move", _whose(given), value=_text(given, "locationId", "drive")), ()),
+        lambda event, _: {"robotId": event.robot, "locationId": event.value},
+        {"robotId": TEXT, "locationId": TEXT},
+        ("robotId", "locationId"),
+    ),
+    "fault": DriveForm(_fault, lambda event, _: {"status": event.value}, {"status": {"const": INTERNAL}}, ("status",)),
+}
 
 
 def field(message: Mapping[str, JSON], name: str) -> JSON:

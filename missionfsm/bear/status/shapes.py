@@ -6,10 +6,8 @@ from typing import Any
 
 from missionfsm.bear.status import messages as wire
 from missionfsm.bear.status.codec import STREAMS
-from missionfsm.bear.status.state import GET, MAPS, PARTS, Endpoint
-from missionfsm.bear.wire.protojson import camel
+from missionfsm.bear.status.state import GET, MAPS, Endpoint
 from missionfsm.bear.wire.schema import reference
-from missionfsm.kernel.rules import INTERNAL
 from missionfsm.kernel.shapes import BOOLEAN, TEXT, Shapes, record
 
 _SINGLES = (wire.BatteryMessage, wire.NavigationMessage, wire.RobotMessage)
@@ -20,12 +18,8 @@ _ENTRIES = {
 }
 
 
-def _drive(event: str, **fields: object) -> dict[str, Any]:
-    return record({"event": {"const": event}, **fields}, ("event", *(name for name in fields if name != "value")))
-
-
 def shapes() -> Shapes:
-    """The schemas of its world, drives, requests, answers and messages."""
+    """The schemas of its world, requests, answers and messages."""
     found: dict[str, Any] = {}
     robot = {
         "robotId": TEXT,
@@ -46,12 +40,6 @@ def shapes() -> Shapes:
                 "locations": {"type": "array", "items": location},
             }
         ),
-        drives={
-            "report": _drive("report", robotId=TEXT, part={"enum": [camel(one) for one in PARTS]}, value={}),
-            "restart": _drive("restart", robotId=TEXT),
-            "move": _drive("move", robotId=TEXT, locationId=TEXT),
-            "fault": _drive("fault", status={"const": INTERNAL}),
-        },
         requests={
             GET: reference(wire.StatusRequest, found),
             **{method: reference(wire.SubscribeRequest, found) for method in STREAMS},

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 
-from missionfsm.isaac.robot.inputs import NAMED_ONLY, NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives, Event
+from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Report, World
-from missionfsm.isaac.shared.drives import Passes, seconds, text_line
-from missionfsm.isaac.shared.line import MICROSECONDS, from_json, new_uuid, part_of, see, uuid_name
+from missionfsm.isaac.shared.drives import ADVANCE, text_line
+from missionfsm.isaac.shared.line import from_json, new_uuid, part_of, see, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -20,7 +20,8 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.kernel.language import JSON, Codec, Happening, Name, UnreadableError, brief, meet
+from missionfsm.kernel.language import JSON, Codec, DriveForm, Name, UnreadableError, brief, meet
+from missionfsm.kernel.shapes import TEXT
 
 ANY_NAME = "robot"
 """What a robot is called of which the world tells no name."""
@@ -48,7 +49,9 @@ def write_world(given: World) -> JSON:
 # Drives.
 
 
-def _arrives(line: str) -> tuple[Arrives, tuple[Name, ...]]:
+def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
+    """A line that arrives, and the mission that it names."""
+    line = text_line(given)
     found = decode_line(line.encode(errors="surrogatepass")) if line.strip() else []
     message = found[0] if found else None
     if not isinstance(message, Message):
@@ -83,34 +86,18 @@ def _is_node(value: JSON) -> bool:
     return isinstance(value, dict) and all(isinstance(component, dict) for component in value.values())
 
 
-def read_drive(given: JSON) -> tuple[Event, tuple[Name, ...]]:
-    """The event of a drive and the mission that it names."""
-    event = given.get("event") if isinstance(given, dict) else None
-    if event == "line":
-        return _arrives(text_line(given))
-    if event in NAMED_ONLY:
-        return Happening(event), ()
-    if event == "advance":
-        return Passes(seconds(given.get("seconds"))), ()
-    raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.robot")
-
-
 _CONFIGURATIONS = {USABLE: "{}", NULL: "null", SHALLOW: '{"node":1}', ODD: "1", UNUSABLE: "no json"}
 
 
-def write_drive(event: Event, names: tuple[Name, ...]) -> JSON:
-    """The JSON of an event; of a line the essence."""
-    if isinstance(event, Passes):
-        return {"event": "advance", "seconds": event.time / MICROSECONDS}
-    if isinstance(event, Happening):
-        return {"event": event.name}
+def _essence(event: Arrives, names: tuple[Name, ...]) -> dict[str, JSON]:
+    """Of a line that arrives the essence."""
     if event.foreign:
-        return {"event": "line", "line": encode(Message(Header(event.channel), TextProto(""))).decode().rstrip()}
+        return {"line": encode(Message(Header(event.channel), TextProto(""))).decode().rstrip()}
     if event.mission is None:
-        return {"event": "line", "line": "{}"}
+        return {"line": "{}"}
     uuid = Uuid.of(names[0][1]) if names else None  # type: ignore[index]
     message = Message(Header(event.channel), MissionProto(uuid, _CONFIGURATIONS[event.mission]))
-    return {"event": "line", "line": encode(message).decode().removesuffix("\n")}
+    return {"line": encode(message).decode().removesuffix("\n")}
 
 
 # Lines that the robot sends.
@@ -143,8 +130,7 @@ CODEC = Codec(
     measured=("seconds",),
     read_world=read_world,
     write_world=write_world,
-    read_drive=read_drive,
-    write_drive=write_drive,
+    drives={"line": DriveForm(_arrives, _essence, {"line": TEXT}, ("line",)), "advance": ADVANCE},
     split_message=lambda line: (part_of(line, *see(line)),),
     read_content=from_json,
     write_message=write_message,

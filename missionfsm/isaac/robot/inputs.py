@@ -1,4 +1,4 @@
-"""What happens to a robot, as values: lines that arrive, time, and what has a name only (`NAMED_ONLY`)."""
+"""What happens to a robot, as values: lines that arrive, time, and what has a name only."""
 
 from __future__ import annotations
 
@@ -26,8 +26,5 @@ class Arrives:
     channel: str = ""
     name: str = "line"
 
-
-NAMED_ONLY = ("behaviorSucceeded", "behaviorFailed", "disconnect", "connect")
-"""The drives of which there is nothing to say but the name."""
 
 Event = Arrives | Passes | Happening

@@ -24,7 +24,7 @@ from missionfsm.isaac.server.inputs import (
 )
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
 from missionfsm.isaac.server.state import Sends, World
-from missionfsm.isaac.shared.drives import Passes, in_microseconds, seconds, text_line
+from missionfsm.isaac.shared.drives import ADVANCE, in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import (
     MICROSECONDS,
     LineContent,
@@ -38,10 +38,11 @@ from missionfsm.isaac.shared.line import (
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import WireError, decode_line, encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
-from missionfsm.kernel.codec import JSON, Codec, Malformed, Part, UnreadableError
+from missionfsm.kernel.codec import JSON, Codec, DriveForm, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.rules import OK
+from missionfsm.kernel.shapes import TEXT
 from missionfsm.kernel.terms import Incident
 from missionfsm.kernel.text import brief
 
@@ -245,24 +246,15 @@ def _connection(given: JSON) -> Name:
     return ("connection", number)
 
 
-def read_drive(given: JSON) -> tuple[Any, tuple[Name, ...]]:
-    """The event of a drive and its names: the connection, then the missions that a line names."""
-    event = given.get("event") if isinstance(given, dict) else None
-    if event == "connect":
-        return Connects(), ((_connection(given),) if "connection" in given else ())
-    if event == "disconnect":
-        return Drops(), (_connection(given),)
-    if event == "advance":
-        return Passes(seconds(given.get("seconds"))), ()
-    if event == "line":
-        heard, names = hear(text_line(given))
-        return heard, (_connection(given), *names)
-    raise UnreadableError(f"drive.event: {brief(event)} is not a drive of isaac.server")
+def _line(given: JSON) -> tuple[Incoming, tuple[Name, ...]]:
+    """A line of a robot, and its names: the connection, then the missions that it names."""
+    heard, names = hear(text_line(given))
+    return heard, (_connection(given), *names)
 
 
 def read_drive_result(given: JSON) -> tuple[Any, tuple[Name, ...]]:
     """The event of a drive that happened and its names: a robot that has connected has a connection."""
-    event, names = read_drive(given)
+    event, names = CODEC.read_drive(given)
     return event, names or ((_connection(given),) if isinstance(event, Connects) else ())
 
 
@@ -285,13 +277,13 @@ def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric), names
 
 
-def write_drive(event: Incident, names: tuple[Name, ...]) -> JSON:
-    """The JSON of an event; of a line the essence."""
-    if isinstance(event, Passes):
-        return {"event": "advance", "seconds": event.time / MICROSECONDS}
-    number = {"connection": names[0][1]} if names else {}  # type: ignore[index]
-    if not isinstance(event, Incoming):
-        return {"event": event.name, **number}
+def _number(_: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
+    """The connection's number, where it is known."""
+    return {"connection": names[0][1]} if names else {}  # type: ignore[index]
+
+
+def _essence(event: Incoming, names: tuple[Name, ...]) -> dict[str, JSON]:
+    """Of a line that arrives the essence."""
     payload: JSON = {"text": event.what} if event.kind == NAME else {"missionStatus": event.what}
     uuids = [{"lower": str(Uuid.of(one[1]).lower), "upper": str(Uuid.of(one[1]).upper)} for one in names[1:]]  # type: ignore[index]
     header: JSON = {"channel": event.channel}
@@ -305,7 +297,18 @@ def write_drive(event: Incident, names: tuple[Name, ...]) -> JSON:
     line = (
         essences[event.kind] if event.kind in essences else strictjson.compact({"header": header, "payload": payload})
     )
-    return {"event": "line", **number, "line": line}
+    return {**_number(event, names), "line": line}
+
+
+_CONNECTION = {"connection": {"type": "integer"}}
+DRIVES = {
+    "connect": DriveForm(
+        lambda given: (Connects(), (_connection(given),) if "connection" in given else ()), _number, _CONNECTION
+    ),
+    "line": DriveForm(_line, _essence, {**_CONNECTION, "line": TEXT}, ("connection", "line")),
+    "disconnect": DriveForm(lambda given: (Drops(), (_connection(given),)), _number, _CONNECTION, ("connection",)),
+    "advance": ADVANCE,
+}
 
 
 def write_drive_result(event: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
@@ -351,12 +354,11 @@ CODEC = Codec(
     read_answer=read_answer,
     split_message=split_message,
     read_content=from_json,
-    read_drive=read_drive,
+    drives=DRIVES,
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
     write_world=write_world,
-    write_drive=write_drive,
     write_drive_result=write_drive_result,
     read_drive_result=read_drive_result,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.shared.schema import LINE_DRIVES, SECONDS, drive
+from missionfsm.isaac.shared.drives import SECONDS
 from missionfsm.kernel.shapes import NUMBER, OBJECT, TEXT, Shapes, record
 
 _CONNECTION = {"type": "integer"}
@@ -19,15 +19,9 @@ _MISSION = {
 
 
 def shapes() -> Shapes:
-    """The schemas of its world, drives, requests and answers."""
+    """The schemas of its world, requests and answers."""
     return Shapes(
         world=record({"nameChannel": {"type": "string", "minLength": 1}, "tolerance": NUMBER}),
-        drives={
-            "connect": drive("connect", connection=_CONNECTION),
-            "line": drive("line", ("connection", "line"), connection=_CONNECTION, line=TEXT),
-            "disconnect": drive("disconnect", ("connection",), connection=_CONNECTION),
-            "advance": LINE_DRIVES["advance"],
-        },
         happened={"connect": {"connection": _CONNECTION}},
         requests={"submit": record({"mission": record(_MISSION, ("robot",))}, ("mission",)), "statuses": OBJECT},
         results={

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from missionfsm.isaac.shared.line import MICROSECONDS
-from missionfsm.kernel.codec import JSON, UnreadableError
+from missionfsm.kernel.codec import JSON, DriveForm, UnreadableError
 from missionfsm.kernel.text import brief
 from missionfsm.kernel.values import value
 
@@ -46,3 +46,13 @@ def text_line(given: JSON) -> str:
     if not isinstance(line, str):
         raise UnreadableError(f"drive.line: {brief(line)} is not a text")
     return line
+
+
+SECONDS = {"type": "number", "minimum": 0}
+ADVANCE = DriveForm(
+    lambda given: (Passes(seconds(given.get("seconds"))), ()),
+    lambda event, _: {"seconds": event.time / MICROSECONDS},
+    {"seconds": SECONDS},
+    ("seconds",),
+)
+"""The JSON of time that passes."""

@@ -83,6 +83,11 @@ MALFORMED = {
         3,
         "return 1: expected either a result or an error",
     ),
+    "an answer of two kinds, both null": (
+        [FIRST, CLEAR, '{"return": 1, "result": null, "error": null}'],
+        3,
+        "return 1: expected either a result or an error",
+    ),
     "an answer of no kind": ([FIRST, CLEAR, '{"return": 1}'], 3, "return 1: expected either a result or an error"),
     "an unknown error": ([FIRST, CLEAR, '{"return": 1, "error": {"status": "BOOM"}}'], 3, "'BOOM' is not the name of"),
     "an error that is OK": ([FIRST, CLEAR, '{"return": 1, "error": {"status": "OK"}}'], 3, "'OK' is not the name of"),
@@ -192,6 +197,24 @@ def test_a_malformed_line_is_refused_in_one_line(command_line: CommandLine, tmp_
     assert says in ended.err
     assert ended.err.count("\n") == 1
     assert len(ended.err) < 400
+
+
+@pytest.mark.parametrize(
+    ("answer", "status"),
+    [
+        ('{"return": 1, "result": {"missionIds": []}, "error": null}', 0),
+        ('{"return": 1, "error": null, "result": {"missionIds": ["A"]}}', 1),
+        ('{"return": 1, "result": null, "error": {"status": "NOT_FOUND"}}', 1),
+    ],
+)
+def test_a_member_that_is_null_beside_the_other_is_absent(
+    command_line: CommandLine, tmp_path: Path, answer: str, status: int
+) -> None:
+    """What libraries write as null beside a result or an error is not there: the other one is judged."""
+    path = tmp_path / "log.jsonl"
+    path.write_text(f"{FIRST}\n{CLEAR}\n{answer}\n")
+    ended = command_line("check", path)
+    assert (ended.status, ended.err) == (status, "")
 
 
 def test_what_is_deep_and_wide_is_read(command_line: CommandLine, tmp_path: Path) -> None:

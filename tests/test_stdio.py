@@ -172,6 +172,25 @@ def test_a_failing_adapter_is_told_in_a_line(adapter: Adapter, case: str) -> Non
 
 
 @pytest.mark.parametrize(
+    ("member", "result", "status"),
+    [
+        ("'result': {'missionIds': []}, 'error': None", {"missionIds": []}, None),
+        ("'result': None, 'error': {'code': 9, 'message': 'no'}", None, "FAILED_PRECONDITION"),
+    ],
+)
+def test_a_member_that_is_null_beside_the_other_is_absent(
+    adapter: Adapter, member: str, result: JSON, status: str | None
+) -> None:
+    """Libraries write both members of an answer; the one that is null is not there."""
+    child = Child(adapter(f"send({{'id': id, {member}}}); continue", "ClearMissionStatus"), timeout=10)
+    try:
+        found = child.exchange("ClearMissionStatus", {})
+    finally:
+        child.close()
+    assert (found.result, found.error and found.error["status"]) == (result, status)
+
+
+@pytest.mark.parametrize(
     ("wrong", "method", "says"),
     [
         ("sys.exit(7)", "initialize", "exited with status 7 before answering initialize"),

@@ -194,10 +194,12 @@ class Child:
         if message["id"] != self._serial:
             raise self._failed(f"answered request {brief(message['id'])} instead of {self._serial} ({method})")
         after = self._at_hand()
+        if message.get("error") is None and message.get("result") is not None:
+            return Exchange(message["result"], None, before, after)  # an error that is null is absent
         if "error" not in message:
             if "result" not in message:
                 raise self._failed(f"answered {method} without a result or an error: {brief(message)}")
-            return Exchange(message["result"], None, before, after)
+            return Exchange(None, None, before, after)
         return Exchange(None, self._error(message["error"], method), before, after)
 
     def _error(self, error: JSON, method: str) -> dict[str, str]:

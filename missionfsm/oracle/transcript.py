@@ -126,6 +126,19 @@ def head(line: JSON) -> Head:
     return Head(name, line.get("world", {}), tuple(drives), "transport" in line, "begins" in line, others)
 
 
+def answered_with(line: Mapping[str, JSON]) -> str | None:
+    """Which of its members an answer is, ``result`` or ``error``; None where it has neither or both.
+
+    One that is null beside the other one is absent.
+    """
+    result, error = "result" in line, "error" in line
+    if result and error:
+        result, error = line["result"] is not None, line["error"] is not None
+    if result == error:
+        return None
+    return "error" if error else "result"
+
+
 class Transcript:
     """Reads the lines of one conversation, after the first.
 
@@ -249,12 +262,13 @@ class Transcript:
         if waiting is None:
             raise UnreadableError(f"return {number}: no call with this id is waiting for an answer")
         method, _ = waiting
-        if ("result" in line) == ("error" in line):
+        kind = answered_with(line)
+        if kind is None:
             raise UnreadableError(f"return {number}: expected either a result or an error")
         if method == "cancel":
             _, self.answered = self._open.pop(number)
             return ()
-        if "error" in line:
+        if kind == "error":
             return self.answers(number, self._error(self._status(line["error"])), ())
         return self.answers(number, *self.codec.read_answer(method, line["result"]))
 

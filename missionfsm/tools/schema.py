@@ -19,6 +19,7 @@ FORMATS = ("adapter", "history")
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _TEXTS = {"type": "array", "items": TEXT}
 _ID = {"type": ["integer", "string"]}
+_NULL = {"type": "null"}
 _NUMBER = {"type": "integer"}
 _STATUS = {"enum": [name for name in STATUS_NUMBERS if name != OK]}
 _SAID = record({"status": _STATUS, "message": TEXT}, ("status",), more=True)
@@ -102,8 +103,8 @@ def _adapter(system: System | None, shapes: Shapes) -> dict[str, Any]:
         "drive": _request({"const": "drive"}, _any_of(shapes.drives.values())),
         "cancel": _request({"const": "cancel"}, _STREAM),
         "call": _request(calls, OBJECT),
-        "answer": _rpc({"id": _ID, "result": _results(shapes, *own), "error": {"type": "null"}}, ("id", "result")),
-        "refusal": _rpc({"id": _ID, "error": error, "result": {"type": "null"}}, ("id", "error")),
+        "answer": _rpc({"id": _ID, "result": _results(shapes, *own), "error": _NULL}, ("id", "result")),
+        "refusal": _rpc({"id": _ID, "error": error, "result": _NULL}, ("id", "error")),
         **_notifications(system, shapes),
     }
 
@@ -148,8 +149,8 @@ def _history(system: System | None, shapes: Shapes) -> dict[str, Any]:
     found = {
         "first line": record(first, ("missionfsm", "system"), more=True),
         "call": line({"call": _ID, "method": calls, "params": OBJECT}, "call", "method"),
-        "return": line({"return": _ID, "result": result}, "return", "result"),
-        "refused return": line({"return": _ID, "error": _SAID}, "return", "error"),
+        "return": line({"return": _ID, "result": result, "error": _NULL}, "return", "result"),
+        "refused return": line({"return": _ID, "error": _SAID, "result": _NULL}, "return", "error"),
         "drive": line({"drive": drive}, "drive"),
         "settled": line({"settled": {"const": True}}, "settled"),
     }

@@ -10,7 +10,7 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Driven
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
-from missionfsm.oracle.transcript import Transcript, head
+from missionfsm.oracle.transcript import Transcript, answered_with, head
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
@@ -86,7 +86,7 @@ def _of_answer(system: System, history: tuple[JSON, ...], at: int, readings: Map
     """The answer on a line, with the rules by which it was allowed."""
     line = history[1:][at]
     call = next(one for one in history[1:] if one.get("call") == line["return"])
-    code = OK if "result" in line else line["error"]["status"]
+    code = OK if answered_with(line) == "result" else line["error"]["status"]
     request = system.codec.read_request(
         call["method"], system.codec.split_request(call["method"], call.get("params", {}))[1]
     )
@@ -120,7 +120,9 @@ def _shows_what_happened(violation: Violation) -> bool:
     Another code is wrong by itself.
     """
     last = violation.history[-1]
-    return "return" not in last or ("result" in last and any(one.what.startswith(OK) for one in violation.expected))
+    if "return" not in last:
+        return True
+    return answered_with(last) == "result" and any(one.what.startswith(OK) for one in violation.expected)
 
 
 def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:

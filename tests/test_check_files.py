@@ -66,6 +66,8 @@ MALFORMED = {
     "an unknown method": ([FIRST, clear(method="Clear")], 2, "'Clear' is not a method of bear.mission"),
     "a method that is no text": ([FIRST, clear(method=3)], 2, "method: 3 is not the name of a call"),
     "no method": ([FIRST, '{"call": 1}'], 2, "method: None is not the name of a call"),
+    "params that are a list": ([FIRST, clear(params=[])], 2, "params: [] is not an object"),
+    "params that are a number": ([FIRST, clear(params=0)], 2, "params: 0 is not an object"),
     "an id that is no number": ([FIRST, clear(call="1")], 2, "call: '1' is not a whole number"),
     "an id that is true": ([FIRST, clear(call=True)], 2, "call: True is not a whole number"),
     "an id that is no whole number": ([FIRST, clear(call=1.5)], 2, "call: 1.5 is not a whole number"),

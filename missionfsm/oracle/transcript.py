@@ -49,6 +49,9 @@ _KEYS: Mapping[str, frozenset[str]] = {
 }
 """What each kind of line may have; one that has more means something that would be passed over."""
 
+_PARAMS = (dict, str, type(None))
+"""What the params of a call may be: an object, or what a proxy writes of bytes that are none, or nothing."""
+
 _Reader = Callable[[dict[str, JSON]], tuple[Event, ...]]
 
 
@@ -209,6 +212,8 @@ class Transcript:
     def _call(self, line: dict[str, JSON]) -> tuple[Event, ...]:
         number, method, params = _whole_number(line, "call"), line.get("method"), line.get("params", {})
         self.begins(number)
+        if not isinstance(params, _PARAMS):
+            raise UnreadableError(f"params: {brief(params)} is not an object")
         if not isinstance(method, str):
             raise UnreadableError(f"method: {brief(method)} is not the name of a call")
         if method == "cancel":

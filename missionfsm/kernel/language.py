@@ -47,6 +47,7 @@ from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.text import brief
 from missionfsm.kernel.typed import reads
 from missionfsm.kernel.whole import shown_whole
+from missionfsm.kernel.worlds import WorldForm
 
 __all__ = [
     "DEADLINE_EXCEEDED",
@@ -98,6 +99,7 @@ __all__ = [
     "StepMutator",
     "System",
     "UnreadableError",
+    "WorldForm",
     "as_text",
     "breaks",
     "brief",

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
-from typing import Any
-
-import attrs
 
 from missionfsm.bear.mission.events import PLAIN_EVENTS, Event
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.render import rendered, with_bare_feedback
 from missionfsm.bear.mission.request_codec import REQUESTS, read_request, split_request, write_request
 from missionfsm.bear.mission.skim import skim
-from missionfsm.bear.mission.state import Family, Fault, World
+from missionfsm.bear.mission.state import Fault, World
 from missionfsm.bear.mission.stream import MORE, Listing, Seen, without_ids
 from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.binary import carries
@@ -23,8 +20,9 @@ from missionfsm.bear.wire.protojson import USUAL_TIMESTAMP, MalformedError, came
 from missionfsm.kernel.codec import JSON, Codec, DriveForm, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Mark, Name
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL, OK
-from missionfsm.kernel.shapes import BOOLEAN, TEXT
+from missionfsm.kernel.shapes import BOOLEAN
 from missionfsm.kernel.text import brief
+from missionfsm.kernel.worlds import WorldForm
 
 # Requests: which member of which oneof means which kind of mission.
 
@@ -244,60 +242,12 @@ def write_message(view: Listing, names: tuple[Name, ...], choice: int, number: i
 
 # Worlds and drives: written by testers and authors of logs, so what is wrong is refused.
 
-_WORLD: Mapping[str, str] = {
-    camel(attribute.name): attribute.name for attribute in attrs.fields(World) if attribute.name != "unwatched"
-}
-
-
-def _world_field(name: str, value: JSON) -> Hashable:
-    if name == "family":
-        try:
-            return Family(value)
-        except ValueError:
-            families = ", ".join(family.value for family in Family)
-            message = f"world.family: {brief(value)} is none of {families}"
-            raise UnreadableError(message) from None
-    if name in ("destinations", "occupied"):
-        if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
-            message = f"world.{name}: {brief(value)} is not a list of texts"
-            raise UnreadableError(message)
-        return tuple(value)
-    if not isinstance(value, bool):
-        message = f"world.{name}: {brief(value)} is not true or false"
-        raise UnreadableError(message)
-    return value
-
-
-def _world_fields(given: JSON) -> dict[str, Any]:
-    if not isinstance(given, dict):
-        message = f"world: {brief(given)} is not an object"
-        raise UnreadableError(message)
-    fields = {}
-    for name, value in given.items():
-        if name not in _WORLD:
-            message = f"world.{name}: there is no such field; there are {', '.join(_WORLD)}"
-            raise UnreadableError(message)
-        fields[_WORLD[name]] = _world_field(name, value)
-    return fields
-
-
-def read_world(given: JSON) -> World:
-    """The world of a `reset` or of a history's first line."""
-    return World(**_world_fields(given))
-
-
-def write_world(one: World) -> JSON:
-    """The parameters of `reset`."""
-    fields = {name: getattr(one, field) for name, field in _WORLD.items()}
-    return {
-        name: value.value if isinstance(value, Family) else list(value) if isinstance(value, tuple) else value
-        for name, value in fields.items()
-    }
+WORLD = WorldForm(World, without=("unwatched",))
 
 
 def _changed(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     """A world that changes."""
-    changed = _world_fields({key: value for key, value in given.items() if key != "event"})
+    changed = WORLD.attributes({key: value for key, value in given.items() if key != "event"})
     if "family" in changed:
         message = "drive.family: the family changes only with reset"
         raise UnreadableError(message)
@@ -315,22 +265,12 @@ def _fault(given: JSON) -> tuple[Event, tuple[Name, ...]]:
     return Event("fault", Fault(status, applied)), ()
 
 
-_TEXTS = {"type": "array", "items": TEXT}
-CHANGING = {
-    "contactDock": BOOLEAN,
-    "chargingLocation": BOOLEAN,
-    "destinations": _TEXTS,
-    "occupied": _TEXTS,
-    "blocked": BOOLEAN,
-}
-"""What of a world may change."""
-
 DRIVES = {
     **dict.fromkeys(PLAIN_EVENTS, DriveForm(lambda given: (Event(given["event"]), ()))),
     "world": DriveForm(
         _changed,
         lambda event, _: {camel(key): list(one) if isinstance(one, tuple) else one for key, one in event.what},
-        CHANGING,
+        {name: one for name, one in WORLD.members.items() if name != "family"},
     ),
     "fault": DriveForm(
         _fault,
@@ -345,7 +285,7 @@ STREAMS = tuple(name for name, operation in OPERATIONS.items() if operation.stre
 CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=STREAMS,
-    read_world=read_world,
+    read_world=WORLD.read,
     split_request=split_request,
     read_request=read_request,
     read_answer=read_answer,
@@ -355,7 +295,7 @@ CODEC = Codec(
     write_request=write_request,
     write_answer=write_answer,
     write_message=write_message,
-    write_world=write_world,
+    write_world=WORLD.write,
     skim=skim,
     carries=carries,
     robot_in_params=True,

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from missionfsm.bear.mission.codec import CHANGING, RESULTS, STREAMS
+from missionfsm.bear.mission.codec import RESULTS, STREAMS, WORLD
 from missionfsm.bear.mission.request_codec import REQUESTS
-from missionfsm.bear.mission.state import Family
 from missionfsm.bear.wire.messages import Empty, FamilyStatus, MissionStatus
 from missionfsm.bear.wire.schema import names_of, reference
 from missionfsm.kernel.shapes import Shapes, record
@@ -20,7 +19,7 @@ def shapes() -> Shapes:
     for name in ("servi_feedback", "carti_feedback", "serviFeedback", "cartiFeedback"):  # AM-50: or the bare status
         feedback[name] = {"anyOf": [feedback[name], names_of(FamilyStatus)]}
     return Shapes(
-        world=record({"family": {"enum": [one.value for one in Family]}, **CHANGING}),
+        world=record(WORLD.members),
         requests={method: reference(kind, found) for method, kind in REQUESTS.items()},
         results={method: reference(RESULTS.get(method, Empty), found) for method in REQUESTS if method not in STREAMS},
         messages=(message,),

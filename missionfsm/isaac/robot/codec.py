@@ -20,31 +20,13 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.kernel.language import JSON, Codec, DriveForm, Name, UnreadableError, brief, meet
+from missionfsm.kernel.language import JSON, Codec, DriveForm, Name, WorldForm, meet
 from missionfsm.kernel.shapes import TEXT
 
 ANY_NAME = "robot"
 """What a robot is called of which the world tells no name."""
 
-_WORLD = {"name": "name", "channel": "channel", "statusChannel": "status_channel", "nameChannel": "name_channel"}
-
-
-def read_world(given: JSON) -> World:
-    """The world: the robot's name, which may be left untold, and its channels."""
-    given = {} if given is None else given
-    if not isinstance(given, dict) or not set(given) <= set(_WORLD):
-        raise UnreadableError(f"world: isaac.robot has {', '.join(_WORLD)} only, not {brief(given)}")
-    for key, value in given.items():
-        if not isinstance(value, str) or not value:
-            raise UnreadableError(f"world.{key}: {brief(value)} is not a text with something in it")
-    return World(**{_WORLD[key]: value for key, value in given.items()})
-
-
-def write_world(given: World) -> JSON:
-    """The parameters of a world."""
-    parameters = {key: getattr(given, attribute) for key, attribute in _WORLD.items()}
-    return {key: value for key, value in parameters.items() if value is not None}
-
+WORLD = WorldForm(World)
 
 # Drives.
 
@@ -128,8 +110,8 @@ def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: 
 
 CODEC = Codec(
     measured=("seconds",),
-    read_world=read_world,
-    write_world=write_world,
+    read_world=WORLD.read,
+    write_world=WORLD.write,
     drives={"line": DriveForm(_arrives, _essence, {"line": TEXT}, ("line",)), "advance": ADVANCE},
     split_message=lambda line: (part_of(line, *see(line)),),
     read_content=from_json,

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.robot.codec import WORLD
 from missionfsm.kernel.shapes import Shapes, record
-
-_NAME = {"type": "string", "minLength": 1}
 
 
 def shapes() -> Shapes:
     """The schema of its world."""
-    return Shapes(world=record(dict.fromkeys(("name", "channel", "statusChannel", "nameChannel"), _NAME)), lines=True)
+    return Shapes(world=record(WORLD.members), lines=True)

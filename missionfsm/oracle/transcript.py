@@ -31,6 +31,8 @@ from missionfsm.kernel.text import brief
 from missionfsm.oracle.memory import ENTRY, MEMORY, TEXT, TEXTS, Room
 
 VERSION = 1
+MAX_SILENCED = 1_000
+"""How many streams that were given up are remembered."""
 _SETTLED: tuple[Event, ...] = (Settled(),)
 _ANY_KEYS = ("at", "robot")
 _HEAD_KEYS = frozenset(("missionfsm", "system", "world", "drives", "begins", "others", "transport", *_ANY_KEYS))
@@ -153,6 +155,7 @@ class Transcript:
 
     Attributes:
         answered: the request whose answer was read last.
+        silenced: the streams whose `cancel` was answered, the last ones; they show nothing more.
     """
 
     def __init__(
@@ -168,6 +171,8 @@ class Transcript:
         self._lost = lost
         self._anywhere = anywhere
         self._open: dict[int, tuple[str, Request]] = {}
+        self._cancels: dict[int, Name] = {}
+        self.silenced: dict[Name, None] = {}
         self.answered: Request = None
         self._sent = IdSet()
         self._errors: dict[str, Answer] = {}
@@ -221,6 +226,7 @@ class Transcript:
             if type(stream) is not int:  # a bool is none
                 raise UnreadableError(f"cancel: {brief(params)} names no stream")
             self._open[number] = method, None
+            self._cancels[number] = "stream", stream
             return (Cancelled(("stream", stream)),)
         request, names = self._request(method, params)
         return self.sends(number, method, request, names)
@@ -272,10 +278,17 @@ class Transcript:
             raise UnreadableError(f"return {number}: expected either a result or an error")
         if method == "cancel":
             _, self.answered = self._open.pop(number)
+            self._silence(number)
             return ()
         if kind == "error":
             return self.answers(number, self._error(self._status(line["error"])), ())
         return self.answers(number, *self.codec.read_answer(method, line["result"]))
+
+    def _silence(self, number: int) -> None:
+        """A `cancel` was answered: its stream shows nothing more."""
+        self.silenced[self._cancels.pop(number)] = None
+        if len(self.silenced) > MAX_SILENCED:
+            del self.silenced[next(iter(self.silenced))]
 
     def _error(self, status: str) -> Answer:
         """The answer with a status, one object for one status."""

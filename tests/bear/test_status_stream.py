@@ -569,11 +569,14 @@ def test_a_stream_does_not_just_end() -> None:
 
 
 def test_what_comes_on_a_cancelled_stream_means_nothing() -> None:
-    """After cancel nothing is due on it, and nothing is wrong with what still comes."""
-    cancel = [{"call": 2, "method": "cancel", "params": {"stream": 1}}, {"return": 2, "result": {}}]
-    lines = [*SUBSCRIBED, *cancel, report("r1", "battery", battery(50))]
-    assert conforms(*lines, battery_message(1, "r1", 1, battery(50)), SETTLED)
-    assert conforms(*lines, SETTLED)
+    """After cancel nothing is due on it and nothing is wrong with what still comes; after its answer it is flagged."""
+    call, answer = {"call": 2, "method": "cancel", "params": {"stream": 1}}, {"return": 2, "result": {}}
+    changed, message = report("r1", "battery", battery(50)), battery_message(1, "r1", 1, battery(50))
+    on_its_way = judge([*SUBSCRIBED, changed, call, message, answer, SETTLED]).verdict()
+    late = judge([*SUBSCRIBED, call, answer, changed, message, SETTLED]).verdict()
+    assert (on_its_way.conforms, on_its_way.flagged) == (True, ())
+    assert (late.conforms, late.flagged) == (True, ("a stream showed more after its cancel was answered",))
+    assert conforms(*SUBSCRIBED, call, answer, changed, SETTLED)
 
 
 # Form.

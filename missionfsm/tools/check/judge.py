@@ -9,7 +9,7 @@ from typing import Any
 from attrs import evolve
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Called, Event, Name, Returned, Settled
+from missionfsm.kernel.history import Called, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Request
@@ -110,7 +110,7 @@ class Judge:
         self.exhausted = False
         self.recent: deque[AnsweredCall] = deque(maxlen=RECENT)
         self._about: dict[Name, tuple[Name, ...]] = {}
-        self._lost_a_call = self._unanswered = False
+        self._lost_a_call = self._unanswered = self._speaks_on = False
         self._unexplained: Event | None = None
         self._undecided: Event | None = None
         self._violation: Violation | None = None
@@ -152,6 +152,8 @@ class Judge:
         if not self.right:
             return False
         self.read += 1
+        if self.transcript.silenced and not self._speaks_on:
+            self._speaks_on = any(type(one) is Received and one.channel in self.transcript.silenced for one in events)
         if self._held is not None:
             return self._hold(events, place)
         belief = self.belief
@@ -291,9 +293,11 @@ class Judge:
     @property
     def oddities(self) -> tuple[Flagged, ...]:
         """What is explained, and yet belongs to no reading: a line each."""
-        if not self._unanswered:
-            return ()
-        return (Flagged("a call was not answered, or only after everything had settled"),)
+        said = {
+            "a call was not answered, or only after everything had settled": self._unanswered,
+            "a stream showed more after its cancel was answered": self._speaks_on,
+        }
+        return tuple(Flagged(says) for says, so in said.items() if so)
 
     @property
     def exercised(self) -> dict[str, int]:

@@ -138,6 +138,72 @@ def test_many_answers_that_never_came_are_no_violation(tmp_path: Path) -> None:
     assert (verdict.conforms, flags(verdict)) == (True, {"TR-04"})
 
 
+FP = {"status": "FAILED_PRECONDITION", "message": ""}
+BATCH = ("AppendMissionBatch", {"missions": [navigate("table-1")]})
+
+
+def refused(method: str, params: Any = None, call: int = 70) -> list[Any]:
+    """The history, then a call that is refused."""
+    return [*LINES, {"call": call, "method": method, "params": params or {}}, {"return": call, "error": FP}]
+
+
+def test_a_robot_may_be_too_old_for_calls_that_came_later(tmp_path: Path) -> None:
+    """Software that is too old refuses every call that came later, and no other; what it has answered it knows."""
+    lines = [*refused(*BATCH), *refused(*BATCH, 71)[len(LINES) :]]
+    verdict = judged(tmp_path / "log", lines)
+    assert (verdict.conforms, flags(verdict)) == (True, {"TR-06"})
+    assert not judged(tmp_path / "log", lines, readings={"TR-06": "a"}).conforms
+    known = [*lines[:-1], {"return": 71, "result": {"missionIds": ["n"]}}]
+    assert judged(tmp_path / "log", known).violation is not None
+    assert judged(tmp_path / "log", refused("AppendMission", navigate("table-1"))).violation is not None
+
+
+LATER = {
+    "something that was there goes on": [
+        {
+            "call": 71,
+            "method": "UpdateMission",
+            "params": {"missionCommand": {"missionId": "m1", "command": "COMMAND_PAUSE"}},
+        },
+        {"return": 71, "result": {}},
+    ],
+    "everything settles": [{"settled": True}],
+    "nothing follows": [],
+}
+
+
+@pytest.mark.parametrize("later", LATER)
+def test_a_restart_that_nobody_sees_excuses_nothing(tmp_path: Path, later: str) -> None:
+    """An answer that only a restart explains is what is wrong, not the right line after it that shows otherwise."""
+    wrong = refused("AppendMission", navigate("table-1"))
+    verdict = judged(tmp_path / "log", [*wrong, *LATER[later]])
+    assert verdict.violation is not None
+    assert (verdict.violation.at, flags(verdict)) == (len(wrong), set())
+    assert "AppendMission(base navigate to 'table-1') was answered FAILED_PRECONDITION" in verdict.violation.observed
+    assert verdict.violation.history[-1] == wrong[-1]
+
+
+def test_a_restart_that_is_seen_after_an_answer_explains_it(tmp_path: Path) -> None:
+    """What was answered before the list is seen to be empty is explained, with the numbers from 0."""
+    lines = [*refused("AppendMission", navigate("table-1")), *restarted(LINES)[len(LINES) :]]
+    verdict = judged(tmp_path / "log", lines)
+    assert (verdict.conforms, flags(verdict)) == (True, {"TR-05"})
+    shown_later = [*lines, *refused("SkipGoal", {}, 71)[len(LINES) :]]
+    assert judged(tmp_path / "log", shown_later).conforms
+
+
+def test_a_restart_may_be_seen_after_the_end_of_a_log_in_use(tmp_path: Path) -> None:
+    """In a log of a robot that nobody drives, which ends with the answer, the empty list may have come later."""
+    head = {key: value for key, value in LINES[0].items() if key != "drives"}
+    log = [head, *(line for line in day().history[1:] if "drive" not in line)]
+    undriven = [
+        *log[:-1],
+        *refused("UpdateMission", {"missionCommand": {"missionId": "m1", "command": "COMMAND_PAUSE"}})[-2:],
+    ]
+    verdict = judged(tmp_path / "log", undriven)
+    assert verdict.conforms, str(verdict)
+
+
 WRONG = {
     "another message with the same number": [
         *LINES,

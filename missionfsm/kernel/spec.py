@@ -263,6 +263,8 @@ class Spec:
             of the topic's `Delivery` say it.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
         restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
+        added: the operations that came with the latest version of the interface, all at once: older software refuses
+            them.
         middle: what lets it be judged without its beginning, or None where that cannot be.
         anywhere: whether what is observed began while it was in use (`missionfsm.kernel.middle`).
         others: whether others, whose calls are not observed, use it as well.
@@ -312,6 +314,7 @@ class Spec:
     undelivered: Callable[[View], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None
+    added: frozenset[str] = frozenset()
     middle: Middle | None = None
     anywhere: bool = False
     others: bool = False

@@ -45,7 +45,12 @@ TR_04 = _reading(
     "yes, so the call may have taken effect or not, at once or later",
 )
 TR_05 = _reading(5, "Did the robot restart?", "yes: its list is empty, and its numbers start over at 0")
-TRANSPORT = (TR_01, TR_02, TR_03, TR_04, TR_05)
+TR_06 = _reading(
+    6,
+    "Is the robot's software older than a call?",
+    "yes, so it refuses every call that came later with FAILED_PRECONDITION",
+)
+TRANSPORT = (TR_01, TR_02, TR_03, TR_04, TR_05, TR_06)
 """All of them, in the order of their numbers."""
 
 MADE_BY_CLIENTS = frozenset(
@@ -61,6 +66,8 @@ MADE_BY_CLIENTS = frozenset(
 """The statuses that any gRPC client or gateway makes by itself, on every call."""
 MADE_UP = Failure((TR_04["b"],), open_ended=True)
 """An answer with such a status, which leaves open what becomes of the call."""
+TOO_OLD = Failure((TR_06["b"],))
+"""A refusal of a call that the robot's software does not know yet."""
 REDELIVERED = "redelivered"
 """The relation of a message to the one before that it is, number, timestamp and content."""
 ENDS = frozenset({OK, DEADLINE_EXCEEDED})
@@ -80,4 +87,4 @@ def over_transport(spec: Spec) -> Spec:
     )
 
 
-__all__ = ["ENDS", "MADE_BY_CLIENTS", "MADE_UP", "REDELIVERED", "TRANSPORT", "over_transport"]
+__all__ = ["ENDS", "MADE_BY_CLIENTS", "MADE_UP", "REDELIVERED", "TOO_OLD", "TRANSPORT", "over_transport"]

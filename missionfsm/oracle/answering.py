@@ -6,6 +6,8 @@ import itertools
 from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.rules import OK
+from missionfsm.kernel.spec import Failure
 from missionfsm.kernel.step import Match, Step
 from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import GONE, Explanation, InFlight, Names, mentioned, tidy, unify, with_lost
@@ -34,6 +36,8 @@ class Answering:
         undone, reply = [], Reply(answer, names)
         if self._level > 1:
             explanations = (*explanations, *lenient.restarted(self._successors, self._spec, explanations))
+        if answer.code == OK and self._spec.transport and self._spec.added:
+            explanations = lenient.up_to_date(self._successors, explanations, call)
         for explanation in explanations:
             position = _position(explanation, call)
             if position is None:
@@ -70,7 +74,7 @@ class Answering:
         if reply.names or reply.answer.shape is not None:
             return
         one = explanation.calls[position]
-        for failure in self._successors.failures(one, reply.answer.code):
+        for failure in self._failures(one, reply.answer.code):
             if one.done and not failure.open_ended:
                 continue
             assumed = self._successors.meet(explanation.assumed, failure.assumes)
@@ -79,6 +83,14 @@ class Answering:
                 late = failure.open_ended and not one.done
                 lost = with_lost(explanation.lost, one.request, one.args) if late else explanation.lost
                 yield explanation.replace(assumed=assumed, calls=calls, lost=lost)
+
+    def _failures(self, call: InFlight, code: str) -> Iterator[Failure]:
+        """In which ways the call may have failed with a code without anybody's doing."""
+        yield from self._successors.failures(call, code)
+        if self._level:
+            refused = lenient.too_old(self._spec, self._spec.request_operation(call.request), code)
+            if refused:
+                yield refused
 
     def _answered(
         self, here: Explanation, position: int, reply: Reply

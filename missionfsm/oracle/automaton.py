@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from attrs import define, field
+from attrs import define, evolve, field
 
 from missionfsm.kernel.readings import UNCONSTRAINED, meet
 from missionfsm.kernel.spec import Spec
@@ -61,6 +62,7 @@ class Edge:
         touched: the bits of the ambiguities of which other readings are possible after the event than before it.
         appends: whether nothing becomes of the names before but that others follow them.
         cuts: whether nothing becomes of the names but that the last ones are left out.
+        presumes: whether nothing but a restart that nobody has seen yet explains the event.
     """
 
     node: Node
@@ -70,6 +72,7 @@ class Edge:
     touched: int
     appends: bool = False
     cuts: bool = False
+    presumes: bool = False
 
 
 class Automaton:
@@ -127,6 +130,18 @@ class Automaton:
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)
 
+    @functools.cached_property
+    def without_restarts(self) -> Automaton:
+        """The belief automaton of the same system where no robot restarts by itself."""
+        spec, known = evolve(self.spec, restarted=None, decided=None), self.successors
+        other = Automaton(spec, known.driven, self.assumed, known.budget, memory=self.memory)
+        other._rules = self._rules  # what is told of both is counted alike
+        return other
+
+    def adopt(self, node: Node) -> Node:
+        """The node of this automaton that stands for the same as one of another automaton."""
+        return self._intern(node.explanations, node.width)
+
     def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
         node = self._nodes.get(explanations)
         if node is None:
@@ -154,20 +169,28 @@ class Automaton:
         if self._has_calls_alone and not successors.live and all(map(is_of_calls_alone, node.explanations)):
             successors.limit = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
         try:
-            edge = self.arrive(node, self._step(node.explanations, kind, *what))
+            found, presumes = self._step(node.explanations, kind, *what)
+            edge = self.arrive(node, found)
         finally:
             successors.limit = successors.budget
+        edge.presumes = presumes
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += ENTRY
         return edge
 
-    def _step(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> tuple[Successor, ...]:
-        """What explains an event. Live, what may happen unwatched is thought of only where nothing else is left."""
-        found: tuple[Successor, ...] = ()
+    def _step(
+        self, explanations: tuple[Explanation, ...], kind: type, *what: Part
+    ) -> tuple[tuple[Successor, ...], bool]:
+        """What explains an event, and whether it presumes a restart.
+
+        Live, what may happen unwatched is thought of only where nothing else is left.
+        """
         if self._watched is not None and self.successors.live:
             found = self._watched.step(explanations, kind, *what)
-        return found or self.transitions.step(explanations, kind, *what)
+            if found:
+                return found, self._watched.presumes
+        return self.transitions.step(explanations, kind, *what), self.transitions.presumes
 
     def arrive(self, node: Node, found: tuple[Successor, ...]) -> Edge:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""

@@ -14,6 +14,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 
 from missionfsm.kernel.history import Cancelled, Driven, Ended, Event, Name, Received, Settled
 from missionfsm.kernel.spec import Spec
+from missionfsm.kernel.transport import TR_06
 from missionfsm.oracle import memory
 from missionfsm.oracle.automaton import Automaton, Node, Tally
 from missionfsm.oracle.numbering import Numbered, Numbering
@@ -33,6 +34,8 @@ class Belief:
     `unfollowed` has the bits of the readings that explanations may follow which a search has left aside; while it is
     not 0, the explanations of the node are not all there are.
 
+    `presumed` is the belief before an answer that nothing but a restart explains, until that restart is seen.
+
     Args:
         automaton: the automaton that it walks.
         world: where it begins.
@@ -40,7 +43,7 @@ class Belief:
         past: the names of what was there before, where the instance was used; None for a fresh one.
     """
 
-    __slots__ = ("_numbering", "_tally", "_walked", "automaton", "broken", "node", "touched", "unfollowed")
+    __slots__ = ("_numbering", "_tally", "_walked", "automaton", "broken", "node", "presumed", "touched", "unfollowed")
 
     def __init__(
         self, automaton: Automaton, world: object, tally: Tally | None = None, past: Iterable[Name] | None = None
@@ -51,6 +54,7 @@ class Belief:
         self.broken = False
         self.touched = 0
         self.unfollowed = 0
+        self.presumed: Belief | None = None
         self._numbering = Numbering(automaton.spec, automaton.memory // memory.NAMES, past or ())
         self._walked: deque[tuple[Symbol, Node]] = deque(maxlen=MAX_WALKED)
 
@@ -78,6 +82,8 @@ class Belief:
         if not edge.node.explanations:
             self.broken = True
             return False
+        if edge.presumes and self.presumed is None:
+            self.presumed = self._as_it_was()
         self._walked.append((symbol, self.node))
         self.node = edge.node
         self.touched |= edge.touched
@@ -86,6 +92,14 @@ class Belief:
         if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
             numbering.note(event)
         return True
+
+    def _as_it_was(self) -> Belief:
+        """A belief at the same point that goes on by itself, and never presumes a restart."""
+        other = self.lookout()
+        other._walked = self._walked.copy()  # noqa: SLF001 - of the same class
+        other.automaton = self.automaton.without_restarts
+        other.node = other.automaton.adopt(self.node)
+        return other
 
     @property
     def of_last_event(self) -> Belief:
@@ -182,6 +196,9 @@ class Belief:
                 one.assumed & ambiguity.group != ambiguity.group for one in self.node.explanations
             ):
                 found[ambiguity.id] = ambiguity.possible(left)
+        # That software is not too old says nothing; that it may be does.
+        if found.get(TR_06.id) == (TR_06.default,):
+            del found[TR_06.id]
         return found
 
     @property

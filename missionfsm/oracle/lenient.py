@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.transport import ENDS, MADE_BY_CLIENTS, TR_01, TR_02, TR_03, TR_04, TR_05
+from missionfsm.kernel.rules import FAILED_PRECONDITION
+from missionfsm.kernel.spec import Failure, Spec
+from missionfsm.kernel.transport import ENDS, MADE_BY_CLIENTS, TOO_OLD, TR_01, TR_02, TR_03, TR_04, TR_05, TR_06
 from missionfsm.oracle.explanation import Channel, Explanation, Owed, tidy
 from missionfsm.oracle.successors import Successor, Successors
 
@@ -28,6 +29,23 @@ def ends(code: str) -> tuple[Assumption, ...] | None:
     if code in ENDS:
         return (TR_01["b"],)
     return (TR_04["b"],) if code in MADE_BY_CLIENTS else None
+
+
+def too_old(spec: Spec, operation: str, code: str) -> Failure | None:
+    """That a robot refuses a call which its software does not know yet; None where that is not how it would."""
+    return TOO_OLD if code == FAILED_PRECONDITION and operation in spec.added else None
+
+
+def up_to_date(successors: Successors, explanations: Iterable[Explanation], call: int) -> Iterator[Explanation]:
+    """The explanations where a call has succeeded: software that knows one of those that came later knows them all."""
+    for explanation in explanations:
+        asked = next((one.request for one in explanation.calls if one.name == call), None)
+        if asked is None or successors.spec.request_operation(asked) not in successors.spec.added:
+            yield explanation
+            continue
+        assumed = successors.meet(explanation.assumed, (TR_06["a"],))
+        if assumed:
+            yield explanation.replace(assumed=assumed)
 
 
 def redelivered(explanations: Iterable[Explanation], channel: int) -> Iterator[Successor]:
@@ -69,4 +87,4 @@ def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:
     return LOSES if channel.last else otherwise
 
 
-__all__ = ["LOSES", "ends", "given_up", "redelivered", "restarted", "skips"]
+__all__ = ["LOSES", "ends", "given_up", "redelivered", "restarted", "skips", "too_old", "up_to_date"]

@@ -36,7 +36,10 @@ class Parted:
         of_last_event: that of the part which the last event was about; of the one that did not explain it, where one
             did not.
         broken: whether nothing explains what was observed.
+        presumed: as that of a belief; no part presumes anything.
     """
+
+    presumed: Belief | None = None
 
     def __init__(self, spec: Spec, world: object, driven: Iterable[str], assumed: int, budget: int) -> None:
         parting = spec.parting

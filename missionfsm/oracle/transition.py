@@ -29,12 +29,16 @@ class TransitionFunction:
     Args:
         successors: what one explanation can become.
         eager: whether what only a transport does is thought of at every event, not only where nothing else is left.
+
+    Attributes:
+        presumes: whether nothing but a restart that nobody has seen yet explains the event of the last step.
     """
 
     def __init__(self, successors: Successors, *, eager: bool = False) -> None:
         self.successors = successors
         self.spec = successors.spec
         self.eager = eager and successors.spec.transport
+        self.presumes = False
         self._observing, *self._lenient = (Observing(successors, level) for level in range(3))
 
     def step(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> tuple[Successor, ...]:
@@ -55,8 +59,11 @@ class TransitionFunction:
             found = (*found, *self._lenient[0].explained(explanations, kind, *what))
         about = after_event(self.successors, kind, *what)
         kept = prune(self.successors, found, about)
-        for more in () if kept else self._beyond(explanations, kind, *what):
-            kept = kept or prune(self.successors, more, about)
+        self.presumes = False
+        for restarts, more in () if kept else self._beyond(explanations, kind, *what):
+            if not kept:
+                kept = prune(self.successors, more, about)
+                self.presumes = restarts and kind is Returned and bool(kept)
         return kept
 
     @property
@@ -71,23 +78,26 @@ class TransitionFunction:
         *what: Part,
     ) -> Iterator[Successor]:
         """Explanations of an event that the system itself does not explain, one by one; see `step`."""
-        return itertools.chain.from_iterable(self._beyond(tuple(explanations), kind, *what))
+        return itertools.chain.from_iterable(found for _, found in self._beyond(tuple(explanations), kind, *what))
 
     def _beyond(
         self,
         explanations: tuple[Explanation, ...],
         kind: type,
         *what: Part,
-    ) -> Iterator[Iterable[Successor]]:
-        """What may have become of things on their way, or a robot that has restarted, or somebody not in the log."""
+    ) -> Iterator[tuple[bool, Iterable[Successor]]]:
+        """What may have become of things on their way, or a robot that has restarted, or somebody not in the log.
+
+        The second is said with it.
+        """
         if self.spec.transport:
-            for leniently in self._lenient:
-                yield leniently.explained(explanations, kind, *what)
+            for restarts, leniently in enumerate(self._lenient):
+                yield bool(restarts), leniently.explained(explanations, kind, *what)
         if self.spec.anywhere or self.spec.others:
             relations = (one for one in what[2] if one != REDELIVERED) if kind is Received else ()
             assumed = numbered_so(self.spec, relations)
             if assumed is not None:
-                yield middle.unforeseen(self.successors, explanations, assumed, kind, *what)
+                yield False, middle.unforeseen(self.successors, explanations, assumed, kind, *what)
 
     def is_hopeless(self, kind: type, *what: Part, leniently: bool = False) -> bool:
         """Whether an event is wrong whatever came before it: then nobody has to look at all of that.

@@ -228,7 +228,7 @@ def test_a_conversation_is_had_in_the_world_that_it_needs() -> None:
             assert "INVALID_ARGUMENT" not in str(conversation.heard)
 
     assert play(Run.against(MISSION, ReferenceSubject(MISSION), progress=watch))
-    assert begun == ["carti"] * 7
+    assert begun == ["carti"] * 9
 
 
 def test_where_a_situation_is_not_sure_time_passes_once() -> None:

@@ -374,6 +374,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         decided=lambda decided: specification(operations, decided),
         rebuilt=specification,
         restarted=_restarted,
+        added=frozenset({"CreateMissionBatch", "AppendMissionBatch", "ClearMissionStatus"}),
         middle=MIDDLE,
         unopened=(OWED.id,),
     )

@@ -294,6 +294,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         # No call changes a fleet. What robots reported before a log, and a fault that waits, nobody has seen.
         middle=Middle(undriven=frozenset({"report", "fault"})),
         unopened=(UPDATES.id,),
+        added=frozenset({"SubscribeNavigationStatus"}),
     )
 
 

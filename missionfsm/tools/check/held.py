@@ -34,6 +34,21 @@ class HeldEvent:
 
 
 @frozen
+class Presumed:
+    """An answer that nothing but a restart explains which nobody has seen yet.
+
+    Attributes:
+        belief: what was believed before it; it presumes no restart.
+        line: the answer.
+        events: how many events there were with it.
+    """
+
+    belief: Belief
+    line: HeldEvent
+    events: int
+
+
+@frozen
 class Explained:
     """What came of explaining events that waited.
 

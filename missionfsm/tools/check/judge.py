@@ -22,7 +22,7 @@ from missionfsm.tools.check.basis import Flagged
 from missionfsm.tools.check.candidates import AnsweredCall, Circumstances
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
-from missionfsm.tools.check.held import Held, HeldEvent
+from missionfsm.tools.check.held import Held, HeldEvent, Presumed
 from missionfsm.tools.check.phrases import event_words
 from missionfsm.tools.check.quiet import Quiet
 from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unchecked, uncovered, untested
@@ -97,6 +97,7 @@ class Judge:
         parting = self.automaton.spec.parting
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, EVENT_BUDGET)
+        self._standing = self.belief
         self.rulings = Eliminations(self.belief)
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
@@ -117,6 +118,7 @@ class Judge:
         self._asked: Any = None
         self._patient = waits
         self._held: Held | None = None
+        self._presumed: Presumed | None = None
         self.place: int | None = None
 
     def feed(self, line: JSON, place: int = 0) -> bool:
@@ -170,9 +172,12 @@ class Judge:
                 self._undecided = event
                 self.exhausted, self.right = True, False
                 return False
+            if belief.presumed is not None:
+                self._presume(event, belief.presumed, place, seen=explained and type(event) is Received)
             if not explained:
                 self._unexplained, self.right = event, False
                 self._asked = self.transcript.answered
+                self._blame_what_was_presumed()
                 return False
             if belief.node not in self._seen:
                 self.rulings.notice(event, self.transcript.answered, before)
@@ -180,6 +185,35 @@ class Judge:
             if kind is Returned or kind is Settled or kind is Called:
                 self._count(event, self.transcript.answered, open_calls=len(self.transcript.pending) > 0)
         return True
+
+    def _presume(self, event: Event, before: Belief, place: int, *, seen: bool) -> None:
+        """Nothing but a restart explains an answer; a message shows whether there was one.
+
+        Args:
+            event: the answer, or what came after it.
+            before: the belief before the answer.
+            seen: whether it is a message, and explained.
+        """
+        if seen:
+            self.belief.presumed = self._presumed = None
+        elif self._presumed is None:
+            line = HeldEvent(event, self.transcript.answered, self.read, place, open_calls=False)
+            self._presumed = Presumed(before, line, self.events)
+
+    def _blame_what_was_presumed(self) -> None:
+        """What went wrong is the answer that only a restart explains, where that was not seen."""
+        presumed, self._presumed = self._presumed, None
+        if presumed is None or presumed.belief.observe(presumed.line.event):
+            return
+        self._blame(presumed.line)
+        self._standing, self.events = presumed.belief, presumed.events
+
+    def _blame(self, line: HeldEvent) -> None:
+        """Nothing explains an event that came some lines before."""
+        for _ in range(min(self.read - line.read, len(self.lines))):
+            self.lines.pop()
+        self._unexplained, self._asked, self.read, self.place = line.event, line.asked, line.read, line.place
+        self.right = False
 
     def _count(self, event: Event, asked: Request | None, *, open_calls: bool) -> None:
         """Count an event that is explained: what was asked if it is an answer, and whether calls had none then."""
@@ -222,12 +256,9 @@ class Judge:
             self._count(line.event, line.asked, open_calls=line.open_calls)
         self.rulings.skip()
         if not explained.whole:
-            line = held.lines[held.unexplained]
             self.events += 1
-            for _ in range(min(self.read - line.read, len(self.lines))):
-                self.lines.pop()
-            self._unexplained, self._asked, self.read, self.place = line.event, line.asked, line.read, line.place
-            self.right = False
+            self._blame(held.lines[held.unexplained])
+            self._blame_what_was_presumed()
         return self.right
 
     @property
@@ -235,7 +266,7 @@ class Judge:
         """What is wrong with the event that nothing explains; put into words when it is asked for."""
         if self._unexplained is not None and self._violation is None:
             about = Circumstances(self._asked, self.rulings.found, tuple(self.recent))
-            found = violation(self.belief.of_last_event, self._unexplained, about)
+            found = violation(self._standing.of_last_event, self._unexplained, about)
             if self.quiet is not None and type(self._unexplained) is Settled:
                 seen = f"nothing had come of it after {self.quiet.seconds:g} s, or by {found.observed}"
                 found = evolve(found, observed=seen)
@@ -261,6 +292,8 @@ class Judge:
         """The judgement of what was fed so far."""
         if self._held is not None and self.right:
             self._decide(self._held, whole=True)
+        if self._presumed is not None and self.right and self.head.drives:
+            self._blame_what_was_presumed()  # in a test that drives the robot, nothing happens by itself
         outcome, because, exercised = Outcome.CONFORMS, "", self.exercised
         if self._unexplained is not None:
             outcome = Outcome.VIOLATES
@@ -270,9 +303,9 @@ class Judge:
             outcome = Outcome.INCONCLUSIVE
         elif not exercised and not self._broke_down():
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
-        spec, readings = self.system.spec, self.belief.readings
+        spec, readings = self.system.spec, self._standing.readings
         left_out = uncovered(spec, exercised, readings)
-        ways = self.belief.ways
+        ways = self._standing.ways
         used = (name for name, codes in self.answers.items() if codes)
         verdict = Verdict(
             outcome,

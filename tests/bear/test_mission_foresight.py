@@ -114,7 +114,18 @@ def test_what_cannot_succeed_any_more_is_not_foreseen() -> None:
     )
     assert [succeeds(robot, (0, 1, 2), made, (), (name,)) for name in (1, 3)] == [False, True]
     assert [succeeds(robot, (0, 1, 2), skipped, (), (name,)) for name in (0, 1, 3)] == [False, True, True]
-    assert succeeds(robot, (0, 1, 2), cleared, (), (0,))
+    possible = [succeeds(robot, (0, 1, 2), cleared, (), names) for names in ((0,), (0, 1), (0, 3), (3,), (0, 2))]
+    assert possible == [True, True, True, True, False]
+
+
+def test_whoever_clears_missions_clears_all_that_have_ended() -> None:
+    """Where one mission that has ended is cleared all others that have are, those too whose names nobody has seen."""
+    kind, robot = _queue()
+    (ended,) = robot.done
+    both = evolve(robot, done=(ended, ended), pending=(kind,))
+    cleared = MISSION.codec.read_request("ClearMissionStatus", {})
+    cases = {((0, 1, 2), (0,)): False, ((0, 1, 2), (1, 0)): True, ((0, -2, 2), (0,)): False, ((0, -2, 2), (0, 5)): True}
+    assert {case: succeeds(both, case[0], cleared, (), case[1]) for case in cases} == cases
 
 
 def goes_on(robot: Robot) -> list[Any]:
@@ -179,6 +190,24 @@ def test_missions_keep_their_order(case: str) -> None:
     )
     message = first if shown[:1] == ("A",) else message
     assert foresees(running, (0, 1, 2), message, tuple(numbers[name] for name in shown), CALLS) == possible
+
+
+@pytest.mark.parametrize(
+    ("shown", "possible"),
+    [((0, 1, 2), True), ((0, 2, 1), False), ((0, 1), False), ((1, 2), False), ((0, 2), True), ((5, 1, 2), False)],
+)
+def test_missions_out_of_their_turns_keep_their_places(shown: tuple[int, ...], *, possible: bool) -> None:
+    """Where a mission has overtaken one that waits, all that have started stay listed, in the order of their coming.
+
+    The second of three missions waits, and may vanish; the third has run before it and has ended as well.
+    """
+    kind, robot = _queue()
+    (ended,) = robot.done
+    overtaken = evolve(robot, done=(ended, ended), pending=(kind,), assigned=(0, 2, 1))
+    states = {0: ended, 1: kind, 2: ended, 5: ended}
+    view = Listing(tuple(states[name] for name in shown), None, robot.world.family)
+    message = content(view, choose(SPEC.ambiguities))
+    assert foresees(overtaken, (0, 2, 1), message, shown, CALLS - {"ClearMissionStatus"}) == possible
 
 
 def _queue() -> tuple[Any, Robot]:

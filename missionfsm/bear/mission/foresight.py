@@ -29,10 +29,13 @@ def foresees(
     robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: frozenset[str]
 ) -> bool:
     """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
-    if isinstance(content, Malformed) or not all(content.named) or robot.assigned:
+    if isinstance(content, Malformed) or not all(content.named):
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
-    return later.all_kept() or (not calls.isdisjoint(_FORGETS) and later.some_forgotten())
+    forgets = not calls.isdisjoint(_FORGETS)
+    if robot.assigned:
+        return later.started_are_kept() or (forgets and frozenset(shown).isdisjoint(names[: len(robot.done)]))
+    return later.all_kept() or (forgets and later.some_forgotten())
 
 
 def succeeds(
@@ -45,7 +48,23 @@ def succeeds(
     if operation in ("SkipGoal", "UpdateMission"):
         ended = names[: len(robot.done)]
         return not any(name in ended for name in (*args, *answered))
-    return True
+    return operation != "ClearMissionStatus" or _may_clear(robot, names, answered)
+
+
+def _may_clear(robot: Robot, names: tuple[int, ...], cleared: tuple[int, ...]) -> bool:
+    """Whether the robot may come to clear missions with these names: all that have ended by then, or all.
+
+    Where one of them has ended already, nothing is forgotten before. What is active has to end then, and whatever had
+    its turn before one of them has ended as well: those that wait vanish together.
+    """
+    ended = len(robot.done)
+    if not any(name in cleared for name in names[:ended]):
+        return True
+    last = max(at for at, name in enumerate(names) if name in cleared)
+    gone = names[: max(last + 1, ended + (robot.active is not None))]
+    unseen = sum(name < 0 for name in gone)
+    new = sum(name not in names for name in cleared)
+    return unseen <= new and all(name < 0 or name in cleared for name in gone)
 
 
 _MAKES = frozenset(
@@ -85,6 +104,23 @@ class _Later:
             and (robot.active is None or self._is(robot.active, ended, ended))
             and self._waiting(0, started, survived=started > 0)
         )
+
+    def started_are_kept(self) -> bool:
+        """Whether the message may list everything that has started, whatever the turns of the missions are."""
+        robot, names, shown = self.robot, self.names, self.shown
+        ended = len(robot.done)
+        started = ended + (robot.active is not None)
+        places = {name: place for place, name in enumerate(shown)}
+        known = [at for at, name in enumerate(names[:started]) if name in places]
+        unseen = sum(name < 0 for name in names[:started])
+        if len(known) + unseen < started or unseen > sum(map(self._is_new, range(len(shown)))):
+            return False
+        if not all(self._is(robot.turns[at], at, places[names[at]]) for at in known):
+            return False
+        if any(self.missions[places[names[at]]].state != robot.turns[at].state for at in known if at < ended):
+            return False
+        kept = [places[name] for name in robot.listed(names) if name in places]
+        return kept == sorted(kept)
 
     def some_forgotten(self) -> bool:
         """Whether the message may list what is left once those that have ended by then were forgotten."""

@@ -89,6 +89,7 @@ class _Subscription:
     events: int = 0
     problems: int = 0
     flagged: int = 0
+    odd: dict[str, Flagged] = field(factory=dict)
     first: tuple[int, Problem] | None = None
 
     def __attrs_post_init__(self) -> None:
@@ -104,6 +105,16 @@ class _Subscription:
         if monitor is None:
             monitor = self.missions[robot] = MissionMonitor(robot, strict=self.strict)
         return monitor.feed(message)
+
+    def note(self, number: int, problem: Problem) -> None:
+        """Remember a problem, of the message in a line."""
+        if problem.flagged:
+            self.flagged += 1
+            says = f"{problem.says} [{problem.rule}] (first in line {number})"
+            self.odd.setdefault(problem.rule, Flagged(says, about=problem.rule))
+        else:
+            self.problems += 1
+            self.first = self.first or (number, problem)
 
     def _robots(self) -> str:
         robots = self.status.robots if self.status else len(self.missions)
@@ -125,6 +136,7 @@ class _Subscription:
         ]
         if self.problems > 1:
             notes.append(f"{self.problems - 1} more problems in this stream")
+        twice = (Flagged(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}"),) if redelivered else ()
         violation = None
         if self.first is not None:
             number, problem = self.first
@@ -137,7 +149,7 @@ class _Subscription:
             events=self.events,
             violation=violation,
             readings={TR_02.id: ("b",)} if redelivered else {},
-            flagged=(Flagged(f"{TR_02.id}=b: {TR_02.question} {TR_02.readings['b']}"),) if redelivered else (),
+            flagged=(*twice, *self.odd.values()),
             unchecked=tuple(f"{rule.id}: no bare message can break it" for rule in unchecked),
             untested=Untested(drives=tuple(spec.drives), unseen=True, all_drives=len(spec.drives)),
             notes=tuple(notes),
@@ -183,10 +195,7 @@ def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *,
         named, message = _unwrapped({name: value for name, value in message.items() if name not in ("at", "robot")})
         for problem in one.feed(robot or named, message):
             tell(f"line {number}: {problem}" + (" (tolerated)" if problem.flagged else ""))
-            one.flagged += problem.flagged
-            if not problem.flagged:
-                one.problems += 1
-                one.first = one.first or (number, problem)
+            one.note(number, problem)
     return [one.verdict() for one in found.values()]
 
 

@@ -1,14 +1,15 @@
 """A monitor that stands alone: the messages of one live mission subscription in, what is wrong with each of them out.
 
 Nothing is known of the robot but what the messages say, nor of what anybody asked it: a message is held to what it
-shows by itself, and to the one before it. Rules and lifecycle are those of the specification. What only a call could
-tell, no bare message breaks.
+shows by itself, and to those before it. Rules and lifecycle are those of the specification. What only a call could
+tell, no bare message breaks; and as messages may be lost between two, only what no sequence of steps can do is wrong.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from operator import itemgetter
 
 from missionfsm.bear.mission.codec import read_content, split_message
 from missionfsm.bear.mission.state import ENDED, LIFECYCLE
@@ -35,6 +36,7 @@ CHECKED = (WELL_FORMED, SEQUENCE, ALL_LISTED, CURRENT, STATE, GOALS, GOAL_INDEX,
 
 Found = tuple[Rule, str]
 _WAITING = frozenset({State.STATE_DEFAULT, State.STATE_UNKNOWN})
+_MAY_WAIT = frozenset({State.STATE_DEFAULT, State.STATE_PAUSED})
 _AUTOMATIC = (
     MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE_AUTO),
     MissionType(servi_type=ServiType.SERVI_TYPE_NAVIGATE_AUTO),
@@ -50,6 +52,13 @@ _BY_THEMSELVES = (
     MissionType(carti_type=CartiType.CARTI_TYPE_NAVIGATE),
 )
 """The types of missions that are neither charges nor made by workflows."""
+
+_ONCE_ROUND = (
+    MissionType(servi_type=ServiType.SERVI_TYPE_SERVING),
+    MissionType(servi_type=ServiType.SERVI_TYPE_BUSSING),
+    MissionType(carti_type=CartiType.CARTI_TYPE_TRAVERSE),
+)
+"""The types of missions that go from goal to goal and are no patrols."""
 
 
 def _reached() -> dict[State, frozenset[State]]:
@@ -93,6 +102,8 @@ class MissionMonitor:
         self._number: int | None = None
         self._last: JSON = None
         self._missions: dict[object, MissionState] = {}
+        self._begun: frozenset[object] = frozenset()
+        self._odd: frozenset[Found] = frozenset()
 
     def feed(self, message: JSON) -> tuple[Problem, ...]:
         """What is wrong with the next message; nothing, usually."""
@@ -107,12 +118,74 @@ class MissionMonitor:
         if isinstance(seen, Malformed):
             found.append((WELL_FORMED, seen.says))
         elif isinstance(seen, Seen):
-            missions = dict(zip(names, seen.states.missions, strict=False))
-            self.repeats += missions == self._missions and self.messages > 1
-            found += _listed(seen, names)
-            found += self._goes_on(missions)
-            self._missions = missions
-        return tuple(Problem(self.messages, self.robot, rule.id, says) for rule, says in found)
+            found += self._shown(seen, names)
+        problems = [Problem(self.messages, self.robot, rule.id, says) for rule, says in found]
+        if isinstance(seen, Seen):
+            odd = frozenset(self._departing(seen, names))
+            broken = {rule for rule, _ in found}
+            new = sorted((one for one in odd - self._odd if one[0] not in broken), key=itemgetter(1))
+            problems += (Problem(self.messages, self.robot, rule.id, says, flagged=True) for rule, says in new)
+            self._odd = odd
+            self._missions = dict(zip(names, seen.states.missions, strict=False))
+            self._begun = self._have_begun(seen, names)
+        return tuple(problems)
+
+    def _shown(self, seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
+        """What is wrong with a list of missions by itself, and after those before it."""
+        missions = dict(zip(names, seen.states.missions, strict=False))
+        self.repeats += missions == self._missions and self.messages > 1
+        yield from _listed(seen, names, self._begun)
+        yield from self._goes_on(missions)
+        if all(seen.named):
+            yield from self._put_in_front(missions)
+
+    def _have_begun(self, seen: Seen, names: tuple[object, ...]) -> frozenset[object]:
+        """The missions that have had their turn and have not ended, as far as messages have shown it.
+
+        AM-08: one that waits may be shown as paused, unless the index points at it.
+        """
+        index = seen.states.current_mission_index
+        return frozenset(
+            name
+            for place, (name, one) in enumerate(zip(names, seen.states.missions, strict=False))
+            if one.state is State.STATE_RUNNING
+            or (one.state is State.STATE_PAUSED and (place == index or name in self._begun))
+        )
+
+    def _put_in_front(self, missions: dict[object, MissionState]) -> Iterator[Found]:
+        """New missions that are listed before one that was there.
+
+        Only a charge or a workflow's may be (AM-07, AM-37), and only before one that waited.
+        """
+        old = [name for name in missions if name in self._missions]
+        listed = list(missions)
+        for name, mission in missions.items():
+            if name in self._missions:
+                continue
+            behind = next((one for one in old if listed.index(one) > listed.index(name)), None)
+            if behind is None:
+                return
+            waited = _stage(self._missions[behind]) in _MAY_WAIT and behind not in self._begun
+            if mission.mission_type in _BY_THEMSELVES or not waited:
+                yield ALL_LISTED, f"mission {name} is new, and listed before {behind}"
+
+    def _departing(self, seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
+        """What departs from the text in a way that a reading, or a message that was lost, may explain."""
+        index, missions = seen.states.current_mission_index, seen.states.missions
+        active = any(one.state in (State.STATE_RUNNING, State.STATE_PAUSED) for one in missions)
+        if 0 <= index < len(missions) and not active and all(seen.named):
+            yield CURRENT, f"current_mission_index is {index}, and no mission is active"
+        for name, mission in zip(names, missions, strict=False):
+            before = self._missions.get(name)
+            if (
+                before is not None
+                and name in self._begun
+                and mission.state in (State.STATE_RUNNING, State.STATE_PAUSED)
+                and mission.mission_type in _ONCE_ROUND
+                and 0 <= mission.current_goal_index < before.current_goal_index
+            ):
+                goals = f"from goal {before.current_goal_index} to {mission.current_goal_index}"
+                yield GOAL_INDEX, f"mission {name} went back {goals}, and is no patrol"
 
     def _numbered(self, number: int) -> Iterator[Found]:
         compared = relation(self._number, number)
@@ -131,7 +204,9 @@ class MissionMonitor:
                 yield TYPE, f"mission {name} has another type than before"
             if before.goals != after.goals:
                 yield GOALS, f"mission {name} has other goals than before"
-            allowed = _REACHED.get(_stage(before))
+            allowed = _REACHED.get(_stage(before), frozenset())
+            if name in self._begun:
+                allowed -= {State.STATE_DEFAULT}
             if allowed and isinstance(after.state, State) and _stage(after) not in allowed:
                 yield STATE, f"mission {name} is {after.state.name}, and was {_name(before.state)} before"
 
@@ -146,8 +221,8 @@ def _name(state: int) -> str:
     return state.name if isinstance(state, State) else f"state {state}"
 
 
-def _listed(seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
-    """What is wrong with a list of missions by itself."""
+def _listed(seen: Seen, names: tuple[object, ...], begun: frozenset[object]) -> Iterator[Found]:
+    """What is wrong with a list of missions by itself, where some are known to have begun."""
     missions = seen.states.missions
     placeholder = len(missions) == 1 and not seen.named[0] and _stage(missions[0]) is State.STATE_DEFAULT
     if not placeholder:  # AM-35, AM-36: one without an id stands for an empty list
@@ -159,21 +234,23 @@ def _listed(seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
         if not isinstance(mission.state, State):
             yield STATE, f"mission {index} is {_name(mission.state)}"
         yield from _one(index, mission)
-    yield from _ordered(missions, seen.states.current_mission_index)
+    yield from _ordered(seen, {place for place, name in enumerate(names) if name in begun})
 
 
-def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
+def _ordered(seen: Seen, begun: set[int]) -> Iterator[Found]:
     """Whether the ended come first, then a running one, then the others, and whether the index says which is active.
 
     One that is shown as paused is the active one, or (AM-08) one that waits. A charge or the missions of a workflow may
     have had their turns before others that were assigned earlier (AM-07, AM-37).
     """
+    missions, index = seen.states.missions, seen.states.current_mission_index
     stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
     in_turn = [stage for stage, one in zip(stages, missions, strict=True) if not _may_overtake(one)]
     if any(before > after for before, after in pairwise(in_turn)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return
-    allowed = _active_places(missions, stages)
+    paused = {place for place in begun if missions[place].state is State.STATE_PAUSED}
+    allowed = paused if paused and 1 not in stages else _active_places(missions, stages)
     if index not in allowed:
         values = " or ".join(str(value) for value in sorted(allowed))
         yield CURRENT, f"current_mission_index is {index}, expected {values}"
@@ -181,6 +258,8 @@ def _ordered(missions: tuple[MissionState, ...], index: int) -> Iterator[Found]:
 
 def _active_places(missions: tuple[MissionState, ...], stages: list[int]) -> set[int]:
     """Where the active mission may be in a list with these stages; -1 where none need be active."""
+    if not missions:
+        return {-1}
     if 1 in stages:
         return {stages.index(1)}
     last = max((place for place, stage in enumerate(stages) if stage == 0), default=-1)

@@ -126,3 +126,35 @@ def test_a_message_that_came_twice_is_flagged(command_line: CommandLine, tmp_pat
     assert found["flagged"][0].startswith("TR-02=b: Did a message come twice?")
     assert "bear.status/messages/updates-follow-the-state: no bare message can break it" in found["unchecked"]
     assert not any("sequence-numbers-grow" in one for one in found["unchecked"])
+
+
+GOALS = [{"destination_id": "table-1", "pose": None}, {"destination_id": "table-2"}]
+RUNS = {"mission_id": "A", "state": "STATE_RUNNING", "goals": GOALS, "current_goal_index": 1, "owner": "api"}
+
+
+@pytest.mark.parametrize(
+    ("repeated", "rule"),
+    [
+        ({"current_mission": RUNS, "current_goal": GOALS[1]}, None),
+        ({"current_mission": {**RUNS, "mission_feedback": None}, "current_goal": {**GOALS[1], "pose": None}}, None),
+        ({"current_mission": None, "current_goal": None}, None),
+        ({"current_goal": GOALS[0]}, "the-current-goal-index-is-the-active-goal"),
+        (
+            {"current_mission": {**RUNS, "state": "STATE_PAUSED"}, "current_goal": GOALS[1]},
+            "the-current-mission-index-is-the-active-mission",
+        ),
+        ({"current_mission": 7, "current_goal": None}, "the-current-mission-index-is-the-active-mission"),
+    ],
+)
+def test_what_a_webhook_repeats_says_the_same(
+    command_line: CommandLine, tmp_path: Path, repeated: Any, rule: str | None
+) -> None:
+    """`current_mission` and `current_goal` are what the indexes say; anything else is flagged."""
+    metadata = {"timestamp": "2025-01-01T00:00:00Z", "sequence_number": 1}
+    state = {"metadata": metadata, "missions": [RUNS], "current_mission_index": 0, **repeated}
+    path = written(tmp_path / "s.jsonl", {"robot_id": "r1", "state": state})
+    ended = command_line("check", str(path), "--json", "-")
+    found = json.loads(ended.out)["flagged"]
+    assert (ended.status, len(found)) == (0, 0 if rule is None else 1)
+    assert rule is None or rule in found[0]
+    assert command_line("check", str(path), "--no-flagged").status == (1 if rule else 0)

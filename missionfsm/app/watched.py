@@ -6,7 +6,7 @@ comes on one is never compared with what comes on another.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from attrs import define, field
 
@@ -14,6 +14,7 @@ from missionfsm.adapters.addresses import Addresses
 from missionfsm.bear.mission import monitor as mission_monitor
 from missionfsm.bear.mission.monitor import MissionMonitor
 from missionfsm.bear.mission.spec import SPEC as MISSION
+from missionfsm.bear.mission.stream import CURRENT, GOAL_INDEX
 from missionfsm.bear.status.monitor import CHECKED, StreamMonitor
 from missionfsm.bear.status.spec import SPEC as STATUS
 from missionfsm.bear.status.state import MAPS, SINGLES, Endpoint
@@ -76,6 +77,35 @@ def _posted(robot: JSON, state: JSON) -> tuple[str, JSON]:
         entry = known[name] if isinstance(known[name], dict) else {name: known[name]}
         return "", {name: {robot: {**metadata, **entry}}}
     return "", {**metadata, "robotId": robot, **known}
+
+
+def _contradictions(message: JSON) -> Iterator[tuple[Rule, str]]:
+    """What the body of a webhook repeats of the current mission, and its list of missions says otherwise."""
+    state = _without_nulls(message.get("state"))
+    missions = state.get("missions", []) if isinstance(state, dict) else None
+    if not isinstance(missions, list):
+        return
+    mission = _at(missions, state.get("current_mission_index", state.get("currentMissionIndex", 0)))
+    shown = state.get("current_mission")
+    if shown is not None and shown != mission:
+        yield CURRENT, "current_mission is not the one in missions at current_mission_index"
+        mission = shown
+    of = mission if isinstance(mission, dict) else {}
+    index = of.get("current_goal_index", of.get("currentGoalIndex", 0))
+    goal = state.get("current_goal")
+    if goal is not None and goal != _at(of.get("goals"), index):
+        yield GOAL_INDEX, "current_goal is not the one in goals at current_goal_index"
+
+
+def _at(listed: JSON, index: JSON) -> JSON:
+    return listed[index] if isinstance(listed, list) and type(index) is int and 0 <= index < len(listed) else None
+
+
+def _without_nulls(value: JSON) -> JSON:
+    """A value without its members that are null: those are unset."""
+    if isinstance(value, dict):
+        return {name: _without_nulls(one) for name, one in value.items() if one is not None}
+    return [_without_nulls(one) for one in value] if isinstance(value, list) else value
 
 
 @define
@@ -192,8 +222,11 @@ def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *,
         one = found.get(topic)
         if one is None:
             one = found[topic] = _Subscription(topic, strict)
+        repeated = tuple(_contradictions(message)) if topic == MISSIONS and "state" in message else ()
         named, message = _unwrapped({name: value for name, value in message.items() if name not in ("at", "robot")})
-        for problem in one.feed(robot or named, message):
+        problems = list(one.feed(robot or named, message))
+        problems += (Problem(one.events, robot or named, rule.id, says, flagged=True) for rule, says in repeated)
+        for problem in problems:
             tell(f"line {number}: {problem}" + (" (tolerated)" if problem.flagged else ""))
             one.note(number, problem)
     return [one.verdict() for one in found.values()]

@@ -20,6 +20,7 @@ from missionfsm.kernel import history
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.search import Search
+from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.window import Window
 
 
@@ -74,7 +75,11 @@ def compare(alphabet: Alphabet, automaton: Automaton, data: st.DataObject) -> No
     if not all(before.observe(event) for event in events[:cut]):
         return
     window, search = searched(before, events[cut:], width, whole=whole, before=earlier)
-    found = search.first_unexplained()
+    try:
+        found = search.first_unexplained()
+    except ExhaustedError:
+        assert not whole, "only where more may come, that may be needed to decide"
+        return
     assert (events, None if found is None else cut + window.positions[found]) == (events, right)
     if right is None:
         window.close(search)

@@ -109,6 +109,10 @@ class Drive:
         later: for a drive that only lets time pass: its words before what comes next ("2 s later"); None for others.
         unwatched: what of it may happen unseen in recorded logs of those who do not command it; None for nothing but
             what is `by_itself`.
+        undriven: a world to the one in which what it does may happen unseen at any time; for a drive that nobody
+            commands.
+        elapses: for a drive that lets time pass: how many seconds have passed between two lines of a log, None where
+            the log does not say, to the event of that much time that nobody let pass; None for other drives.
     """
 
     name: str
@@ -122,6 +126,8 @@ class Drive:
     waits: Callable[[State], bool] = lambda _: False
     later: Callable[[Incident], str] | None = None
     unwatched: Unwatched | None = None
+    undriven: Callable[[World], World] | None = None
+    elapses: Callable[[float | None], Incident] | None = None
 
 
 @frozen

@@ -110,6 +110,11 @@ class Automaton:
             for drive in spec.drives.values()
             if spec.transport and drive.unwatched and drive.name not in self.successors.driven
         )
+        self._undriven = tuple(
+            drive.undriven
+            for drive in spec.drives.values()
+            if drive.undriven and drive.name not in self.successors.driven
+        )
         self._watched: TransitionFunction | None = None
         watched = meet(assumed, (one.reading["a"] for one in self._unwatched))
         if self._unwatched and watched and not eager:
@@ -126,6 +131,8 @@ class Automaton:
         spec = self.successors.spec
         for unwatched in self._unwatched:
             world = unwatched.world(world)
+        for undriven in self._undriven:
+            world = undriven(world)
         state = (spec.used if used and spec.used else spec.initial)(world)
         unseen = tuple(GONE - 1 - number for number in range(self.spec.names(state)))
         return self._intern((Explanation(state, unseen, self.assumed),), 0)

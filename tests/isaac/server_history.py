@@ -26,7 +26,8 @@ SETTLED = {"settled": True}
 class History:
     """Writes a history down: what is done, and what the server is seen to do."""
 
-    def __init__(self) -> None:
+    def __init__(self, *drives: str) -> None:
+        self.drives = drives or ("connect", "line", "disconnect", "advance")
         self.lines: list[Any] = []
         self.calls = 0
 
@@ -72,14 +73,19 @@ class History:
     def waits(self, seconds: float) -> History:
         return self.drive("advance", seconds=seconds)
 
+    def at(self, seconds: float) -> History:
+        """What was written down last was seen then, with all that has no time before it."""
+        for line in self.lines:
+            line.setdefault("at", seconds)
+        return self
+
     @property
     def settles(self) -> History:
-        self.lines.append(SETTLED)
+        self.lines.append(dict(SETTLED))
         return self
 
     def judged(self, **options: Any) -> Verdict:
-        head = Head("isaac.server", {}, ("connect", "line", "disconnect", "advance"))
-        return check(SERVER, head, self.lines, **options)
+        return check(SERVER, Head("isaac.server", {}, self.drives), self.lines, **options)
 
 
 def _uuid(mission: int) -> Uuid:

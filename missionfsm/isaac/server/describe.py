@@ -17,7 +17,7 @@ from missionfsm.isaac.server.inputs import (
     Submission,
 )
 from missionfsm.isaac.server.state import Link, Mission, Sends, Server
-from missionfsm.isaac.shared.drives import Passes
+from missionfsm.isaac.shared.drives import Elapsed, Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.codec import Malformed
 
@@ -37,8 +37,8 @@ def describe(value: object) -> str:
         return f"a {value.kind} on {value.channel}" + (f" with {value.what}" if value.what else "")
     if isinstance(value, Malformed):
         return f"a malformed line: {value.says}"
-    if isinstance(value, Passes):
-        return f"{value.time / MICROSECONDS:g} s pass"
+    if isinstance(value, Passes | Elapsed):
+        return "time passes" if value.time is None else f"{value.time / MICROSECONDS:g} s pass"
     if isinstance(value, tuple):
         return ", ".join(map(str, value)) or "no mission"
     return {Connects: "a robot connects", Drops: "a connection drops", Statuses: "statuses()"}.get(

@@ -51,8 +51,8 @@ from missionfsm.isaac.server.state import (
     topic,
 )
 from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
-from missionfsm.isaac.server.time import calmed, nothing_open_happened, passes, unseen
-from missionfsm.isaac.shared.drives import Passes, later
+from missionfsm.isaac.server.time import calmed, elapsed, nothing_open_happened, passes, unseen
+from missionfsm.isaac.shared.drives import Elapsed, Passes, elapses, later
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
@@ -209,7 +209,9 @@ def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _advance(server: Server, event: Passes, _: Refs) -> tuple[Step, ...]:
+def _advance(server: Server, event: Passes | Elapsed, _: Refs) -> tuple[Step, ...]:
+    if isinstance(event, Elapsed):
+        return (_step(server, Move(elapsed(server, event.time))),)
     return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
 
 
@@ -332,14 +334,22 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
     return Spec(
         system=SYSTEM_NAME,
         title="a mission server",
-        initial=lambda world: _begins(Server(world.name_channel, left=left, tolerance=world.tolerance)),
+        initial=lambda world: _begins(
+            Server(world.name_channel, left=left, tolerance=world.tolerance, unsteady=world.unsteady)
+        ),
         operations=operations,
         outcomes=functools.partial(_outcomes, operations),
         drives=(
             Drive("connect", _connect),
             Drive("line", _line, impossible=(rules.NAMED.id,)),
-            Drive("disconnect", _disconnect, ends=True, impossible=(rules.DROPPED.id,)),
-            Drive("advance", _advance, later=later),
+            Drive(
+                "disconnect",
+                _disconnect,
+                ends=True,
+                impossible=(rules.DROPPED.id,),
+                undriven=lambda world: evolve(world, unsteady=True),
+            ),
+            Drive("advance", _advance, later=later, elapses=elapses),
         ),
         urgent=_urgent,
         spontaneous=_spontaneous,

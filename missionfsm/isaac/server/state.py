@@ -204,10 +204,15 @@ Left = tuple[tuple[str, str], ...]
 
 @value(cache_hash=True)
 class World:
-    """What a server is given: the channel for names, and by how much times may be off, in microseconds."""
+    """What a server is given: the channel for names, and by how much times may be off, in microseconds.
+
+    Attributes:
+        unsteady: whether connections may drop with nobody saying so; no adapter says that.
+    """
 
     name_channel: str = "name"
     tolerance: int = 0
+    unsteady: bool = False
 
 
 @value(cache_hash=True)
@@ -220,6 +225,7 @@ class Server:
         slow: microseconds until the first scheduling pass is no more than one period away (AI-39 b).
         gone: connections that dropped, of which no pass need have noticed it (AI-39.order s): what a pass sends on one
             may be seen. Slots below 0 are of those that the server ended itself.
+        unsteady: whether connections may drop with nobody saying so.
     """
 
     name_channel: str = "name"
@@ -229,6 +235,7 @@ class Server:
     tolerance: int = 0
     slow: int = 0
     gone: tuple[Link, ...] = ()
+    unsteady: bool = False
 
     def letters(self, question: Ambiguity) -> str:
         """The readings of a question that are left."""
@@ -300,6 +307,7 @@ class Move:
             server.tolerance,
             server.slow,
             server.gone,
+            server.unsteady,
         )
         return Move(after, self.sent, self.rules, self.at)
 

@@ -17,17 +17,21 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
-from missionfsm.isaac.server.connections import inherited
+from missionfsm.isaac.server.connections import drops, inherited
 from missionfsm.isaac.server.deciding import merged, split, ways
 from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, urgent
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
 from missionfsm.isaac.server.state import DROP, ENDED, PASS_PERIOD, Clock, Link, Mission, Move, Server
+from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.values import value
 
 EVER = 10**15
 """Longer ago than anything happened, in microseconds."""
+
+ABOUT = MICROSECONDS
+"""By how much the times that a log tells of its lines may be off, in microseconds. The tester's choice."""
 
 
 @value(cache_hash=True)
@@ -331,8 +335,42 @@ def _takeover_noticed(move: Move, link: Link, time: int) -> Move:
     return move.with_link(link.slot, fresh=link.fresh - time)
 
 
+def elapsed(state: Server, time: int | None) -> Server:
+    """The server so much later as its log tells, or any time later: what is due may have happened, and need not."""
+    long = EVER if time is None else time
+    missions = tuple(_with_clocks_loosened(one, long) if one.clocks else one for one in state.missions)
+    links = tuple(_looked_after(state, link, long) for link in state.links)
+    return evolve(state, missions=missions, links=links)
+
+
+def _with_clocks_loosened(mission: Mission, time: int) -> Mission:
+    clocks = (
+        evolve(clock, lo=clock.lo - time if clock.lo - time > ABOUT else min(clock.lo, 0), hi=None)
+        for clock in mission.clocks
+    )
+    return evolve(mission, clocks=tuple(clocks))
+
+
+def _looked_after(state: Server, link: Link, time: int) -> Link:
+    """A connection for which a pass may have come within a time."""
+    if not _waits_for_pass(state, link):
+        return link
+    return evolve(link, pass_since=min(EVER, time + (link.pass_since or 0)))
+
+
 def unseen(state: Server, part: Part) -> Iterator[Move]:
-    """What may have happened in a part by now though it need not: clocks that have struck, passes that have come."""
+    """What may have happened in a part by now though it need not.
+
+    Clocks that have struck, passes that have come, and where nobody says when they do, connections that have dropped.
+    """
+    yield from _unsaid(state, part)
+    if state.unsteady:
+        for link in state.links:
+            if link.slot in part.slots:
+                yield from drops(Move(state), link, seen=True)
+
+
+def _unsaid(state: Server, part: Part) -> Iterator[Move]:
     for struck in _struck(state, part):
         yield from (_pass_possible_since(after, part) for after in _followed(struck, part))
     for slot in part.slots:

@@ -21,8 +21,23 @@ class Passes:
     name: str = "advance"
 
 
-def later(event: Passes) -> str:
+@value(cache_hash=True)
+class Elapsed:
+    """Time has passed that nobody let pass: at most so many microseconds, or any number where it is None."""
+
+    time: int | None
+    name: str = "advance"
+
+
+def elapses(given: float | None) -> Elapsed:
+    """The event of so many seconds between two lines of a log, or of any number."""
+    return Elapsed(None if given is None else in_microseconds(given, "at"))
+
+
+def later(event: Passes | Elapsed) -> str:
     """Time that passes, in words that stand before what comes next."""
+    if event.time is None:
+        return "some time later"
     return f"{event.time / MICROSECONDS:g} s later"
 
 

@@ -20,6 +20,7 @@ from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.basis import Flagged
 from missionfsm.tools.check.candidates import AnsweredCall, Circumstances
+from missionfsm.tools.check.elapsing import elapsing
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
 from missionfsm.tools.check.explain import violation
 from missionfsm.tools.check.held import Held, HeldEvent, Presumed
@@ -102,6 +103,8 @@ class Judge:
         self._seen = self.rulings.seen
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
         self.quiet = None if settled_after is None else Quiet(settled_after)
+        undriven = (one for name, one in system.spec.drives.items() if name not in self.automaton.successors.driven)
+        self._elapsing = elapsing(tuple(undriven))
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0
@@ -133,6 +136,8 @@ class Judge:
         events = self.transcript.read(line)
         if self.quiet is not None:
             events = self.quiet.settling(line.get("at"), events)
+        if self._elapsing is not None:
+            self._elapsing.at = line.get("at")
         if self.right:
             self.lines.append(line)
         return self.take(events, place)
@@ -156,6 +161,10 @@ class Judge:
         self.read += 1
         if self.transcript.silenced and not self._speaks_on:
             self._speaks_on = any(type(one) is Received and one.channel in self.transcript.silenced for one in events)
+        if self._elapsing is not None:
+            passed = self._elapsing.before(events)
+            self.events -= len(passed)
+            events = (*passed, *events)
         if self._held is not None:
             return self._hold(events, place)
         belief = self.belief

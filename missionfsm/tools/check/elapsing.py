@@ -1,0 +1,57 @@
+"""Time that passes in a log though nobody lets it pass: as much as its lines tell, or any where they tell none."""
+
+from __future__ import annotations
+
+from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned
+from missionfsm.kernel.spec import Drive
+
+_SEEN = (Received, Returned, Ended)
+"""What shows something that time may have brought about."""
+
+
+class Elapsing:
+    """Puts the time that has passed before what the lines of one conversation tell.
+
+    Once a line says itself that time passes, the log is taken to tell of all that does.
+
+    Args:
+        drive: what lets time pass.
+
+    Attributes:
+        at: when the line was that comes next, in seconds; None if it does not say.
+    """
+
+    def __init__(self, drive: Drive) -> None:
+        self._drive = drive
+        self._last: float | None = None
+        self._told = False
+        self.at: float | None = None
+
+    def before(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """The time that has passed before the events of a line, as an event; nothing where it makes no difference."""
+        at, self.at = self.at, None
+        self._told = self._told or any(type(one) is Driven and self._lets_pass(one) for one in events)
+        if self._told:
+            return ()
+        passed = None
+        if at is not None:
+            passed = 0 if self._last is None else at - self._last
+            self._last = at
+        elif self._last is not None:
+            passed = 0
+        if passed == 0 or (passed is None and not any(type(one) in _SEEN for one in events)):
+            return ()
+        assert self._drive.elapses is not None, "such a drive lets time pass"  # noqa: S101
+        return (Driven(self._drive.elapses(passed)),)
+
+    def _lets_pass(self, event: Driven) -> bool:
+        return bool(event.event.name == self._drive.name)  # type: ignore[attr-defined]
+
+
+def elapsing(drives: tuple[Drive, ...]) -> Elapsing | None:
+    """What puts in the time that passes by itself, where one of the drives that nobody commands lets time pass."""
+    found = [one for one in drives if one.elapses is not None]
+    return Elapsing(found[0]) if found else None
+
+
+__all__ = ["Elapsing", "elapsing"]

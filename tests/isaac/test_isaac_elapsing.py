@@ -1,0 +1,71 @@
+"""Logs in which nobody commands time or connections: what those do by themselves is no violation."""
+
+import pytest
+from server_history import History
+
+from missionfsm.tools.check.verdict import Outcome
+
+SEEN = ("connect", "line", "disconnect")
+"""The drives of a log that only tells when its lines were."""
+
+
+def _sent(*drives: str, **limits: float) -> History:
+    return History(*drives).submit(1, **limits).robot(1).sends(1, 1)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "outcome"), [(8, Outcome.CONFORMS), (4.5, Outcome.CONFORMS), (2, Outcome.VIOLATES)]
+)
+def test_a_limit_may_have_run_out_by_the_times_of_the_lines(seconds: float, outcome: Outcome) -> None:
+    history = _sent(*SEEN).at(0).shows("FAILED_TIMEDOUT").at(seconds)
+    assert history.judged().outcome is outcome
+
+
+def test_a_limit_that_has_run_out_by_the_times_of_the_lines_need_not_have_been_noticed() -> None:
+    assert _sent(*SEEN).at(0).shows("STARTED").at(8).judged().outcome is Outcome.CONFORMS
+
+
+def test_a_run_limit_counts_from_the_line_that_began_it() -> None:
+    begun = _sent(*SEEN, timeout=60).at(0).reports(1, 1, "running").at(1)
+    for second in range(2, 30):
+        begun.reports(1, 1, "running").at(second)
+    late = History(*SEEN)
+    late.lines, late.calls = list(begun.lines), begun.calls
+    assert begun.shows("FAILED_TIMEDOUT").at(31).judged(readings={"AI-10": "b"}).outcome is Outcome.VIOLATES
+    assert late.shows("FAILED_TIMEDOUT").at(62).judged().outcome is Outcome.CONFORMS
+
+
+def test_without_times_any_limit_may_have_run_out() -> None:
+    assert _sent(*SEEN).settles.shows("STARTED").settles.shows("FAILED_TIMEDOUT").judged().outcome is Outcome.CONFORMS
+
+
+def test_a_log_that_says_when_time_passes_says_all_of_it() -> None:
+    history = _sent(*SEEN).waits(1).shows("FAILED_TIMEDOUT")
+    told = History().submit(1).robot(1).sends(1, 1).waits(1).shows("FAILED_TIMEDOUT")
+    assert told.judged().outcome is Outcome.VIOLATES
+    history.lines.insert(0, {"drive": {"event": "advance", "seconds": 0}})
+    assert history.judged().outcome is Outcome.VIOLATES
+
+
+def test_time_that_passes_by_itself_is_no_event_of_the_log() -> None:
+    verdict = _sent(*SEEN).at(0).shows("STARTED").at(8).judged()
+    assert verdict.events == 7
+
+
+def test_a_server_that_looks_once_a_second_sends_later_by_the_times_of_the_lines() -> None:
+    history = History(*SEEN).submit(1).robot(1).settles.at(0).sends(1, 1).at(1).shows("STARTED").at(1)
+    assert history.judged().outcome is Outcome.CONFORMS
+
+
+@pytest.mark.parametrize(
+    ("drives", "outcome"),
+    [(("connect", "line", "advance"), Outcome.CONFORMS), ((*SEEN, "advance"), Outcome.VIOLATES)],
+)
+def test_a_connection_drops_by_itself_only_where_nobody_commands_it(drives: tuple[str, ...], outcome: Outcome) -> None:
+    history = _sent(*drives).settles.reports(1, 1, "running").settles.waits(3).settles.shows("FAILED_DISCONNECTED")
+    assert history.judged().outcome is outcome
+
+
+def test_what_comes_on_a_connection_shows_that_it_has_not_dropped() -> None:
+    history = _sent("connect", "line", "advance").settles.shows("FAILED_DISCONNECTED").reports(1, 1, "running")
+    assert history.judged().outcome is Outcome.VIOLATES

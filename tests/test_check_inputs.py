@@ -153,3 +153,23 @@ def test_calls_that_name_a_robot_are_followed_to_their_end(command_line: Command
         lines.append({"call": call + 1, "method": "SkipGoal", "params": {"robotId": f"r{call}"}})
     found = judged(command_line, tmp_path / "log", *lines)
     assert found == {f"r{call}": ("conforms", 3) for call in range(1, 60, 2)}
+
+
+LATE = "a call was not answered, or only after everything had settled"
+
+
+@pytest.mark.parametrize(
+    ("answered", "flagged"), [((500.0, 503.0), []), ((2.0, 3.0), []), ((2.0, 90.0), [LATE])], ids=str
+)
+def test_a_silence_before_a_call_says_nothing_of_it(
+    command_line: CommandLine, tmp_path: Path, answered: tuple[float, float], flagged: list[str]
+) -> None:
+    """`--settled-after`: what settles while nothing happens has settled before the line that ends the silence."""
+    sent, returned = answered
+    calls = [*created(1, "A", at=1.0), {"call": 2, "method": "ClearMissionStatus", "params": {}, "at": sent}]
+    refused = {"return": 2, "error": {"status": "FAILED_PRECONDITION"}, "at": returned}
+    path = tmp_path / "log"
+    path.write_bytes(text({**FIRST, "drives": ["goalReached", "missionSucceeded", "missionFailed"]}, *calls, refused))
+    ended = command_line("check", path, "--settled-after", "60", "--json", "-")
+    found = orjson.loads(ended.out)
+    assert (ended.status, found["verdict"], found["flagged"]) == (0, "conforms", flagged)

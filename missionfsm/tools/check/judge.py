@@ -133,6 +133,7 @@ class Judge:
         Raises:
             UnreadableError: the line is not of the format.
         """
+        open_calls = len(self.transcript.pending) > 0  # what settles before a line knows nothing of the line
         events = self.transcript.read(line)
         if self.quiet is not None:
             events = self.quiet.settling(line.get("at"), events)
@@ -140,7 +141,7 @@ class Judge:
             self._elapsing.at = line.get("at")
         if self.right:
             self.lines.append(line)
-        return self.take(events, place)
+        return self.take(events, place, open_calls=open_calls)
 
     @property
     def awaits(self) -> bool:
@@ -150,12 +151,15 @@ class Judge:
         except ExhaustedError:
             return False
 
-    def take(self, events: tuple[Event, ...], place: int = 0) -> bool:
+    def take(self, events: tuple[Event, ...], place: int = 0, *, open_calls: bool | None = None) -> bool:
         """Take the events of a line into account that was read already and need not be shown; see `feed`.
 
         Args:
             place: where the line stands, kept in `place` if nothing explains it.
+            open_calls: whether calls had no answer before the line; None: as after it.
         """
+        if open_calls is None:
+            open_calls = len(self.transcript.pending) > 0
         if not self.right:
             return False
         self.read += 1
@@ -166,7 +170,7 @@ class Judge:
             self.events -= len(passed)
             events = (*passed, *events)
         if self._held is not None:
-            return self._hold(events, place)
+            return self._hold(events, place, open_calls=open_calls)
         belief = self.belief
         for position, event in enumerate(events):
             self.events += 1
@@ -177,7 +181,7 @@ class Judge:
                 if self._patient and isinstance(belief, Belief):
                     self.events -= 1
                     self._held = Held(belief)
-                    return self._hold(events[position:], place)
+                    return self._hold(events[position:], place, open_calls=open_calls)
                 self._undecided = event
                 self.exhausted, self.right = True, False
                 return False
@@ -192,7 +196,7 @@ class Judge:
                 self.rulings.notice(event, self.transcript.answered, before)
             kind = type(event)
             if kind is Returned or kind is Settled or kind is Called:
-                self._count(event, self.transcript.answered, open_calls=len(self.transcript.pending) > 0)
+                self._count(event, self.transcript.answered, open_calls=open_calls)
         return True
 
     def _presume(self, event: Event, before: Belief, place: int, *, seen: bool) -> None:
@@ -237,12 +241,11 @@ class Judge:
                 self._about[event.call] = event.names
             self._lost_a_call = self._lost_a_call or event.lost
 
-    def _hold(self, events: tuple[Event, ...], place: int) -> bool:
+    def _hold(self, events: tuple[Event, ...], place: int, *, open_calls: bool) -> bool:
         """Events wait for those that follow."""
         held = self._held
         assert held is not None, "somebody has begun to hold events back"  # noqa: S101
         for event in events:
-            open_calls = len(self.transcript.pending) > 0
             held.add(HeldEvent(event, self.transcript.answered, self.read, place, open_calls))
         return self._decide(held, whole=False) if held.due else True
 

@@ -121,8 +121,9 @@ class Eliminations:
         request = asked if isinstance(event, Returned) else None
         ruling = Elimination(spec, event, request, len(self.found), before)
         for ambiguity in spec.ambiguities:
-            for letter in ambiguity.possible(gone & ambiguity.group):
-                self.found[ambiguity.id, letter] = ruling
+            if gone & ambiguity.group:  # of hundreds, few
+                for letter in ambiguity.possible(gone):
+                    self.found[ambiguity.id, letter] = ruling
 
     def skip(self) -> None:
         """Many events together have ruled out what is gone since: none of them is held to have done it."""

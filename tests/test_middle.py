@@ -168,6 +168,59 @@ def test_what_is_not_in_the_log_is_explained(case: str) -> None:
     assert flagged & {"LOG-01", "LOG-02"} == ({flag} if flag else set())
 
 
+GONE = {"error": {"status": "NOT_FOUND", "message": ""}}
+OURS = [*FIRST, *MINE]
+
+
+def told(number: int, command: str, answer: Any = REFUSED) -> list[Any]:
+    asked = {"missionCommand": {"missionId": "A", "command": f"COMMAND_{command}"}}
+    return call(number, "UpdateMission", asked, answer)
+
+
+BEFORE_THE_ANSWER = {
+    "others paused": [*OURS, *told(3, "PAUSE"), shown(3, ("A", "PAUSED"))],
+    "others resumed": [
+        *OURS,
+        *told(3, "PAUSE", {"result": {}}),
+        shown(3, ("A", "PAUSED")),
+        *told(4, "RESUME"),
+        shown(4, ("A", "RUNNING")),
+    ],
+    "others cancelled": [*OURS, *told(3, "PAUSE"), shown(3, ("A", "CANCELED"))],
+    "others cancelled and created": [
+        *OURS,
+        *told(3, "CANCEL", GONE),
+        shown(3, ("A", "CANCELED")),
+        shown(4, ("A", "CANCELED"), ("T", "RUNNING")),
+    ],
+    "others created": [*FIRST, *call(2, "ClearMissionStatus", {}, REFUSED), shown(2, ("T", "RUNNING"))],
+    "others cancelled, so that we could create": [
+        *OURS,
+        *call(3, "CreateMission", navigate("table-1"), {"result": {"missionId": "B"}}),
+        shown(3, ("A", "CANCELED")),
+        shown(4, ("A", "CANCELED"), ("B", "RUNNING")),
+    ],
+}
+
+
+def written(path: Path, lines: list[Any]) -> Path:
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    return path
+
+
+@pytest.mark.parametrize("drives", [{}, {"drives": ["goalReached", "missionSucceeded", "missionFailed"]}])
+@pytest.mark.parametrize("case", BEFORE_THE_ANSWER)
+def test_what_others_did_may_be_shown_only_after_our_answer(
+    command_line: CommandLine, tmp_path: Path, case: str, drives: Any
+) -> None:
+    """What somebody else did takes effect before our call and is seen later, whatever else explains the answer."""
+    first = {key: value for key, value in HEAD.items() if key != "transport"} | drives
+    for transport in ({}, {"transport": "strict"}):
+        log = written(tmp_path / "log", [first | transport, *BEFORE_THE_ANSWER[case]])
+        assert command_line("check", log, "--others").status == 0
+        assert command_line("check", log).status == 1
+
+
 @pytest.mark.parametrize("case", WRONG)
 def test_what_no_caller_can_do_is_wrong(case: str) -> None:
     """What nobody can bring about, whoever called before or besides, is a violation."""

@@ -67,7 +67,7 @@ def check_file(
     # What nothing explains may have its cause long before, in a message that was lost unnoticed: it is judged once
     # more with all that a transport does in mind at every event.
     doubtful = {robot for robot, verdict in found if verdict.violation and verdict.violation.at <= LONGEST_SECOND_LOOK}
-    if not doubtful or asked.strict:
+    if not doubtful:
         return found
     again = dict(_read_twice(path, evolve(asked, eager=True, only=frozenset(doubtful)), lambda _: None))
     return [(robot, _better(verdict, again.get(robot))) for robot, verdict in found]

@@ -28,7 +28,8 @@ class TransitionFunction:
 
     Args:
         successors: what one explanation can become.
-        eager: whether what only a transport does is thought of at every event, not only where nothing else is left.
+        eager: whether what only a transport does, and what others do before an answer, is thought of at every event,
+            not only where nothing else is left.
 
     Attributes:
         presumes: whether nothing but a restart that nobody has seen yet explains the event of the last step.
@@ -37,7 +38,7 @@ class TransitionFunction:
     def __init__(self, successors: Successors, *, eager: bool = False) -> None:
         self.successors = successors
         self.spec = successors.spec
-        self.eager = eager and successors.spec.transport
+        self.eager = eager and self.reckons
         self.presumes = False
         self._observing, *self._lenient = (Observing(successors, level) for level in range(3))
 
@@ -56,7 +57,7 @@ class TransitionFunction:
         explanations = tuple(explanations)
         found: Iterable[Successor] = self._observing.explained(explanations, kind, *what)
         if self.eager:
-            found = (*found, *self._lenient[0].explained(explanations, kind, *what))
+            found = (*found, *self._eagerly(explanations, kind, *what))
         about = after_event(self.successors, kind, *what)
         kept = prune(self.successors, found, about)
         self.presumes = False
@@ -88,16 +89,29 @@ class TransitionFunction:
     ) -> Iterator[tuple[bool, Iterable[Successor]]]:
         """What may have become of things on their way, or a robot that has restarted, or somebody not in the log.
 
-        The second is said with it.
+        The second is said with it. Whether a robot restarted before an answer, or somebody did something, only what is
+        shown later can tell.
         """
+        unforeseen = tuple(self._unforeseen(explanations, kind, *what)) if kind is Returned else ()
+        for restarts, leniently in enumerate(self._lenient) if self.spec.transport else ():
+            also = unforeseen if restarts else ()
+            yield bool(restarts and not also), itertools.chain(leniently.explained(explanations, kind, *what), also)
+        yield False, unforeseen or self._unforeseen(explanations, kind, *what)
+
+    def _eagerly(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> Iterator[Successor]:
+        """What may have become of messages, or what somebody not in the log did that only later messages show."""
         if self.spec.transport:
-            for restarts, leniently in enumerate(self._lenient):
-                yield bool(restarts), leniently.explained(explanations, kind, *what)
+            yield from self._lenient[0].explained(explanations, kind, *what)
+        if kind is Returned:
+            yield from self._unforeseen(explanations, kind, *what)
+
+    def _unforeseen(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> Iterator[Successor]:
+        """What somebody who is not in the log may have brought about, if there can be anybody."""
         if self.spec.anywhere or self.spec.others:
             relations = (one for one in what[2] if one != REDELIVERED) if kind is Received else ()
             assumed = numbered_so(self.spec, relations)
             if assumed is not None:
-                yield False, middle.unforeseen(self.successors, explanations, assumed, kind, *what)
+                yield from middle.unforeseen(self.successors, explanations, assumed, kind, *what)
 
     def is_hopeless(self, kind: type, *what: Part, leniently: bool = False) -> bool:
         """Whether an event is wrong whatever came before it: then nobody has to look at all of that.

@@ -259,7 +259,8 @@ class Conversation:
         self.heard.append(line)
         if self.right:
             self.judge.feed(line)
-            if not self.right and self.system.spec.transport and not self.judge.automaton.transitions.eager:
+            transitions = self.judge.automaton.transitions
+            if not self.right and transitions.reckons and not transitions.eager:
                 self._look_again()
 
     def _look_again(self) -> None:

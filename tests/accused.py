@@ -9,8 +9,10 @@ from attrs import evolve, frozen
 from combinations import Bench
 
 from missionfsm.kernel.rules import Condition, Rule
+from missionfsm.kernel.step import Step
 from missionfsm.kernel.subject import GibberishError
 from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import State
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.suspects import with_suspects
@@ -20,6 +22,7 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.tour import tour
 from missionfsm.tools.mutate.teeth import Mutant, mutants
+from missionfsm.tools.reference.model import unchanged_step
 
 EXCUSED = {
     "bear.status/SubscribeRobotStatus/INVALID_ARGUMENT/the-location-id-is-empty is dropped": "some reading serves "
@@ -74,15 +77,53 @@ class Accusation:
 
 
 def unneeded(system: System, violation: Violation) -> list[str]:
-    """The accused rows of Errors tables that have no part in it.
+    """The accused rules that have no part in it, of those that can be told.
 
-    One that has is missed where the page does not say it: something else could have come. Or it is what would explain
-    what came, if only it held. What else is accused than rows is of what came, or of what made it due.
+    A row of an Errors table has one if it is missed where the page does not say it: something else could have come. Or
+    it is what would explain what came, if only it held. A rule about what is done that is named second or third has one
+    if what came is explained where the rule may be broken, in one of the ways in which mutants break it.
     """
-    if not violation.history or "return" not in violation.history[-1] or not system.spec.follows_operations:
+    if not violation.history:
         return []
     rules = [system.spec.rules_by_id[one.id] for one in violation.rules if one.id in system.spec.rules_by_id]
-    return [one.id for one in rules if one.holds is not None and not _has_a_part(system, violation, one)]
+    rows = [one for one in rules if one.holds is not None]
+    found = []
+    if "return" in violation.history[-1] and system.spec.follows_operations:
+        found = [one.id for one in rows if not _has_a_part(system, violation, one)]
+    others = [one for one in rules if one.code is None and one.id in [named.id for named in violation.rules[1:]]]
+    return [*found, *(one.id for one in others if not _explains(system, violation, one))]
+
+
+def _explains(system: System, violation: Violation, rule: Rule) -> bool:
+    """Whether all lines are explained where each step that a rule justifies may be one that breaks it."""
+    breaks = [one.mutate_step for one in mutants(system) if one.rule == rule.id]
+    breaks = [one for one in breaks if one is not unchanged_step]
+    if not breaks or rule.id in [one.rule for one in system.message_mutations]:
+        return True  # it is about messages
+    spec = system.spec
+
+    def either(state: State, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        wrong = [broken for one in steps for mutate in breaks if (broken := mutate(state, one)) is not None]
+        return (*steps, *(one for one in wrong if one.names is None or len(one.names) == spec.names(one.after)))
+
+    drives = {
+        name: evolve(one, steps=lambda state, event, refs, one=one: either(state, one.steps(state, event, refs)))
+        for name, one in spec.drives.items()
+    }
+    lenient = evolve(
+        spec,
+        outcomes=lambda state, request, refs: either(state, spec.outcomes(state, request, refs)),
+        drives=drives,
+        urgent=lambda state: either(state, spec.urgent(state)),
+        spontaneous=lambda state: either(state, spec.spontaneous(state)),
+        silent_for=None,
+        decided=None,
+        rebuilt=None,
+        parting=None,
+    )
+    first, *lines = violation.history
+    verdict = check(evolve(system, spec=lenient), head(first), lines)
+    return verdict.violation is None
 
 
 def _has_a_part(system: System, violation: Violation, rule: Rule) -> bool:

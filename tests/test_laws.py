@@ -387,7 +387,7 @@ RIGHT = {"bear.mission": 0.9, "bear.status": 0.9, "isaac.server": 0.9, "isaac.ro
 def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
     """Of a sample of mutants: each violation names one to three rules, the one that was broken among them.
 
-    And no row of an Errors table that has no part in it.
+    And no rule that has no part in it.
     """
     found = list(accusations(systems.system(name), every=SAMPLED[name], first=2))
     assert [rule for one in found for rule in unneeded(systems.system(name), one.violation)] == []
@@ -399,7 +399,7 @@ def test_a_violation_names_the_rule_that_is_broken(name: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", systems.names())
 def test_most_violations_name_the_rule_that_is_broken(name: str) -> None:
-    """Of many mutants: a violation names at most three rules, no row without a part in it, mostly the broken one."""
+    """Of many mutants: a violation names at most three rules, none without a part in it, mostly the broken one."""
     found = list(accusations(systems.system(name), every=MANY[name], conversations=8))
     assert [rule for one in found for rule in unneeded(systems.system(name), one.violation)] == []
     assert [str(one) for one in found if len(one.violation.rules) > MAX_RULES] == []
@@ -423,6 +423,22 @@ def test_an_accused_row_that_has_no_part_in_it_is_noticed() -> None:
     assert unneeded(system, found) == []
     other = next(one for one in system.spec.operations["CreateMission"].refusals if one.name == "a-goal-occurs-twice")
     assert unneeded(system, evolve(found, rules=(*found.rules, CitedRule(other.id, "", "")))) == [other.id]
+
+
+def test_an_accused_rule_that_has_no_part_in_it_is_noticed() -> None:
+    """A robot that passes over the end of a mission breaks what it promises of that; that missions start has no part.
+
+    It is told so, and the law notices it.
+    """
+    system = systems.system("isaac.robot")
+    broken = next(one for one in mutants(system) if one.name.endswith("preempts drops the old one silently"))
+    found = next(accusations(system, every=1, first=[one.name for one in mutants(system)].index(broken.name)))
+    named = [one.id.rpartition("/")[2] for one in found.violation.rules]
+    assert named == ["one-failure-at-the-end", "a-new-mission-preempts"]
+    assert unneeded(system, found.violation) == []
+    other = next(one for one in system.spec.rules if one.name == "a-mission-starts-the-behavior-tree")
+    accused = (*found.violation.rules, CitedRule(other.id, "", ""))
+    assert unneeded(system, evolve(found.violation, rules=accused)) == [other.id]
 
 
 SPECS = Path(__file__).parent.parent / "specs"

@@ -82,3 +82,18 @@ def sent_last(which: Which) -> StepMutator:
 def each_sent(change: Callable[[Emission], Emission]) -> StepMutator:
     """Everything that is sent is changed."""
     return lambda _, step: evolve(step, emits=tuple(map(change, step.emits)))
+
+
+# What is done wrongly, whatever the system.
+
+
+def without_effect(state: State, step: Step) -> Step | None:
+    """It is answered, and nothing comes of it; where nothing is answered it does not happen."""
+    if step.answer is None:
+        return None
+    return evolve(step, after=state, names=None, emits=(), opens=())
+
+
+def unshown(_: State, step: Step) -> Step:
+    """Nothing is sent about it."""
+    return evolve(step, emits=(), opens=tuple(evolve(one, owed=()) for one in step.opens))

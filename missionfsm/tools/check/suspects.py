@@ -14,6 +14,7 @@ from missionfsm.oracle.transcript import Transcript, answered_with, head
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.needed import needed
 from missionfsm.tools.check.phrases import described, event_words, rules_in_words
 from missionfsm.tools.check.verdict import Violation
 
@@ -152,6 +153,5 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
         own = rules_in_words(system.spec, idle[-1].rules)
         rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
-    return evolve(
-        violation, rules=tuple(dict.fromkeys(rules))[:MAX_RULES], notes=(*violation.notes, *dict.fromkeys(notes))
-    )
+    accused = evolve(violation, rules=tuple(dict.fromkeys(rules)), notes=(*violation.notes, *dict.fromkeys(notes)))
+    return evolve(accused, rules=needed(system, accused, readings)[:MAX_RULES])

@@ -18,6 +18,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.mutations import unshown, without_effect
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
     INVALID_ARGUMENT,
@@ -320,8 +321,8 @@ def _always(_: object, __: object) -> bool:
 
 def _of_promise(spec: Spec, rule: Rule, operation: str | None) -> Iterator[Mutant]:
     for kind, mutate_step in (
-        ("has no effect", _without_effect),
-        ("is not shown", _unseen),
+        ("has no effect", without_effect),
+        ("is not shown", unshown),
         ("answers its names in reverse", _reversed),
     ):
         yield Mutant(rule.id, kind, {}, operation, spec, _where(rule.id, mutate_step))
@@ -334,16 +335,6 @@ def _where(rule: str, mutate_step: Callable[[Any, Step], Step | None]) -> StepMu
 
 def _coded(code: str) -> Callable[[Any, Step], Step]:
     return lambda _, step: evolve(step, answer=Answer(code)) if step.answer is not None else step
-
-
-def _without_effect(state: State, step: Step) -> Step | None:
-    if step.answer is None:
-        return None
-    return evolve(step, after=state, names=None, emits=(), opens=())
-
-
-def _unseen(_: State, step: Step) -> Step:
-    return evolve(step, emits=(), opens=tuple(evolve(one, owed=()) for one in step.opens))
 
 
 def _reversed(_: State, step: Step) -> Step:

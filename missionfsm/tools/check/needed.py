@@ -1,0 +1,80 @@
+"""Which of the rules that are accused have a part in a violation: it would not have come about without them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from attrs import evolve
+
+from missionfsm.kernel.mutations import StepMutator, unshown, without_effect
+from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.step import Step
+from missionfsm.kernel.system import System
+from missionfsm.kernel.terms import State
+from missionfsm.oracle.transcript import head
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.verdict import CitedRule, Violation
+
+Broken = tuple[tuple[str, StepMutator], ...]
+"""Ways to break a rule: the id of the rule whose steps are taken wrongly, and how."""
+
+
+def needed(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> tuple[CitedRule, ...]:
+    """The rules of a violation but for those behind the first that have no part in it.
+
+    A rule has one if everything is explained wherever it may be broken. Of a rule that is about what is sent, and not
+    about what is done, that is not asked, nor of a row of an Errors table.
+    """
+    others = (one for one in violation.rules[1:] if _has_a_part(system, violation, one.id, readings))
+    return *violation.rules[:1], *others
+
+
+def _has_a_part(system: System, violation: Violation, rule: str, readings: Mapping[str, str] | None) -> bool:
+    ways = _ways_to_break(system, rule)
+    if not ways:
+        return True
+    about, *lines = violation.history
+    spec = disregarding(system.spec, ways)
+    judge = Judge(evolve(system, spec=spec), head(about), readings=readings, waits=False)
+    return all(judge.feed(line) for line in lines)
+
+
+def _ways_to_break(system: System, rule: str) -> Broken:
+    """How a rule may be broken in what is done; not at all where nobody says how and it is one about messages."""
+    own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
+    found = system.spec.rules_by_id.get(rule)
+    in_messages = any(one.rule == rule for one in system.message_mutations)
+    if own or found is None or found.code or in_messages:
+        return own
+    return (rule, without_effect), (rule, unshown)
+
+
+def disregarding(spec: Spec, ways: Broken) -> Spec:
+    """The same system where a rule may be broken in any of these ways, in every step anew."""
+
+    def both(state: State, steps: Iterable[Step]) -> tuple[Step, ...]:
+        right = tuple(steps)
+        wrong = (mutate(state, one) for one in right for at, mutate in ways if at in one.rules)
+        return *right, *(one for one in wrong if one is not None and one not in right and _fits(spec, one))
+
+    def driven(drive: Drive) -> Drive:
+        return evolve(drive, steps=lambda state, event, refs: both(state, drive.steps(state, event, refs)))
+
+    silent_for, closing = spec.silent_for, spec.closing
+    return evolve(
+        spec,
+        outcomes=lambda state, request, refs: both(state, spec.outcomes(state, request, refs)),
+        drives={name: driven(drive) for name, drive in spec.drives.items()},
+        urgent=lambda state: both(state, spec.urgent(state)),
+        spontaneous=lambda state: both(state, spec.spontaneous(state)),
+        silent_for=silent_for and (lambda state, focus: both(state, silent_for(state, focus))),
+        closing=closing and (lambda state, topic: both(state, closing(state, topic))),
+        parting=None,
+        decided=None,
+        rebuilt=None,
+    )
+
+
+def _fits(spec: Spec, step: Step) -> bool:
+    """Whether a step names as many things as there are after it."""
+    return step.names is None or len(step.names) == spec.names(step.after)

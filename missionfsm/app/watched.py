@@ -170,7 +170,7 @@ class _Subscription:
         violation = None
         if self.first is not None:
             number, problem = self.first
-            rules = rules_in_words(spec, (problem.rule,))
+            rules = rules_in_words(spec, (problem.rule,), self.topic)
             violation = Violation(rules, str(problem), (_RIGHT,), at=number, where=f"line {number}: ")
         return Verdict(
             Outcome.CONFORMS if violation is None else Outcome.VIOLATES,

@@ -112,6 +112,7 @@ class Rule:
         assumes: the reading that makes the condition refuse, or None where no reading matters.
         looks_at: what a refusal looks at, where readings rank that (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
+        everywhere: whether it stands in the section of every operation, of which `cite` names one.
     """
 
     name: str
@@ -123,6 +124,13 @@ class Rule:
     assumes: Assumption | None = None
     looks_at: str = ""
     id: str = ""
+    everywhere: bool = False
+
+    def place(self, operation: str) -> Citation:
+        """Where the sentence stands that is about an operation; any, where that is empty."""
+        if not (self.everywhere and operation):
+            return self.cite
+        return evolve(self.cite, headings=(operation, *self.cite.headings[1:]))
 
     def __call__(self, state: State, call: Request) -> bool:
         """Whether the condition of a refusal holds."""

@@ -63,6 +63,7 @@ class Delivery:
         malformed: ids of the rules that are broken by a message that cannot be read.
         every_time: whether a message has to come even where the one before it says the same, as lines do.
         stands: whether what a channel owes stays owed until it is shown or passed over: no step takes it back.
+        operation: name of the operation that opens the channel, for rules that stand in the section of each.
     """
 
     skips: Assumption | None = None
@@ -76,6 +77,7 @@ class Delivery:
     malformed: tuple[str, ...] = ()
     every_time: bool = False
     stands: bool = False
+    operation: str = ""
 
 
 @frozen

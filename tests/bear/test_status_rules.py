@@ -118,6 +118,17 @@ def test_every_rule_cites_its_own_operation() -> None:
     assert all(rule.cite.document == STATUS.name for rule in SPEC.all_rules)
 
 
+@pytest.mark.parametrize("endpoint", Endpoint)
+def test_what_every_subscription_promises_is_cited_in_the_section_of_the_one(endpoint: Endpoint) -> None:
+    """A message of no form, one of another robot, and none at all: each is told with the place of its subscription."""
+    lines = opened(1, endpoint.value, by_ids("r1"))
+    wrong = [{"stream": 1, "message": 7}, {"stream": 1, "closed": True, "error": {"status": INVALID_ARGUMENT}}]
+    for last, rest in zip(wrong, (("Response",), ()), strict=True):
+        violation = judge([*lines, last]).violation
+        assert violation is not None
+        assert violation.rules[0].cite == str(STATUS[(endpoint.value, *rest)])
+
+
 def test_a_refusal_without_a_reason_is_a_violation() -> None:
     """PERMISSION_DENIED for the account's own robots, NOT_FOUND for a place with robots."""
     for params, status in ((by_ids("r1"), PD), (at("L1"), NF), (by_ids("r1"), IA)):

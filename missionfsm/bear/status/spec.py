@@ -90,6 +90,7 @@ def _delivery(topic: Topic) -> Delivery:
         unowed=(UPDATES.id,),
         first=tuple(rule.id for rule in OPERATIONS[topic.endpoint.value].promises),
         malformed=(WELL_FORMED.id,),
+        operation=call,
     )
 
 

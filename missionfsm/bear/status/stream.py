@@ -45,7 +45,7 @@ from missionfsm.kernel.text import brief
 
 
 def _promise(name: str, says: str, *place: str) -> Rule:
-    return promise(name, says, cite=STATUS[place]).registered(SYSTEM_NAME, "messages")
+    return evolve(promise(name, says, cite=STATUS[place]).registered(SYSTEM_NAME, "messages"), everywhere=True)
 
 
 WELL_FORMED = _promise("messages-are-well-formed", "A message has the documented form.", "GetRobotStatus", "Response")

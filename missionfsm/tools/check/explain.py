@@ -56,10 +56,11 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         found = _against_drive(nearest, event)
     expected, rules, notes = found
     named = list(dict.fromkeys(rule for rule in rules if rule))[:MAX_RULES] or _implied(spec, event, about)
+    operation = _operation(nearest, event, expected)
     return Violation(
-        rules_in_words(spec, named),
+        rules_in_words(spec, named, operation),
         observed,
-        _allowed(spec, expected),
+        _allowed(spec, expected, operation),
         tuple(dict.fromkeys(printable(note) for note in notes if note))[:MAX_NOTES],
     )
 
@@ -79,7 +80,20 @@ Accusation = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]
 """What could have come, the rules that are broken, and why, in words."""
 
 
-def _allowed(spec: Spec, candidates: Iterable[Candidate]) -> tuple[Allowed, ...]:
+def _operation(nearest: Nearest, event: Event, expected: Iterable[Candidate]) -> str:
+    """The operation that an event is about: the one that was answered, or that opened the channel; empty if unknown."""
+    spec = nearest.spec
+    if isinstance(event, Returned):
+        return "" if nearest.about.request is None else spec.request_operation(nearest.about.request)
+    topics = [one.owed[0].topic for one in expected if one.owed is not None]
+    if isinstance(event, Received | Ended):
+        number = nearest.belief.number(event.channel)
+        here = nearest.belief.node.explanations
+        topics = [channel.topic for one in here for channel in one.channels if channel.name == number]
+    return next((spec.delivery(topic).operation for topic in topics), "")
+
+
+def _allowed(spec: Spec, candidates: Iterable[Candidate], operation: str) -> tuple[Allowed, ...]:
     """What could have come, each once, with the fewest assumptions."""
     merged: dict[str, Candidate] = {}
     for one in sorted(candidates, key=lambda one: one.weight):
@@ -87,7 +101,7 @@ def _allowed(spec: Spec, candidates: Iterable[Candidate]) -> tuple[Allowed, ...]
         if one.what and one.allowed and (before is None or len(one.assumes) < len(before.assumes)):
             merged[one.what] = one
     return tuple(
-        Allowed(one.what, rules_in_words(spec, one.rules), one.assumes)
+        Allowed(one.what, rules_in_words(spec, one.rules, operation), one.assumes)
         for one in list(merged.values())[:MAX_ALTERNATIVES]
     )
 

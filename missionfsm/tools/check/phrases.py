@@ -11,14 +11,18 @@ from missionfsm.kernel.text import printable
 from missionfsm.tools.check.verdict import CitedRule
 
 
-def rules_in_words(spec: Spec, rule_ids: Iterable[str]) -> tuple[CitedRule, ...]:
-    """Rules as a person is told them, each once."""
+def rules_in_words(spec: Spec, rule_ids: Iterable[str], operation: str = "") -> tuple[CitedRule, ...]:
+    """Rules as a person is told them, each once.
+
+    Args:
+        operation: the operation that they are about; a rule that stands in several sections is cited in that of it.
+    """
     named = list(dict.fromkeys(rule_ids))
     known = spec.rules_by_id
     if not known.keys() >= set(named):
         known = {**spec.implied, **known}
     found = (known[one] for one in named if one in known)
-    return tuple(CitedRule(rule.id, rule.says, str(rule.cite)) for rule in found)
+    return tuple(CitedRule(rule.id, rule.says, str(rule.place(operation))) for rule in found)
 
 
 def described(spec: Spec, value: object) -> str:

@@ -103,8 +103,10 @@ def _edited(
 
 def _ending(robot: Robot, edit: Edit) -> Iterator[Emission]:
     """AM-09, AM-10: a mission may be seen to have ended before those that wait end or vanish with it."""
+    if robot.active is None:
+        return
     kept = tuple((op, what) for op, what in edit if op not in (Op.END_QUEUE, Op.DROP_QUEUE))
-    if robot.active is not None and len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
+    if len(kept) < len(edit) and any(op is Op.END for op, _ in kept):
         names, _ = renumber(kept, robot)
         yield _shown(apply(kept, robot, names), names, optional=True)
 

@@ -266,7 +266,8 @@ class Spec:
         waived: what its documents say and no rule checks.
         unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
         unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
-            are broken by a message that nothing owes; None where those of the topic's `Delivery` say it.
+            are broken by a message that nothing owes, or what is wrong with one; None where those of the topic's
+            `Delivery` say it.
         undelivered: view to the ids of the rules that are broken where it is owed and does not come; None where those
             of the topic's `Delivery` say it.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
@@ -318,7 +319,7 @@ class Spec:
     answers_for: Mapping[str, tuple[str, ...]] = field(factory=dict)
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
-    unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...]] | None = None
+    unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...] | Mismatch] | None = None
     undelivered: Callable[[View], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None

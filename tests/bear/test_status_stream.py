@@ -23,6 +23,8 @@ from status_helpers import (
     robot_message,
 )
 
+from missionfsm.app.asked import judged_system
+from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.verdict import Outcome
 
@@ -560,6 +562,17 @@ def test_a_state_of_the_type_that_is_left_out_is_pointed_out() -> None:
     lines = [*opened(1, ROBOT, by_ids("r1")), robot_message(1, "r1", 1, R1["state"]), reported, SETTLED]
     found = judge(lines)
     assert (readings(found, "AS-32"), len(found.verdict().flagged)) == (("b",), 1)
+
+
+def test_a_robot_that_was_not_selected_is_told_as_that() -> None:
+    """In a log that begins anywhere as well, where nothing is known of the robot that was."""
+    head = Head("bear.status", WORLDS[0], anywhere=True)
+    found = Judge(judged_system("bear.status", strict=False, anywhere=True), head)
+    for line in (*SUBSCRIBED, battery_message(1, "r2", 5, FIRST)):
+        found.feed(line)
+    assert found.violation is not None
+    assert "robot 'r2' was not selected" in found.violation.notes
+    assert found.violation.rules[0].id.endswith("only-selected-robots-are-shown")
 
 
 def test_a_stream_does_not_just_end() -> None:

@@ -46,7 +46,17 @@ from missionfsm.bear.status.state import (
     initial,
     whose,
 )
-from missionfsm.bear.status.stream import RULES, SELECTED, SEQUENCE, UPDATES, VALUES, WELL_FORMED, answers, matches
+from missionfsm.bear.status.stream import (
+    RULES,
+    SELECTED,
+    SEQUENCE,
+    UPDATES,
+    VALUES,
+    WELL_FORMED,
+    answers,
+    matches,
+    not_selected,
+)
 from missionfsm.bear.status.values import a_stuck_state_is_known, faults, reserved_reasons_are_not_used
 from missionfsm.bear.status.views import Topic, concerns
 from missionfsm.bear.wire.codes import UNLISTED
@@ -283,6 +293,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS) -> Spec:
         answers_for=_ANSWERS_FOR,
         waived=WAIVERS,
         concerns=concerns,
+        unowed=not_selected,
         describe=describe,
         rules=RULES,
         charts=CHARTS,

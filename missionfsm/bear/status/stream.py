@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Hashable
 
 from attrs import evolve
 
@@ -34,7 +35,7 @@ from missionfsm.bear.status.values import (
     reserved_reasons_are_not_used,
     within,
 )
-from missionfsm.bear.status.views import BLANK, Assumed, Promised, Seen, View
+from missionfsm.bear.status.views import BLANK, Assumed, Promised, Seen, Topic, View
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import Rule, promise
@@ -95,6 +96,14 @@ def matches(view: View, content: Seen | Malformed) -> tuple[Match, ...] | Mismat
     rules = (UPDATES.id, SELECTED.id, WELL_FORMED.id, VALUES[view.endpoint.value].id, *exercised(value))
     untimed = () if content.timed else (AS_14[view.endpoint.value]["b"],)
     return tuple(Match((*assumes, *untimed), (), rules) for assumes in found)
+
+
+def not_selected(_: object, topic: Hashable, content: object, _refs: object) -> tuple[str, ...] | Mismatch:
+    """What is wrong with a message that nothing owes on a stream that shows no robot, if it is about one."""
+    if not isinstance(topic, Topic) or topic.robot or not isinstance(content, Seen):
+        return ()
+    where = "was not selected" if topic.location is None else f"is not at {brief(topic.location)}, which was selected"
+    return Mismatch(SELECTED.id, f"robot {brief(content.robot)} {where}")
 
 
 def answers(promised: object, given: object) -> tuple[Match, ...] | Mismatch:

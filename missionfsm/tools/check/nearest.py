@@ -242,14 +242,16 @@ class Nearest:
     def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
         """Nothing is owed: the message is the last one again, or shows what was never reached."""
         own: tuple[str, ...] = ()
+        unbegun = "nothing is owed to it yet"
         if self.spec.unowed is not None:
             refs = tuple(map(here.ref, message.given))
-            own = self.spec.unowed(here.state, channel.topic, message.content, refs)
+            found = self.spec.unowed(here.state, channel.topic, message.content, refs)
+            own, unbegun = ((found.rule,), found.says) if isinstance(found, Mismatch) else (found, unbegun)
         if isinstance(message.content, Malformed):
             yield Problem(message.content.says, delivery.malformed or delivery.unowed, SHAPE)
             return
         if channel.last is None:
-            yield Problem("nothing is owed to it yet", own or delivery.unowed, UNBEGUN)
+            yield Problem(unbegun, own or delivery.unowed, UNBEGUN)
             return
         wrong = self._matched(here, channel, channel.last, message)
         if wrong:

@@ -190,7 +190,7 @@ class Wire:
     def subject(self, system: str, timeout: float) -> Subject:
         """The server as a subject; bad input ends the command. Raises SubjectError if nobody answers."""
         needs_grpc()
-        from missionfsm.adapters.grpc.client import GrpcSubject  # noqa: PLC0415 - an extra
+        from missionfsm.adapters.grpc.client import GrpcSubject, Use  # noqa: PLC0415 - an extra
         from missionfsm.adapters.grpc.descriptors import SERVICES  # noqa: PLC0415
         from missionfsm.adapters.grpc.target import Target  # noqa: PLC0415 - an extra
 
@@ -210,9 +210,7 @@ class Wire:
             system,
             target,
             read_world(self.world),
-            force=self.force,
-            shared=self.others,
-            anywhere=self.anywhere,
+            use=Use(self.force, self.others, self.anywhere),
             renewed=None if self.token is None else functools.partial(_token_again, self.token),
             tell=complain,
         )

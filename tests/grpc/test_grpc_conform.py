@@ -15,7 +15,7 @@ from attrs import evolve
 from commandline import CommandLine
 
 from missionfsm.adapters.grpc import control
-from missionfsm.adapters.grpc.client import GrpcSubject
+from missionfsm.adapters.grpc.client import GrpcSubject, Use
 from missionfsm.adapters.grpc.descriptors import encode, methods, path
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.serve import serve
@@ -85,7 +85,7 @@ def test_missions_of_others_are_not_touched() -> None:
             other.exchange("CreateMission", NAVIGATE)
         with subject("bear.mission", robot.target) as careful, pytest.raises(SubjectError, match="--force"):
             careful.exchange("reset", {})
-        with subject("bear.mission", robot.target, force=True) as bold:
+        with subject("bear.mission", robot.target, use=Use(force=True)) as bold:
             bold.exchange("reset", {})
             opened = bold.exchange("SubscribeMissionStatus", {})
             assert [one.params["message"]["missionStates"] for one in opened.after] == [{"currentMissionIndex": -1}]

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from commandline import CommandLine
 
-from missionfsm.adapters.grpc.client import GrpcSubject
+from missionfsm.adapters.grpc.client import GrpcSubject, Use
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.asked import judged_system
 from missionfsm.app.serve import Served, serve
@@ -38,7 +38,7 @@ def subject(robot: Served, **options: Any) -> Iterator[GrpcSubject]:
 def judged(robot: Served, *, others: bool) -> Verdict:
     """The verdict on a robot that somebody else uses, which is said or not."""
     judged_as = judged_system("bear.mission", strict=True, others=others)
-    with subject(robot, shared=others, force=True) as server:
+    with subject(robot, use=Use(shared=others, force=True)) as server:
         return conform(judged_as, _Appending(server, robot), **SHORT)
 
 
@@ -73,7 +73,7 @@ def test_a_robot_in_use_is_judged_as_it_is() -> None:
     """With ``begins anywhere`` a mission that was there before is explained, and a reset leaves it alone."""
     with serve("bear.mission", control=False) as robot:
         there = robot.call("CreateMission", NAVIGATE)["missionId"]
-        with subject(robot, anywhere=True) as server:
+        with subject(robot, use=Use(anywhere=True)) as server:
             server.exchange("reset", {})
             (shown,) = server.exchange("SubscribeMissionStatus", {}).after
             assert [one["missionId"] for one in shown.params["message"]["missionStates"]["missions"]] == [there]
@@ -87,7 +87,7 @@ def test_a_robot_in_use_is_judged_as_it_is() -> None:
 
 def test_own_missions_are_ended_where_others_remain() -> None:
     """A reset of a robot in use cancels what this tester began and runs, and stops at what others began."""
-    with serve("bear.mission", control=False) as robot, subject(robot, anywhere=True) as server:
+    with serve("bear.mission", control=False) as robot, subject(robot, use=Use(anywhere=True)) as server:
         own = server.exchange("CreateMission", NAVIGATE).result["missionId"]
         theirs = robot.call("AppendMission", NAVIGATE)["missionId"]
         server.exchange("reset", {})

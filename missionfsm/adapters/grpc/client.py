@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import grpc
-from attrs import evolve
+from attrs import evolve, frozen
 
 from missionfsm.adapters.grpc import control
 from missionfsm.adapters.grpc.begun import Begun
@@ -36,6 +36,27 @@ MAX_ROUNDS = 100
 """Missions that are cancelled in one reset before it is given up."""
 
 
+@frozen
+class Use:
+    """Who else uses a server, and what may be done to what is theirs.
+
+    Attributes:
+        force: whether a reset may end and clear missions that this tester did not create.
+        shared: whether others use the server at the same time. Then it is never begun anew by the control service: a
+            reset ends what this tester began.
+        anywhere: whether conversations begin with whatever there is. Then a reset does not clear the list either.
+    """
+
+    force: bool = False
+    shared: bool = False
+    anywhere: bool = False
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether it is not begun anew."""
+        return self.shared or self.anywhere
+
+
 class GrpcSubject:
     """A gRPC server behind the adapter protocol.
 
@@ -43,39 +64,30 @@ class GrpcSubject:
         system: ``bear.mission`` or ``bear.status``.
         target: where it is.
         world: its world, as JSON, where the control service cannot change it.
-        force: whether a reset may end and clear missions that this tester did not create.
-        shared: whether others use the server at the same time. Then it is never begun anew by the control service: a
-            reset ends what this tester began.
-        anywhere: whether conversations begin with whatever there is. Then a reset does not clear the list either.
+        use: who else has it, and what may be done to what is theirs.
         renewed: the token as it is now; asked at every reset, since tokens expire.
         tell: takes a line for people: the server sent a field that the table does not know; once for each.
-        clock, sleep: seconds that pass, and how to wait.
 
     Raises:
         SubjectError: nobody answers there.
     """
 
-    def __init__(  # noqa: PLR0913 - all but the first two have a default
+    def __init__(
         self,
         system: str,
         target: Target,
         world: JSON = None,
         *,
-        force: bool = False,
-        shared: bool = False,
-        anywhere: bool = False,
+        use: Use = Use(),
         renewed: Callable[[], str] | None = None,
         tell: Callable[[str], None] = lambda _: None,
-        clock: Callable[[], float] = time.monotonic,
-        sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self.system = system
         self.target = target
         self.world = world or {}
-        self._force, self._shared, self._anywhere = force, shared or anywhere, anywhere
+        self._use = use
         self._renewed = renewed
         self._tell = tell
-        self._clock, self._sleep = clock, sleep
         self._methods = methods(system)
         try:
             self._channel = target.channel()
@@ -85,7 +97,7 @@ class GrpcSubject:
         self._change = threading.Condition()
         self._arrived: list[Notification] = []
         self._came: dict[int, int] = {}
-        self._last = clock()
+        self._last = time.monotonic()
         self._streams: dict[int, Any] = {}
         self._counts = False
         self._serial = 0
@@ -147,7 +159,7 @@ class GrpcSubject:
         }
         if not self._counts:
             said["settles"] = "silence"
-        if not self._control or self._shared:
+        if not self._control or self._use.is_shared:
             said |= {"worlds": "fixed", "world": self.world, "reset": "soft"}
         return said
 
@@ -155,13 +167,13 @@ class GrpcSubject:
 
     def _call(self, method: Method, params: JSON) -> Exchange:
         ask = self._channel.unary_unary(path(method))
-        self._last = self._clock()
+        self._last = time.monotonic()
         try:
             data = ask(self._encoded(method, params), timeout=self.target.timeout, metadata=self.target.sent)
         except grpc.RpcError as error:
             return Exchange(error=as_json(error))
         finally:
-            self._last = self._clock()
+            self._last = time.monotonic()
         result = self._decoded(method, data)
         if method.name.startswith(("Create", "Append", "Charge")):
             self._created.update([result["missionId"]] if result.get("missionId") else result.get("missionIds", ()))
@@ -202,7 +214,7 @@ class GrpcSubject:
         with self._change:
             self._streams[stream] = call
             self._came[stream] = 0
-            self._last = self._clock()
+            self._last = time.monotonic()
         threading.Thread(
             target=self._listen, args=(method, stream, call), name=f"missionfsm-stream-{stream}", daemon=True
         ).start()
@@ -215,11 +227,11 @@ class GrpcSubject:
 
         Where there is none, which may be right, the next one is waited for half as long.
         """
-        begun = self._clock()
+        begun = time.monotonic()
         self._wait(lambda: self._came.get(stream, 1) > 0, self._patience)
-        if self._clock() - begun >= self._patience:
+        if time.monotonic() - begun >= self._patience:
             self._patience = max(self._patience / 2, self.target.settle)
-        elif self._clock() - begun > self.target.settle:
+        elif time.monotonic() - begun > self.target.settle:
             self._patience = max(self.target.settle_most, self.target.settle)
 
     def _listen(self, method: Method, stream: int, call: Any) -> None:  # noqa: ANN401 - a call of grpc
@@ -235,7 +247,7 @@ class GrpcSubject:
         with self._change:
             if stream in self._came:
                 self._arrived.append(Notification(kind, {"stream": stream, **said}))
-                self._last = self._clock()
+                self._last = time.monotonic()
                 if kind == "message":
                     self._came[stream] += 1
                 else:  # nothing more comes, so that nothing more is waited for
@@ -300,13 +312,13 @@ class GrpcSubject:
 
     def _settle(self) -> None:
         """Wait for a silence."""
-        begun = self._clock()
+        begun = time.monotonic()
         while True:
-            now = self._clock()
+            now = time.monotonic()
             rest = min(self._last + self.target.settle, begun + self.target.settle_most) - now
             if rest <= 0:
                 return
-            self._sleep(rest)
+            time.sleep(rest)
 
     def _settle_patiently(self) -> None:
         """Wait much longer for something that is missing; where it comes, from now on all are waited for so long."""
@@ -346,7 +358,7 @@ class GrpcSubject:
         self._cancel_all()
         if self._renewed is not None:
             self.target = evolve(self.target, token=self._renewed())
-        if self._control and not self._shared:
+        if self._control and not self._use.is_shared:
             self._asked_of_control("Reset", {"world": world})
         elif self.system == "bear.mission":
             self._end_missions()
@@ -361,11 +373,11 @@ class GrpcSubject:
         for _ in range(MAX_ROUNDS):
             listed = self._listed()
             active = self._active(listed)
-            if self._anywhere and not self._force and (not active or active not in self._created):
+            if self._use.anywhere and not self._use.force and (not active or active not in self._created):
                 return
             if not listed:
                 return
-            if not self._anywhere:
+            if not self._use.anywhere:
                 self._may_touch(mission.get("missionId", "") for mission in listed)
             if not active:
                 self._must("ClearMissionStatus", {})
@@ -398,7 +410,7 @@ class GrpcSubject:
 
     def _may_touch(self, missions: Iterable[str]) -> None:
         others = [mission for mission in missions if mission not in self._created]
-        if others and not self._force:
+        if others and not self._use.force:
             raise SubjectError(
                 f"the robot has missions that this tester did not create, such as {brief(others[0])}; --force ends and "
                 "clears them, --begins anywhere leaves them alone"

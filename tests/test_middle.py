@@ -170,6 +170,7 @@ def test_what_is_not_in_the_log_is_explained(case: str) -> None:
 
 GONE = {"error": {"status": "NOT_FOUND", "message": ""}}
 OURS = [*FIRST, *MINE]
+DRIVEN = {"drives": ["goalReached", "missionSucceeded", "missionFailed"]}
 
 
 def told(number: int, command: str, answer: Any = REFUSED) -> list[Any]:
@@ -208,7 +209,7 @@ def written(path: Path, lines: list[Any]) -> Path:
     return path
 
 
-@pytest.mark.parametrize("drives", [{}, {"drives": ["goalReached", "missionSucceeded", "missionFailed"]}])
+@pytest.mark.parametrize("drives", [{}, DRIVEN])
 @pytest.mark.parametrize("case", BEFORE_THE_ANSWER)
 def test_what_others_did_may_be_shown_only_after_our_answer(
     command_line: CommandLine, tmp_path: Path, case: str, drives: Any
@@ -227,6 +228,21 @@ def test_what_no_caller_can_do_is_wrong(case: str) -> None:
     first, lines = WRONG[case]
     judge = read(first, lines)
     assert judge.violation is not None
+
+
+def test_what_no_state_shows_is_told_as_that() -> None:
+    """Where nothing is known of what was before, a message that no state shows breaks the rule of what is wrong."""
+    before = (("X", "SUCCEEDED"), ("A", "PAUSED"), ("Z", "DEFAULT"))
+    resumed = call(
+        2, "UpdateMission", {"missionCommand": {"missionId": "Z", "command": "COMMAND_RESUME"}}, {"result": {}}
+    )
+    judge = read(
+        {**ANYWHERE, **DRIVEN}, [*FIRST[:2], shown(71, *before), *resumed, shown(72, *before[:2], ("Z", "RUNNING"))]
+    )
+    assert judge.violation is not None
+    assert [one.what for one in judge.violation.expected] == ["any state that what was shown before can have become"]
+    assert judge.violation.rules[0].id.endswith("/the-state-is-reported")
+    assert judge.violation.notes == ("mission 2 is STATE_RUNNING, expected STATE_DEFAULT since it waits",)
 
 
 def test_what_is_outstanding_for_long_is_late(command_line: CommandLine, tmp_path: Path) -> None:

@@ -240,7 +240,8 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
     kinds = {name[0] for name in answered if isinstance(name, tuple)}
     foreign = [name for name in event.names if isinstance(name, tuple) and name[0] not in kinds]
     unknown = [name for name in event.names if belief.number(name) < 0 and name not in {*answered, *foreign}]
-    if not unknown or not nearest.about.recent:
+    elsewhere = nearest.spec.anywhere or nearest.spec.others  # they may come from calls that are not in the log
+    if not unknown or elsewhere or not nearest.about.recent:
         return []
     calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-MAX_CALLS:])
     return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]

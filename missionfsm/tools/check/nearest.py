@@ -15,6 +15,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Name, Received, Returned
+from missionfsm.kernel.middle import ANY, Unknown
 from missionfsm.kernel.readings import Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
@@ -41,6 +42,9 @@ from missionfsm.tools.check.candidates import (
 )
 from missionfsm.tools.check.causes import delivering
 from missionfsm.tools.check.phrases import answer_words, described, name_words
+
+SOME_STATE = "any state that what was shown before can have become"
+"""What may come where nothing is known of what happened before."""
 
 MAX_LOOKED_AT = 200
 """How many explanations are looked at, the nearest first."""
@@ -220,8 +224,10 @@ class Nearest:
                 own = (other.rule,) if isinstance(other, Mismatch) else ()
                 missing = self.missing(delivery, before_it[0].view)
                 problems.append(Problem(says, (*own, *missing), LEFT_OUT))
-            problems += self._matched(here, channel, owed, message)
-            words = described(self.spec, owed.view)
+            problems += self._matched(here, channel, owed, message) or self._unlike_any_state(
+                here, delivery, owed, message
+            )
+            words = SOME_STATE if owed.view is ANY else described(self.spec, owed.view)
             possible = not before_it and not self._clash(here, needs)
             due = (channel, before_it[0] if before_it else owed)
             yield Candidate(what=words, problems=tuple(problems), allowed=possible, passing=owed.passing, owed=due)
@@ -230,6 +236,21 @@ class Nearest:
         if not channel.owed:
             again = tuple(self._again(here, channel, delivery, message))
             yield Candidate(problems=(*before, *again), allowed=False)
+
+    def _unlike_any_state(
+        self, here: Explanation, delivery: Delivery, owed: Owed, message: _Message
+    ) -> Iterator[Problem]:
+        """Why a message shows no state, where it may show any since nothing is known of what was before."""
+        glimpses = self.spec.middle.glimpses if self.spec.middle else None
+        if owed.view is not ANY or glimpses is None:
+            return
+        world = here.state.world if isinstance(here.state, Unknown) else glimpses.world(here.state)
+        views = (view for _, view in glimpses.states(world, message.content))
+        wrong = [self.spec.matches(view, message.content) for view in views]
+        if all(isinstance(one, Mismatch) for one in wrong):
+            yield from (Problem(one.says, (one.rule,), VALUE) for one in wrong[:1] if isinstance(one, Mismatch))
+        else:
+            yield Problem("what was shown before cannot have become this", delivery.unowed, VALUE)
 
     def missing(self, delivery: Delivery, view: View, *, at_first: bool = False) -> tuple[str, ...]:
         """The rules that are broken where a view is owed and does not come, perhaps as the first message of a channel.

@@ -59,7 +59,8 @@ class Delivery:
             come; the nearest first.
         named: ids of the rules that are broken by a message that names other things than it is about.
         first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
-        unending: ids of the rules that are broken where the channel ends though it may not; those in `unowed` if none.
+        unending: ids of the rules that are broken where the channel ends though it may not; if none, what goes
+            without saying of the operation.
         malformed: ids of the rules that are broken by a message that cannot be read.
         every_time: whether a message has to come even where the one before it says the same, as lines do.
         stands: whether what a channel owes stays owed until it is shown or passed over: no step takes it back.

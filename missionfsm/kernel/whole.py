@@ -57,7 +57,7 @@ def shown_whole(spec: Spec, rule: Rule) -> Spec:
         urgent=lambda state: tuple(seen(state, step) for step in spec.urgent(state)),
         spontaneous=lambda state: tuple(seen(state, step) for step in spec.spontaneous(state)),
         matches=matches,
-        delivery=lambda _topic: Delivery(unowed=(rule.id,), named=(rule.id,)),
+        delivery=lambda _topic: Delivery(unowed=(rule.id,), named=(rule.id,), unending=(rule.id,)),
         undelivered=lambda _view: (rule.id,),
         unopened=(rule.id,),
         rules=(*spec.rules, rule),

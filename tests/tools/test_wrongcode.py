@@ -97,3 +97,40 @@ def test_the_row_that_would_hold_of_another_mission_is_the_nearest() -> None:
     says, _, why = violation.notes[0].partition(" (The mission still waits behind the active one,")
     assert says == "no refusal with NOT_FOUND is due: of the rows with that code none applies"
     assert why.endswith("; the first would if it were about m2")
+
+
+def lists(number: int, state: str, index: int) -> JSON:
+    """A message that lists the one mission."""
+    shown = {"missionId": "m1", "state": f"STATE_{state}", "goals": [{"destinationId": "table-1"}]}
+    states = {"missions": [{**shown, "missionType": {"baseType": "BASE_TYPE_NAVIGATE"}}], "currentMissionIndex": index}
+    metadata = {"timestamp": "2025-04-01T17:05:00.001Z", "sequenceNumber": number}
+    return {"stream": 1, "message": {"metadata": metadata, "missionStates": states}}
+
+
+WATCHED = [*BUSY, *call(7, "SubscribeMissionStatus", {}, result={"stream": 1})]
+CLOSED = {"stream": 1, "closed": True, "error": refused("NOT_FOUND")}
+AS_DOCUMENTED = "SubscribeMissionStatus/it-answers-as-documented"
+PAUSE = {"missionCommand": {"missionId": "m1", "command": "COMMAND_PAUSE"}}
+
+
+@pytest.mark.parametrize(
+    ("lines", "rules"),
+    [
+        ([lists(1, "RUNNING", -1)], ["SubscribeMissionStatus/the-current-mission-index-is-the-active-mission"]),
+        ([lists(1, "RUNNING", 0), CLOSED], [AS_DOCUMENTED]),
+        ([lists(1, "RUNNING", 0), {**CLOSED, "error": refused("INTERNAL")}, lists(2, "RUNNING", 0)], [AS_DOCUMENTED]),
+        (
+            [
+                lists(1, "RUNNING", 0),
+                *call(8, "UpdateMission", PAUSE, error=refused("INTERNAL")),
+                lists(2, "PAUSED", 0),
+            ],
+            ["SubscribeMissionStatus/updates-follow-the-state", "UpdateMission/pause"],
+        ),
+    ],
+    ids=["an index", "an end", "a message after the end", "a call that failed and took effect"],
+)
+def test_what_has_led_to_it_is_accused_only_where_it_may_be_what_is_wrong(lines: list[JSON], rules: list[str]) -> None:
+    """The rule of what is wrong in a message, in an end; not that of the mission that was created before."""
+    first = {**FIRST, "drives": ["goalReached", "missionSucceeded", "missionFailed", "world"]}
+    assert accused([*WATCHED, *lines], first) == rules

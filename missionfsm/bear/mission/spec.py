@@ -302,6 +302,7 @@ def _delivery(_: object) -> Delivery:
         first=first,
         malformed=(WELL_FORMED.id,),
         stands=True,
+        operation="SubscribeMissionStatus",
     )
 
 
@@ -378,7 +379,6 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         restarted=_restarted,
         added=frozenset({"CreateMissionBatch", "AppendMissionBatch", "ClearMissionStatus"}),
         middle=MIDDLE,
-        unopened=(OWED.id,),
     )
 
 

@@ -201,9 +201,9 @@ Assumed = tuple[Assumption, ...]
 class _WrongError(Exception):
     """The message cannot show the view, or a mission of it."""
 
-    def __init__(self, rule: str, says: str) -> None:
+    def __init__(self, rule: str, says: str, *, near: bool = False) -> None:
         super().__init__()
-        self.mismatch = Mismatch(rule, says)
+        self.mismatch = Mismatch(rule, says, near)
 
 
 def matches(view: Listing, content: Seen | Malformed) -> tuple[Match, ...] | Mismatch:
@@ -314,7 +314,7 @@ def _current(view: Listing, index: int) -> Assumed:
     allowed = current_index(view)
     if index not in allowed:
         values = " or ".join(str(value) for value in allowed)
-        raise _WrongError(CURRENT.id, f"current_mission_index is {index}, expected {values}")
+        raise _WrongError(CURRENT.id, f"current_mission_index is {index}, expected {values}", near=True)
     return allowed[index]
 
 

@@ -153,7 +153,7 @@ def _excused(view: View, value: Value) -> Assumed | Mismatch:
         elif fault.rule == reserved_reasons_are_not_used.rule.id:
             assumes.append(AS_19[view.call]["z"])
         elif not fault.robots or (view.unheard and not fault.lasts):
-            return Mismatch(fault.rule, fault.says)
+            return Mismatch(fault.rule, fault.says, near=True)
     return tuple(assumes)
 
 

@@ -13,9 +13,10 @@ from missionfsm.oracle.explanation import Channel, Owed
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
-READING, LEFT_OUT, NAME, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4, 6, 10, 30, 40, 50, 60
+READING, LEFT_OUT, NAME, FAILED, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4, 5, 6, 10, 30, 40, 50, 60
 """How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least.
 
+FAILED is what a call would have done that failed.
 LEFT_OUT is a message that comes before one that is due earlier, UNOWED one after all that were owed, UNBEGUN one before
 any is. To SHAPE and VALUE is added, from 0 to 9, how far what came is from what was due; to UNOWED, of a message that
 shows something else than the last one, what that takes to be forgiven.
@@ -63,12 +64,14 @@ class Problem:
         rules: ids of the rules that are broken by it, the nearest first.
         weight: how much it takes to forgive it.
         since: ids of the rules that an event before speaks about, which this one contradicts.
+        by_itself: whether it is wrong whatever happened before.
     """
 
     says: str
     rules: tuple[str, ...]
     weight: int
     since: tuple[str, ...] = ()
+    by_itself: bool = False
 
 
 @frozen(kw_only=True)

@@ -14,7 +14,17 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.oracle.symbols import relations_of
 from missionfsm.tools.check import causes
-from missionfsm.tools.check.candidates import CODE, LEFT_OUT, SHAPE, UNDRIVEN, UNOWED, Candidate, Circumstances, Problem
+from missionfsm.tools.check.candidates import (
+    CODE,
+    FAILED,
+    LEFT_OUT,
+    SHAPE,
+    UNDRIVEN,
+    UNOWED,
+    Candidate,
+    Circumstances,
+    Problem,
+)
 from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import answer_words, described, event_words, name_words, rules_in_words
 from missionfsm.tools.check.verdict import Allowed, Violation
@@ -55,8 +65,8 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         observed += " happened" if isinstance(event, Driven) else ""
         found = _against_drive(nearest, event)
     expected, rules, notes = found
-    named = list(dict.fromkeys(rule for rule in rules if rule))[:MAX_RULES] or _implied(spec, event, about)
     operation = _operation(nearest, event, expected)
+    named = list(dict.fromkeys(rule for rule in rules if rule))[:MAX_RULES] or _implied(spec, event, operation)
     return Violation(
         rules_in_words(spec, named, operation),
         observed,
@@ -65,12 +75,12 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
     )
 
 
-def _implied(spec: Spec, event: Event, about: Circumstances) -> list[str]:
+def _implied(spec: Spec, event: Event, operation: str) -> list[str]:
     """The rule that goes without saying: of the operation that was answered or that opens streams, or of the drive."""
     if isinstance(event, Driven):
         place = [event.event.name]  # type: ignore[attr-defined]
-    elif isinstance(event, Returned):
-        place = [spec.request_operation(about.request)] if about.request is not None else []
+    elif isinstance(event, Returned) or operation:
+        place = [operation]
     else:
         place = [one.name for one in spec.operations.values() if one.streaming]
     return [rule for name in place[:1] for rule in spec.implied if rule.split("/")[1] == name]
@@ -138,7 +148,8 @@ def _wrong_in_it(
 ) -> tuple[Iterable[str], Iterable[str]]:
     """An answer with a code that may come, and with something wrong in what else it says."""
     rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
-    if any(problem.weight >= SHAPE for problem in _problems(lightest)) and not _malformed(event):
+    due = any(problem.weight >= SHAPE and not problem.by_itself for problem in _problems(lightest))
+    if due and not _malformed(event):
         rules = _alternately(rules, _before(nearest))
     if _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
@@ -204,7 +215,11 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     if UNDRIVEN in weights:
         # What has happened last has led to something else; or it has not, and something happened that nobody did.
         rules = _alternately(causes.latest(nearest.belief), rules)
-    elif max(weights, default=0) >= LEFT_OUT and not any(SHAPE <= weight < UNOWED for weight in weights):
+    elif (
+        FAILED not in weights
+        and max(weights, default=0) >= LEFT_OUT
+        and not any(SHAPE <= weight < UNOWED for weight in weights)
+    ):
         # What is shown of something that has happened may be wrong in how it is shown, or in what has happened.
         rules = _alternately(rules, _before(nearest, lightest[0]))
     notes = [problem.says for problem in _problems(lightest)]
@@ -309,7 +324,7 @@ def _against_end(nearest: Nearest, event: Ended) -> Accusation:
     ways = [spec.delivery(topic) for topic in topics]
     codes = ", ".join(dict.fromkeys(code for way in ways for code in way.ends))
     note = f"the stream has to go on; it may only end with {codes}" if codes else "the stream has to go on"
-    return (), [rule for way in ways for rule in way.unending or way.unowed], [note]
+    return (), [rule for way in ways for rule in way.unending], [note]
 
 
 def _against_drive(nearest: Nearest, event: Event) -> Accusation:

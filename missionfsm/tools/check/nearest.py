@@ -28,6 +28,7 @@ from missionfsm.oracle.successors import ExhaustedError, Successor
 from missionfsm.oracle.symbols import call_of, names_of
 from missionfsm.tools.check.candidates import (
     CODE,
+    FAILED,
     LEFT_OUT,
     NAME,
     READING,
@@ -181,7 +182,7 @@ class Nearest:
             return Problem(f"the result is malformed: {given.shape.says}", (), SHAPE)
         wrong = self.spec.answers(answer.shape, given.shape) if self.spec.answers else None
         if isinstance(wrong, Mismatch):
-            return Problem(wrong.says, (wrong.rule,), SHAPE)
+            return Problem(wrong.says, (wrong.rule,), SHAPE, by_itself=wrong.near)
         return Problem(f"the result is {given.shape}, expected {answer.shape}", (), SHAPE)
 
     # Messages.
@@ -305,7 +306,7 @@ class Nearest:
 
     def _undriven(self, here: Explanation, message: _Message) -> Iterator[Candidate]:
         """The message shows what something would lead to that nobody made happen, or a call that failed."""
-        for step, says, rules in self._unseen(here):
+        for step, says, rules, weight in self._unseen(here):
             taken = self.successors.advance(here, step)
             if taken is None:
                 continue
@@ -317,20 +318,23 @@ class Nearest:
                     continue
                 if not self._matched(after, channel, channel.owed[-1], message):
                     unowed = self.spec.delivery(channel.topic).unowed
-                    yield Candidate(problems=(Problem(says, rules or unowed, UNDRIVEN),), allowed=False)
+                    broken = (*unowed, *rules) if weight == FAILED else rules or unowed
+                    yield Candidate(problems=(Problem(says, broken, weight),), allowed=False)
 
-    def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...]]]:
-        """Steps that were not taken, with what they are and the rules that are broken if they were."""
+    def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...], int]]:
+        """Steps that were not taken, with what they are, the rules that are broken if they were, and the weight."""
         for drive in self.spec.drives.values():
             for event in drive.by_itself if drive.name in self.successors.driven else ():
                 says = f"{described(self.spec, event)} would have to happen first, and nobody made it happen"
-                yield from ((step, says, drive.impossible) for step in drive.steps(here.state, event, ()))
+                yield from ((step, says, drive.impossible, UNDRIVEN) for step in drive.steps(here.state, event, ()))
         for call in reversed(self.about.recent):
             if call.answer.code != OK:
                 refs = self.successors.refs(here, tuple(map(self.belief.number, call.about)))
                 says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
                 effects = self.successors.effects(here.state, call.request, refs)
-                yield from ((step, says, ()) for step in effects if step.answer and step.answer.code == OK)
+                yield from (
+                    (step, says, step.rules, FAILED) for step in effects if step.answer and step.answer.code == OK
+                )
 
     # What has to be forgiven.
 

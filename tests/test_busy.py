@@ -28,6 +28,16 @@ def test_a_busy_log_conforms(tmp_path: Path, seed: int, habits: Habits) -> None:
     assert verdict.conforms, str(verdict)
 
 
+@pytest.mark.parametrize("seed", [1, 33])
+def test_a_log_of_five_clients_whose_calls_are_lost_is_decided(tmp_path: Path, seed: int) -> None:
+    """Where what was wrong comes out long after, other ways of what came before are followed beside the nearest one."""
+    path = tmp_path / "log"
+    lines = busy(seed, 100, Habits(clients=5), readings_at_random(seed))
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.conforms, str(verdict)
+
+
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_a_busy_log_that_is_cut_anywhere_is_no_violation(tmp_path: Path, seed: int) -> None:
     """However much is missing at the beginning of a busy log, what is left is never a violation."""

@@ -28,8 +28,11 @@ from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Succe
 from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")
-WIDTH = 1
-"""How many explanations are followed at once."""
+WIDTH, WIDER = 1, 8
+"""How many explanations are followed at once: at first, and where half of the budget was spent on following so many.
+
+What was wrong long before is found out sooner where those that are followed differ in it.
+"""
 
 EFFORT = 300
 """How much of the budget goes into finding more than one explanation of an event at once, the first time."""
@@ -231,22 +234,40 @@ class Search:
         self._horizon, self._built = horizon, self._required
         self.successors.reset()
         if anew:
-            self._bytes = 0
-            start = (ahead.narrowed(one) for one in self._start)
-            self.layers = [Layer(tuple(one for one in start if one))]
-            self._tried: list[dict[Place, list[_Tried]]] = []
-        self._tried += [{} for _ in range(horizon + 1 - len(self._tried))]
-        ahead.required = self._required
-        if not anew:
+            self._begin_anew()
+        else:
+            ahead.required = self._required
             self._drop_what_leads_nowhere()
         self._stuck = 0
         try:
-            found = self._spending(self._explain, budget)
+            found = self._widening(budget)
         finally:
             self._stuck, self._stopped = max(self._stuck, len(self.layers) - 1), ahead.stopped
             self.reached = max(self.reached, min(self._stuck, horizon))
         self._explained = horizon if found else None
         return found
+
+    def _begin_anew(self) -> None:
+        """Forget what was tried, and stand before the first event; no reading has to stay for what was before."""
+        ahead = self._ahead
+        self._bytes, ahead.at, ahead.required = 0, 0, 0
+        start = (ahead.narrowed(one) for one in self._start)
+        self.layers = [Layer(tuple(one for one in start if one))]
+        self._tried: list[dict[Place, list[_Tried]]] = []
+
+    def _widening(self, budget: int) -> bool:
+        """Look for explanations on a budget; once half of it is spent, for several of an event at once."""
+        if not self.whole:
+            return self._spending(self._explain, budget)
+        try:
+            return self._spending(self._explain, budget // 2)
+        except ExhaustedError:
+            self._begin_anew()
+        width, self.width = self.width, max(self.width, WIDER)
+        try:
+            return self._spending(self._explain, budget)
+        finally:
+            self.width = width
 
     def _drop_what_leads_nowhere(self) -> None:
         """Go back before the explanations that cannot lead to what is known now; only the last ones are looked at."""
@@ -300,6 +321,8 @@ class Search:
             self.layers[-1].depends |= failed.depends
 
     def _explain(self) -> bool:
+        self._tried += [{} for _ in range(self._horizon + 1 - len(self._tried))]
+        self._ahead.required = self._required
         layers, advanced = self.layers, self.successors.spent
         while len(layers) <= self._horizon:
             if not layers:

@@ -82,7 +82,7 @@ def _robot(system: System, sockets: Sockets, command: list[str] | None, conversa
 
     assert sockets.listen is not None  # noqa: S101 - the caller has looked
     bridge = RobotBridge(sockets.listen, sockets.tolerance, program=Program(command) if command else None)
-    return Bridged(in_real_time(system), bridge, conversations if command else 1, _note(sockets))
+    return Bridged(in_real_time(system, world={"name": None}), bridge, conversations if command else 1, _note(sockets))
 
 
 def _server(system: System, sockets: Sockets, command: list[str] | None, conversations: int, timeout: float) -> Bridged:

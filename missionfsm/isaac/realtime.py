@@ -25,20 +25,22 @@ MAX_WAIT_SECONDS = 6.0
 _STATUSES = ("running", "success", "failure")
 
 
-def in_real_time(system: System, tolerance: float = 0.0, scripts: int = 0) -> System:
+def in_real_time(system: System, tolerance: float = 0.0, scripts: int = 0, world: JSON = None) -> System:
     """A system to be tried in real time.
 
     Args:
         tolerance: seconds by which times may be off, where the system's world says so.
         scripts: how many of the written conversations to have.
+        world: what else the world says.
     """
+    here = {**(world or {}), **({"tolerance": tolerance} if tolerance else {})}
 
-    def alphabet(world: JSON, bounds: Bounds) -> Alphabet:
-        whole = system.alphabet(world, bounds)
+    def alphabet(given: JSON, bounds: Bounds) -> Alphabet:
+        whole = system.alphabet(given, bounds)
         return evolve(
             whole,
             drives=tuple(one for one in whole.drives if one.get("seconds", 0) <= MAX_WAIT_SECONDS),
-            worlds=({"tolerance": tolerance} if tolerance else {},),
+            worlds=(here,),
             scripts=whole.scripts[:scripts],
         )
 

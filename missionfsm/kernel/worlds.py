@@ -22,28 +22,38 @@ class WorldForm:
     """The JSON of worlds: each attribute of a class is the parameter of its name in camel case, and has a default.
 
     Attributes may be texts with something in them, truth values, members of an enum, and tuples of texts. What is None
-    is not told.
+    is not told, or null where it has another default.
 
     Attributes:
         kind: the class.
         without: names of attributes that are no parameters.
         parameters: each parameter with its attribute, and what that may be.
+        untold: the parameters that may be null, since their attributes may be None and are not by default.
     """
 
     kind: type
     without: tuple[str, ...] = ()
     parameters: Mapping[str, tuple[str, type]] = field(init=False)
+    untold: frozenset[str] = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         hints = get_type_hints(self.kind)
         names = (one.name for one in fields(self.kind) if one.name not in self.without)
         found = {_camel(name): (name, _told(hints[name])) for name in names}
         object.__setattr__(self, "parameters", found)
+        defaults = {one.name: one.default for one in fields(self.kind)}
+        untold = (
+            name
+            for name, (attribute, _) in found.items()
+            if type(None) in get_args(hints[attribute]) and defaults[attribute] is not None
+        )
+        object.__setattr__(self, "untold", frozenset(untold))
 
     @property
     def members(self) -> dict[str, Mapping[str, JSON]]:
         """JSON Schemas of the parameters."""
-        return {name: _schema(kind) for name, (_, kind) in self.parameters.items()}
+        found = {name: _schema(kind) for name, (_, kind) in self.parameters.items()}
+        return found | {name: {"anyOf": [dict(found[name]), {"type": "null"}]} for name in self.untold}
 
     def attributes(self, given: JSON) -> dict[str, object]:
         """The attributes that some parameters give. Raises UnreadableError for what is none, or not what it may be."""
@@ -55,7 +65,8 @@ class WorldForm:
             if name not in known:
                 raise UnreadableError(f"world.{name}: there is no such field; there are {', '.join(known)}")
             attribute, kind = known[name]
-            found[attribute] = _read(value, kind, f"world.{name}")
+            null = value is None and name in self.untold
+            found[attribute] = None if null else _read(value, kind, f"world.{name}")
         return found
 
     def read(self, given: JSON) -> World:
@@ -65,7 +76,7 @@ class WorldForm:
     def write(self, world: World) -> JSON:
         """The parameters of a world."""
         values = {name: getattr(world, attribute) for name, (attribute, _) in self.parameters.items()}
-        return {name: _written(value) for name, value in values.items() if value is not None}
+        return {name: _written(value) for name, value in values.items() if value is not None or name in self.untold}
 
 
 def _camel(name: str) -> str:

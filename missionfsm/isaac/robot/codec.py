@@ -6,9 +6,9 @@ import json
 
 from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
-from missionfsm.isaac.robot.state import Introduction, Report, World
+from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
-from missionfsm.isaac.shared.line import from_json, new_uuid, part_of, see, uuid_name
+from missionfsm.isaac.shared.line import from_json, new_uuid, part_of, see, see_other, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -24,7 +24,7 @@ from missionfsm.kernel.language import JSON, Codec, DriveForm, Name, WorldForm, 
 from missionfsm.kernel.shapes import TEXT
 
 ANY_NAME = "robot"
-"""What a robot is called of which the world tells no name."""
+"""What a robot is called of which the world says that its name is any."""
 
 WORLD = WorldForm(World)
 
@@ -85,9 +85,13 @@ def _essence(event: Arrives, names: tuple[Name, ...]) -> dict[str, JSON]:
 # Lines that the robot sends.
 
 
-def write_message(view: Report | Introduction, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
-    """The line that shows a report, or the name."""
+def write_message(
+    view: Report | Introduction | Other, names: tuple[Name, ...], choice: int, number: int, at: float
+) -> JSON:
+    """The line that shows a report, or the name; or something else."""
     time = round(at * 1e9)
+    if isinstance(view, Other):
+        return encode(Message(Header(view.another, time, time), TextProto("ready"))).decode().removesuffix("\n")
     statuses = [one.value for one in WireStatus]
     # An event may cause several messages, each with an identifier of its own: those differ in what they say or of what.
     says = 0 if isinstance(view, Introduction) else 1 + statuses.index(view.status)
@@ -113,7 +117,7 @@ CODEC = Codec(
     read_world=WORLD.read,
     write_world=WORLD.write,
     drives={"line": DriveForm(_arrives, _essence, {"line": TEXT}, ("line",)), "advance": ADVANCE},
-    split_message=lambda line: (part_of(line, *see(line)),),
+    split_message=lambda line: (part_of(line, *(see_other(line) or see(line))),),
     read_content=from_json,
     write_message=write_message,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives
-from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.language import Happening, Malformed
@@ -38,6 +38,8 @@ def describe(value: object) -> str:
         return f"{value.status.upper()} of its mission on {value.channel}"
     if isinstance(value, Introduction):
         return f"the name{'' if value.name is None else f' {value.name!r}'} on {value.channel}"
+    if isinstance(value, Other):
+        return "whatever else is sent on other channels"
     if isinstance(value, LineContent):
         return _said(value)
     if isinstance(value, Malformed):
@@ -52,6 +54,8 @@ def describe(value: object) -> str:
 def _said(line: LineContent) -> str:
     if line.kind == "status":
         return f"{line.what.upper()} on {line.channel}"
+    if line.kind == "other":
+        return f"a message of type {line.what} on {line.channel}"
     return f"the text {line.what!r} on {line.channel}" if line.kind == "text" else f"a mission on {line.channel}"
 
 

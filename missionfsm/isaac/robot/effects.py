@@ -14,12 +14,22 @@ from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
 from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives
-from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet, Introduction, Report, Waiting, World
+from missionfsm.isaac.robot.state import (
+    NAME_BOUND,
+    RUNNING_BOUND,
+    TICK,
+    Codelet,
+    Introduction,
+    Other,
+    Report,
+    Waiting,
+    World,
+)
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Happening, Opening, Refs, Rule, Step
 
-STATUSES, NAMES = "statuses", "names"
-"""The two topics of the one connection: statuses and names come in any order among one another."""
+STATUSES, NAMES, OTHERS = "statuses", "names", "others"
+"""The topics of the one connection: statuses, names and what else is sent come in any order among one another."""
 
 MAX_WAITING = 32
 """How many statuses wait before the codelet is taken to have ticked when another one is due."""
@@ -54,6 +64,11 @@ def _offer(here: Codelet, about: int | None) -> Emission:
 def introduction(world: World, *, offer: bool = False) -> Emission:
     """The name that is owed, or may be said."""
     return Emission(NAMES, Introduction(world.name, world.name_channel), (), stays=offer, certain=not offer)
+
+
+def _anything(world: World) -> Emission:
+    """What the application around the codelet may send besides."""
+    return Emission(OTHERS, Other(world.channels), (), stays=True)
 
 
 def _kept_names(here: Codelet) -> tuple[int, ...]:
@@ -338,7 +353,7 @@ def connection(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
         return () if here.connected else (_connected(here),)
     if not here.connected:
         return ()
-    gone = Step(evolve(here, connected=False), clears=(STATUSES, NAMES), rules=(rules.LINKED.id,))
+    gone = Step(evolve(here, connected=False), clears=(STATUSES, NAMES, OTHERS), rules=(rules.LINKED.id,))
     ways = (gone, _forgetful(gone)) if here.waiting else (gone,)
     if not here.running:
         return ways
@@ -374,7 +389,7 @@ def _failed(gone: Step) -> Step:
 
 def _connected(here: Codelet) -> Step:
     after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
-    emits = [introduction(here.world, offer=True)]
+    emits = [introduction(here.world, offer=True), _anything(here.world)]
     if here.running and not here.waiting:
         emits.append(_offer(here, _old(here)))
     return Step(after, emits=tuple(emits), rules=(rules.NAMED.id,))
@@ -387,5 +402,6 @@ def begins(here: Codelet) -> tuple[Step, ...]:
     openings = (
         Opening(STATUSES, 0, kind="connection"),
         Opening(NAMES, 0, (introduction(here.world, offer=True),), kind="connection"),
+        Opening(OTHERS, 0, (_anything(here.world),), kind="connection"),
     )
     return (Step(evolve(here, begun=True, connected=True), opens=openings),)

@@ -167,7 +167,7 @@ WAIVED: Mapping[str, str] = {
     "AI-34": "the three states are those of the wire; the others are the server's",
     "AI-35": _SERVER,
     "AI-36": _SERVER,
-    "AI-37": "the name is compared with the one that the world tells; where it tells none, any is right",
+    "AI-37": "the name is compared with the one that the world tells; where that is null, any is right",
     "AI-38": "no message with data buffers is sent to a robot",
     "AI-39": _SERVER,
 }

@@ -42,12 +42,17 @@ LIFECYCLE: Chart[str] = Chart(
 
 @frozen(cache_hash=True)
 class World:
-    """What a robot is configured with: its name, None where that is not told, and its channels."""
+    """What a robot is configured with: its name, None where that is any, and its channels."""
 
-    name: str | None = None
+    name: str | None = "robot"
     channel: str = "mission"
     status_channel: str = "mission_status"
     name_channel: str = "name"
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channels that missions and robots are talked of on."""
+        return self.channel, self.status_channel, self.name_channel
 
 
 @frozen(cache_hash=True)
@@ -81,6 +86,18 @@ class Introduction:
 
     name: str | None
     channel: str
+
+
+@frozen(cache_hash=True)
+class Other:
+    """Whatever else the application around the codelet sends, on other channels than those."""
+
+    channels: tuple[str, ...]
+
+    @property
+    def another(self) -> str:
+        """A channel that is none of those."""
+        return next(f"log{'-' * length}" for length in range(4) if f"log{'-' * length}" not in self.channels)
 
 
 @frozen(cache_hash=True)

@@ -9,15 +9,16 @@ from attrs import evolve
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
-from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch, Refs
 
 RULES = {"running": rules.RUNNING, **FINAL}
+_KINDS = {"mission": "a mission", "status": "a status", "text": "a text", "other": "a message of another type"}
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}
 
 
-def matches(view: Report | Introduction, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
+def matches(view: Report | Introduction | Other, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
     """The ways in which a line shows what is owed, or why it does not."""
     if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
@@ -32,9 +33,19 @@ def matches(view: Report | Introduction, content: LineContent | Malformed) -> tu
     if content.borrowed:
         assumes = (*assumes, AI_27_UUID["b"])
     common = (rules.ENVELOPE.id, rules.INTEGERS.id, rules.TYPES.id)
+    if isinstance(view, Other):
+        return _goes_its_own_way(view, content, assumes)
     if isinstance(view, Introduction):
         return _introduces(view, content, assumes, common)
     return _reports(view, content, assumes, common)
+
+
+def _goes_its_own_way(
+    view: Other, content: LineContent, assumes: tuple[Assumption, ...]
+) -> tuple[Match, ...] | Mismatch:
+    if content.kind not in ("other", "text") or content.channel in view.channels:
+        return Mismatch(rules.ENVELOPE.id, f"{_KINDS[content.kind]} on {content.channel!r} is no affair of others")
+    return (Match(assumes),)
 
 
 def _introduces(
@@ -76,8 +87,10 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
     return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
-def undelivered(view: Report | Introduction) -> tuple[str, ...]:
+def undelivered(view: Report | Introduction | Other) -> tuple[str, ...]:
     """What is broken where a line is owed and does not come."""
+    if isinstance(view, Other):
+        return ()
     return (rules.NAMED.id,) if isinstance(view, Introduction) else (RULES[view.status].id,)
 
 
@@ -85,6 +98,8 @@ def unowed(here: Codelet, topic: Hashable, content: LineContent | Malformed, _: 
     """What is broken by a line that nothing owes: a final status comes once, and nothing without a connection."""
     if not here.connected and here.begun:
         return (rules.LINKED.id,)
+    if topic == "others":
+        return (rules.ENVELOPE.id,)
     if topic == "names" or not isinstance(content, LineContent) or content.what not in RULES:
         return ()
     return (RULES[content.what].id,)
@@ -92,9 +107,10 @@ def unowed(here: Codelet, topic: Hashable, content: LineContent | Malformed, _: 
 
 _ANY = Delivery(unending=(rules.ENVELOPE.id,), malformed=(rules.ENVELOPE.id,), every_time=True)
 _NAMES = evolve(_ANY, unowed=(rules.NAMED.id,))
+_OTHERS = evolve(_ANY, unowed=(rules.ENVELOPE.id,))
 _STATUSES = evolve(_ANY, unowed=(rules.RUNNING.id,), named=(rules.ABOUT.id,))
 
 
 def delivery(topic: Hashable) -> Delivery:
     """What is broken by a line that nothing owes, or by one that does not come: RUNNING and the name come again."""
-    return _NAMES if topic == "names" else _STATUSES
+    return {"names": _NAMES, "others": _OTHERS}.get(str(topic), _STATUSES)

@@ -31,9 +31,9 @@ class LineContent:
     """One message, without its mission's identifier and its times.
 
     Attributes:
-        kind: ``mission``, ``status`` or ``text``.
+        kind: ``mission``, ``status``, ``text``, or ``other`` for what is no part of missions.
         channel: the header's.
-        what: the configuration as canonical JSON, the status in lower case, or the text.
+        what: the configuration as canonical JSON, the status in lower case, the text, or the type id.
         form: how it was written: ``object`` or ``text`` (a configuration), ``upper``, ``lower`` or ``number`` (status).
         named: whether it carries a mission's identifier.
         header_named: whether the header carries an identifier that counts (only where the caller asked for it).
@@ -108,6 +108,28 @@ def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], LineCo
         return (), Malformed(f"{first.path}: {first.problem}" if first.path else first.problem)
     raw = json.loads(line)
     return _named(first, raw, header=header)
+
+
+def see_other(line: object) -> tuple[tuple[Name, ...], LineContent] | None:
+    """The same of a message whose type is none of those that missions travel in; None where it is one, or is wrong."""
+    if not isinstance(line, str) or "\n" in line:
+        return None
+    found = decode_line(line.removesuffix("\r").encode(errors="surrogatepass"))
+    if len(found) != 1 or not isinstance(found[0], WireError) or found[0].kind != "type":
+        return None
+    header = json.loads(line)["header"]
+    proto = header.get("proto")
+    if not isinstance(proto, int) and not str(proto).lstrip("-").isdecimal():
+        return None
+    stamped = bool(stamp(line))
+    return (), LineContent(
+        "other",
+        header["channel"],
+        str(proto),
+        bare=_bare(json.loads(line)),
+        stamped=stamped,
+        unsigned=_unsigned(proto),
+    )
 
 
 def stamp(line: object) -> int | None:

@@ -20,6 +20,7 @@ from missionfsm.isaac.server.readings import (
     AI_25_TAKEN,
     AI_26,
     AI_26_BLANK,
+    AI_29,
     AI_37,
     AI_37_EMPTY,
     AI_38,
@@ -28,6 +29,7 @@ from missionfsm.isaac.server.readings import (
 )
 from missionfsm.isaac.server.reports import believed, means_nothing, reports
 from missionfsm.isaac.server.state import (
+    ENDED,
     PASS_PERIOD,
     START,
     UNDER_WAY,
@@ -53,6 +55,22 @@ def drops(move: Move, link: Link, *, seen: bool = False) -> Moves:
     because = (rules.DROPPED.id,) if link.serves and waiting else ()
     for after in closed(move.to(move.state, *because), link, seen=seen):
         yield from _succeeded(after, link)
+
+
+def without(server: Server, link: Link) -> Server:
+    """A server that has ended, without a connection."""
+    return evolve(server, over=True, gone=(), links=tuple(one for one in server.links if one.slot != link.slot))
+
+
+def is_over(move: Move, link: Link) -> Move | None:
+    """The server ends, which is seen on a connection: once its missions are done, or at any time (AI-29)."""
+    if move.state.over:
+        return move.to(without(move.state, link))
+    missions = move.state.missions
+    here: Move | None = move
+    if not missions or any(one.status not in ENDED for one in missions):
+        here, _ = split(move, AI_29, "s")
+    return None if here is None else here.to(without(here.state, link))
 
 
 def _succeeded(move: Move, gone: Link) -> Moves:

@@ -30,7 +30,9 @@ class Part:
 
 @functools.lru_cache(maxsize=20_000)
 def parts(server: Server) -> tuple[Part, ...]:
-    """The parts of a server, in the order of their first missions, those without any last."""
+    """The parts of a server, in the order of their first missions, those without any last; none once it has ended."""
+    if server.over:
+        return ()
     groups = _Groups()
     links = (*server.links, *server.gone)
     open_ones = [index for index, one in enumerate(server.missions) if one.status not in ENDED]

@@ -369,6 +369,13 @@ AI_28_UUID = Ambiguity(
     flagged=frozenset("n"),
     rule="a-line-is-one-message",
 )
+AI_29 = Ambiguity(
+    "AI-29",
+    "When may the server end, and its connections with it?",
+    {"d": "once its missions are done, however they ended", "s": "at any time, as one that is stopped does"},
+    default="d",
+    flagged=frozenset("s"),
+)
 AI_31 = Ambiguity(
     "AI-31",
     "Is a mission lost whose robot stops reporting RUNNING?",
@@ -446,7 +453,7 @@ WAIVED: Mapping[str, str] = {
     "AI-22 a to h": "it makes and submits in one; an ended upstream counts at once (g); h is a violation",
     "AI-23": "not observable: slips in the sample",
     "AI-27 a": "other fields of a header may be missing; that a uuid comes again after others is not noticed",
-    "AI-29": "about the program around the server",
+    "AI-29 a to c": "with what status the program around the server exits is not seen on its connections",
     "AI-30": "about the program around the server",
     "AI-32": "a FAILURE fails the mission that it is about, preempted or not (c); a and b are about the robot",
     "AI-34": "the statuses of the server are those of AI-04; STARTED is sent and not acknowledged (b)",

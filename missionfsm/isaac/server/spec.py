@@ -13,7 +13,7 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import canonical, explore_size, idle_search_key, search_key, search_size
 from missionfsm.isaac.server.clocks import started, zero_means
-from missionfsm.isaac.server.connections import connects, drops, hears
+from missionfsm.isaac.server.connections import connects, drops, hears, is_over, without
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.dispatch import urgent
@@ -106,6 +106,8 @@ def _outcomes(
 ) -> tuple[Step, ...]:
     if isinstance(request, Statuses):
         return tuple(status_answers(server))
+    if server.over:
+        return ()
     return _submitted(operations["submit"], server, request, tuple(mission_of_handle(server, ref) for ref in refs))
 
 
@@ -178,6 +180,8 @@ def _clocked(move: Move) -> Move:
 
 
 def _connect(server: Server, _: Connects, __: Refs) -> tuple[Step, ...]:
+    if server.over:
+        return ()
     move = connects(Move(server))
     step = _step(server, move, new=(-1,))
     return (evolve(step, opens=(Opening(topic(move.state.links[-1].slot), -1, kind="connection"),)),)
@@ -193,6 +197,8 @@ def _line(server: Server, heard: Incoming, refs: Refs) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
+    if server.over:
+        return (Step(server),)
     named = mission_of_uuid(server, refs[1]) if heard.named else None
     header = mission_of_uuid(server, refs[-1]) if heard.header else None
     quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, heard, refs)))
@@ -204,12 +210,16 @@ def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
+    if server.over:
+        return (_step(server, Move(without(server, server.links[position]))),)
     quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
     return tuple(_step(server, move) for move in merged(drops(Move(quiet), quiet.links[position], seen=True)))
 
 
 @functools.lru_cache(maxsize=20_000)
 def _advance(server: Server, event: Passes | Elapsed, _: Refs) -> tuple[Step, ...]:
+    if server.over:
+        return (Step(server),)
     if isinstance(event, Elapsed):
         return (_step(server, Move(elapsed(server, event.time))),)
     return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
@@ -223,16 +233,16 @@ def _with_silence(before: Server, move: Move) -> Move:
 
 
 def _closing(server: Server, at: Hashable) -> tuple[Step, ...]:
-    """A connection that said no name is closed, whenever that is (AI-18.unnamed)."""
+    """A connection is closed, whenever that is: since it said no name (AI-18.unnamed), or with the server (AI-29)."""
     link = server.link_of_topic(at)
-    if link is None or link.name is not None:
+    if link is None:
         return ()
-    _, tired = split(Move(server), AI_18_UNNAMED, "c")
-    return (
-        ()
-        if tired is None
-        else tuple(_step(server, move.to(move.state, rules.UNNAMED.id)) for move in closed(tired, link))
-    )
+    over = is_over(Move(server), link)
+    steps = () if over is None else (_step(server, over),)
+    _, tired = (None, None) if link.name is not None or server.over else split(Move(server), AI_18_UNNAMED, "c")
+    if tired is None:
+        return steps
+    return (*(_step(server, move.to(move.state, rules.UNNAMED.id)) for move in closed(tired, link)), *steps)
 
 
 def _urgent(server: Server) -> tuple[Step, ...]:

@@ -226,6 +226,7 @@ class Server:
         gone: connections that dropped, of which no pass need have noticed it (AI-39.order s): what a pass sends on one
             may be seen. Slots below 0 are of those that the server ended itself.
         unsteady: whether connections may drop with nobody saying so.
+        over: whether it has ended: nothing happens any more but that its connections are seen to end.
     """
 
     name_channel: str = "name"
@@ -236,6 +237,7 @@ class Server:
     slow: int = 0
     gone: tuple[Link, ...] = ()
     unsteady: bool = False
+    over: bool = False
 
     def letters(self, question: Ambiguity) -> str:
         """The readings of a question that are left."""
@@ -308,6 +310,7 @@ class Move:
             server.slow,
             server.gone,
             server.unsteady,
+            server.over,
         )
         return Move(after, self.sent, self.rules, self.at)
 

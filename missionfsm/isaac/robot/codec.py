@@ -8,7 +8,7 @@ from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, 
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
-from missionfsm.isaac.shared.line import from_json, new_uuid, part_of, see, see_other, uuid_name
+from missionfsm.isaac.shared.line import from_json, is_unsigned, new_uuid, part_of, see, see_other, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -45,7 +45,24 @@ def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
     numeric = not (strict and isinstance(strict[0], Message))
     uuid = message.payload.uuid
     names = () if uuid is None or uuid.value == 0 else (uuid_name(uuid),)
-    return Arrives(_configuration(json.loads(line), message.payload), bool(names), numeric, channel=channel), names
+    raw = json.loads(line)
+    proto, given = raw["header"].get("proto"), raw["payload"].get("config")
+    kind = _configuration(raw, message.payload)
+    arrives = Arrives(
+        kind,
+        bool(names),
+        numeric,
+        channel=channel,
+        untyped=proto is None or is_unsigned(proto),
+        misplaced=given is not None and not (isinstance(given, dict) and _is_text(given.get("serialized", ""), given)),
+        nodes=kind == USABLE and bool(strictjson.parse(message.payload.config)),
+    )
+    return arrives, names
+
+
+def _is_text(serialized: JSON, config: JSON) -> bool:
+    """Whether a configuration is in a text, or there is none."""
+    return isinstance(serialized, str | None) and ("serialized" in config or not config)
 
 
 def _configuration(raw: JSON, mission: MissionProto) -> str:
@@ -78,7 +95,8 @@ def _essence(event: Arrives, names: tuple[Name, ...]) -> dict[str, JSON]:
     if event.mission is None:
         return {"line": "{}"}
     uuid = Uuid.of(names[0][1]) if names else None  # type: ignore[index]
-    message = Message(Header(event.channel), MissionProto(uuid, _CONFIGURATIONS[event.mission]))
+    config = '{"node":{"component":{}}}' if event.nodes else _CONFIGURATIONS[event.mission]
+    message = Message(Header(event.channel), MissionProto(uuid, config))
     return {"line": encode(message).decode().removesuffix("\n")}
 
 

@@ -175,9 +175,14 @@ def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
     if event.mission is None:
         return (ignored,)
     found = tuple(_mission(here, event, refs))
-    if not event.numeric:
-        return found
-    return (*_all(found, (readings.AI_25_TAKEN["a"],)), evolve(ignored, assumes=(readings.AI_25_TAKEN["b"],)))
+    for odd, taken, not_taken in (
+        (event.numeric, (readings.AI_25_TAKEN["a"],), readings.AI_25_TAKEN["b"]),
+        (event.untyped, (readings.AI_27_TAKEN["a"],), readings.AI_27_TAKEN["b"]),
+        (event.misplaced, (), readings.AI_28_TAKEN["c"]),
+    ):
+        if odd:
+            found = (*_all(found, taken), evolve(ignored, assumes=(not_taken,)))
+    return found
 
 
 def _all(steps: Iterator[Step] | tuple[Step, ...], assumes: tuple[Assumption, ...]) -> tuple[Step, ...]:
@@ -199,6 +204,15 @@ def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
     if event.named and here.mission and refs[:1] == here.mission:
         same = (readings.AI_32_SAME["a"],)
         yield Step(here, rules=(rules.IGNORES.id,), assumes=(readings.AI_32_SAME["b"],))
+    as_written: tuple[Assumption, ...] = ()
+    for doubtful, taken, not_usable in (
+        (event.misplaced, readings.AI_28_TAKEN["a"], readings.AI_28_TAKEN["b"]),
+        (event.nodes, readings.AI_33_UNKNOWN["a"], readings.AI_33_UNKNOWN["b"]),
+    ):
+        if doubtful:
+            yield from _all(_fails(here, event), (*same, *as_written, not_usable))
+            as_written = (*as_written, taken)
+    same = (*same, *as_written)
     for usable, assumes in _USES.get(event.mission or "", ((False, ()),)):
         if usable:
             yield from _all(_starts(here, event), (*same, *assumes))

@@ -16,7 +16,12 @@ components; any other JSON; no JSON."""
 class Arrives:
     """A line arrives: a mission with a configuration of one of the `CONFIGURATIONS`, or something else (None).
 
-    `numeric` says that 64-bit integers in it are numbers, `foreign` that it is a message of another type.
+    Attributes:
+        numeric: whether 64-bit integers in it are numbers.
+        foreign: whether it is a message of another type.
+        untyped: whether its header has no type id, or an unsigned one.
+        misplaced: whether its configuration is no text that holds JSON, but the JSON itself.
+        nodes: whether its configuration says something of nodes, of which nobody knows whether the robot has them.
     """
 
     mission: str | None = None
@@ -24,6 +29,9 @@ class Arrives:
     numeric: bool = False
     foreign: bool = False
     channel: str = ""
+    untyped: bool = False
+    misplaced: bool = False
+    nodes: bool = False
     name: str = "line"
 
 

@@ -62,6 +62,20 @@ AI_27_UUID = Ambiguity(
     flagged=frozenset("b"),
     rule="a-line-is-one-message",
 )
+AI_27_TAKEN = Ambiguity(
+    "AI-27.taken",
+    "Is a mission understood whose header has no type id, or an unsigned one?",
+    {"a": "yes", "b": "no, it is no message"},
+    default="a",
+    rule="a-mission-starts-the-behavior-tree",
+)
+AI_28_TAKEN = Ambiguity(
+    "AI-28.taken",
+    "What is a mission whose configuration is JSON itself instead of a text that holds it?",
+    {"a": "one with that configuration", "b": "one whose configuration cannot be used", "c": "no message"},
+    default="a",
+    rule="a-mission-starts-the-behavior-tree",
+)
 AI_28_STATUS = Ambiguity(
     "AI-28.status",
     "How is a status written?",
@@ -115,6 +129,14 @@ AI_33_NODE = Ambiguity(
     "What is a configuration in which something is no node with components?",
     {"a": "one that can be used", "b": "one that cannot be used, as in the shipped software"},
     default="a",
+    rule="an-unusable-configuration-fails-the-mission",
+)
+AI_33_UNKNOWN = Ambiguity(
+    "AI-33.unknown",
+    "What is a configuration of nodes of which nobody says whether the robot has them?",
+    {"a": "one that can be used", "b": "one that cannot be used"},
+    default="a",
+    flagged=frozenset("b"),
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNUSABLE = Ambiguity(

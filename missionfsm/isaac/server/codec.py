@@ -30,6 +30,7 @@ from missionfsm.isaac.shared.line import (
     LineContent,
     canonical,
     from_json,
+    is_unsigned,
     new_uuid,
     part_of,
     see,
@@ -268,13 +269,17 @@ def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
         return Incoming(FOREIGN if message.kind == _BUFFERS else BAD), ()
     numeric = isinstance(decode_line(data, numbers=False)[0], WireError)
     payload, channel = message.payload, message.header.channel
+    raw = json.loads(line)
+    proto = raw["header"].get("proto")
+    untyped = proto is None or is_unsigned(proto)
     if isinstance(payload, TextProto):
-        return Incoming(NAME, payload.text, channel, numeric=numeric), ()
+        return Incoming(NAME, payload.text, channel, numeric=numeric, untyped=untyped), ()
     if not isinstance(payload, MissionStatusProto):
         return Incoming(NOISE, channel=channel, numeric=numeric), ()
+    odd = raw["payload"]["missionStatus"] != payload.mission_status.value
     names = tuple(uuid_name(one) for one in (payload.uuid, message.header.uuid) if one is not None)
     named, header = payload.uuid is not None, message.header.uuid is not None
-    return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric), names
+    return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric, untyped, odd), names
 
 
 def _number(_: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:

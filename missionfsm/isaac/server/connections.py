@@ -20,6 +20,8 @@ from missionfsm.isaac.server.readings import (
     AI_25_TAKEN,
     AI_26,
     AI_26_BLANK,
+    AI_27_TAKEN,
+    AI_28_TAKEN,
     AI_29,
     AI_37,
     AI_37_EMPTY,
@@ -110,8 +112,12 @@ def inherited(before: Server, move: Move) -> Moves:
 
 def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: int | None) -> Moves:
     """A line arrives on a connection; `named` and `header` as in `Report`."""
-    if heard.numeric:
-        taken, refused = split(move, AI_25_TAKEN, "a")
+    for written, question in (
+        (heard.numeric, AI_25_TAKEN),
+        (heard.untyped, AI_27_TAKEN),
+        (heard.odd, AI_28_TAKEN),
+    ):
+        taken, refused = split(move, question, "a") if written else (move, None)
         if refused is not None:
             yield from _unreadable(refused, link, AI_26)
         if taken is None:

@@ -89,6 +89,8 @@ class Incoming:
         named: whether the payload names a mission; its name is the event's second.
         header: whether the header has an identifier; its name is the event's last.
         numeric: whether 64-bit integers in it are numbers.
+        untyped: whether its header has no type id, or an unsigned one.
+        odd: whether it is a status in capitals, or a number.
     """
 
     kind: str
@@ -97,4 +99,6 @@ class Incoming:
     named: bool = False
     header: bool = False
     numeric: bool = False
+    untyped: bool = False
+    odd: bool = False
     name: str = "line"

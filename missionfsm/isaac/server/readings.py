@@ -354,6 +354,18 @@ AI_27_UUID = Ambiguity(
     flagged=frozenset("b"),
     rule="a-line-is-one-message",
 )
+AI_27_TAKEN = Ambiguity(
+    "AI-27.taken",
+    "Is a message understood whose header has no type id, or an unsigned one?",
+    {"a": "yes", "b": "no, it is no message"},
+    default="a",
+)
+AI_28_TAKEN = Ambiguity(
+    "AI-28.taken",
+    "Is a status understood that is in capitals, or a number?",
+    {"a": "yes", "b": "no, only a name in lower case is"},
+    default="a",
+)
 AI_28_CONFIG = Ambiguity(
     "AI-28.config",
     "How does a MissionProto carry its configuration?",

@@ -128,7 +128,7 @@ def see_other(line: object) -> tuple[tuple[Name, ...], LineContent] | None:
         str(proto),
         bare=_bare(json.loads(line)),
         stamped=stamped,
-        unsigned=_unsigned(proto),
+        unsigned=is_unsigned(proto),
     )
 
 
@@ -145,7 +145,7 @@ def _named(message: Message, raw: JSON, *, header: bool) -> tuple[tuple[Name, ..
     payload, stamped = message.payload, message.header.uuid
     own = stamped is not None and bool(stamped.value)
     borrowed = own and not isinstance(payload, TextProto) and stamped == payload.uuid
-    marks = (_bare(raw), own, borrowed, _unsigned(raw["header"].get("proto")))
+    marks = (_bare(raw), own, borrowed, is_unsigned(raw["header"].get("proto")))
     if isinstance(payload, TextProto):
         return (), LineContent("text", message.header.channel, payload.text, "", False, False, *marks)  # noqa: FBT003 - no names
     names: list[Name] = []
@@ -182,7 +182,7 @@ def _status(payload: MissionStatusProto, raw: JSON) -> tuple[str, str, str] | Ma
     return "status", payload.mission_status.value, form
 
 
-def _unsigned(proto: JSON) -> bool:
+def is_unsigned(proto: JSON) -> bool:
     """Whether a type id is too large to be a signed one."""
     return str(proto).isdecimal() and int(proto) >= 1 << 63
 

@@ -1,0 +1,130 @@
+"""Lines that are not written as the wire has them: they may be understood or not, on either side."""
+
+import json
+from typing import Any
+
+import pytest
+from server_history import History
+
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import (
+    Header,
+    Message,
+    MissionProto,
+    MissionStatusProto,
+    TextProto,
+    Uuid,
+    WireStatus,
+)
+from missionfsm.oracle.transcript import Head
+from missionfsm.systems import system
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Outcome, Verdict
+
+ONE, TWO = Uuid(1, 1 << 61 | 1), Uuid(2, 1 << 61 | 2)
+
+
+def _written(payload: Any, channel: str, header: Any = None, **changes: Any) -> str:
+    """A message whose header and payload are changed so; what is None is left out."""
+    raw = json.loads(encode(Message(Header(channel, 1, 1), payload)))
+    for part, change in (("header", header or {}), ("payload", changes)):
+        raw[part] = {key: value for key, value in {**raw[part], **change}.items() if value is not None}
+    return json.dumps(raw)
+
+
+# The server.
+
+
+def _reported(**changes: Any) -> History:
+    line = _written(MissionStatusProto(ONE, WireStatus.RUNNING), "mission_status", **changes)
+    return History().submit(1).robot(1).sends(1, 1).settles.drive("line", connection=1, line=line).settles
+
+
+@pytest.mark.parametrize("shown", ["STARTED", "RUNNING"])
+@pytest.mark.parametrize(
+    "changes", [{"missionStatus": "RUNNING"}, {"missionStatus": 0}, {"header": {"proto": None}}], ids=str
+)
+def test_a_status_that_is_written_otherwise_counts_or_does_not(changes: Any, shown: str) -> None:
+    history = _reported(**changes).shows(shown)
+    assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
+    assert history.reports(1, 1, "running").settles.shows("RUNNING").judged().outcome is Outcome.CONFORMS
+
+
+def test_whether_a_status_in_capitals_counts_is_decided_once() -> None:
+    twice = _reported(missionStatus="RUNNING").shows("STARTED")
+    line = _written(MissionStatusProto(ONE, WireStatus.SUCCESS), "mission_status", missionStatus="SUCCESS")
+    history = twice.drive("line", connection=1, line=line).settles
+    assert history.shows("SUCCESS").judged(readings={"AI-10": "ab"}).outcome is Outcome.VIOLATES
+
+
+@pytest.mark.parametrize("proto", [None, "10961607615765939303"])
+@pytest.mark.parametrize("taken", [True, False])
+def test_a_name_without_a_signed_type_id_counts_or_does_not(proto: str | None, *, taken: bool) -> None:
+    line = _written(TextProto("r"), "name", {"proto": proto})
+    history = History().submit(1).drive("connect", connection=1).drive("line", connection=1, line=line)
+    history = history.sends(1, 1).settles if taken else history.settles.waits(2).settles.says(1).sends(1, 1).settles
+    assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
+
+
+# The robot.
+
+DRIVES = ("line", "behaviorSucceeded", "behaviorFailed", "advance")
+SETTLED = {"settled": True}
+
+
+def _says(uuid: Uuid, status: WireStatus) -> Any:
+    return {
+        "connection": 1,
+        "line": encode(Message(Header("mission_status", 1, 1), MissionStatusProto(uuid, status))).decode(),
+    }
+
+
+def _arrives(uuid: Uuid, config: str = "{}", **changes: Any) -> Any:
+    return {"drive": {"event": "line", "line": _written(MissionProto(uuid, config), "mission", **changes)}}
+
+
+def _judged(*lines: Any, **options: Any) -> Verdict:
+    return check(system("isaac.robot"), Head("isaac.robot", {}, DRIVES), (*lines, SETTLED), **options)
+
+
+RUNS = (
+    _says(ONE, WireStatus.RUNNING),
+    SETTLED,
+    {"drive": {"event": "behaviorSucceeded"}},
+    _says(ONE, WireStatus.SUCCESS),
+)
+FAILS = (_says(ONE, WireStatus.FAILURE),)
+NEXT = (SETTLED, _arrives(TWO), _says(TWO, WireStatus.RUNNING))
+CONFIG = {"a": {"b": {"c": 1}}}
+
+
+@pytest.mark.parametrize("then", [RUNS, ()], ids=["runs", "is ignored"])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"header": {"proto": None}},
+        {"header": {"proto": "9410896613310777529"}},
+        {"config": {"serialized": CONFIG}},
+        {"config": CONFIG},
+    ],
+    ids=str,
+)
+def test_a_mission_that_is_written_otherwise_runs_or_is_no_message(changes: Any, then: Any) -> None:
+    assert _judged(_arrives(ONE, **changes), *then, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+def test_a_mission_that_is_written_well_is_not_ignored() -> None:
+    assert _judged(_arrives(ONE), *NEXT).outcome is Outcome.VIOLATES
+
+
+@pytest.mark.parametrize("config", [{"serialized": CONFIG}, CONFIG])
+def test_a_configuration_that_is_no_text_may_be_unusable(config: Any) -> None:
+    assert _judged(_arrives(ONE, config=config), *FAILS, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+def test_a_configuration_of_unknown_nodes_may_be_unusable_which_is_flagged() -> None:
+    arrives = _arrives(ONE, json.dumps(CONFIG))
+    verdict = _judged(arrives, *FAILS, *NEXT)
+    assert [one.reading for one in verdict.flagged] == ["AI-33.unknown=b"]
+    assert _judged(arrives, *FAILS, *NEXT, no_flagged=True).outcome is Outcome.VIOLATES
+    assert _judged(_arrives(ONE), *FAILS, *NEXT).outcome is Outcome.VIOLATES

@@ -204,6 +204,65 @@ BEFORE_THE_ANSWER = {
 }
 
 
+APPENDED = [*OURS, *call(3, "AppendMission", navigate("table-2"), {"result": {"missionId": "B"}})]
+PAIR = {"missions": [navigate("table-2"), navigate("table-3")]}
+OTHER_TYPE = {"serviType": "SERVI_TYPE_BUSSING"}
+
+
+def listed(number: int, *missions: tuple[str, str, str], index: int = 0, mission_type: Any = None) -> Any:
+    """A message that lists missions, each with its id, the end of its state's name, and where it goes."""
+    line = shown(number, *((name, state) for name, state, _ in missions))
+    for one, (_, _, table) in zip(line["message"]["missionStates"]["missions"], missions, strict=True):
+        one |= {"goals": [{"destinationId": table}], "currentGoalIndex": index}
+    line["message"]["missionStates"]["missions"][-1] |= {"missionType": mission_type} if mission_type else {}
+    return line
+
+
+RUNS, WAITS = ("A", "RUNNING", "table-1"), ("B", "DEFAULT", "table-2")
+NOT_OTHERS = {
+    "our mission has other goals": [*APPENDED, listed(3, RUNS, ("B", "DEFAULT", "table-3"))],
+    "our mission has another type": [*APPENDED, listed(3, RUNS, WAITS, mission_type=OTHER_TYPE)],
+    "a goal that no mission has": [*OURS, listed(3, RUNS, index=4)],
+    "a mission that ran waits": [*APPENDED, listed(3, RUNS, WAITS), listed(4, ("A", "DEFAULT", "table-1"), WAITS)],
+    "one id for two missions": [*OURS, *call(3, "AppendMissionBatch", PAIR, {"result": {"missionIds": ["B"]}})],
+    "the ids of a batch are those of each other": [
+        *OURS,
+        *call(3, "AppendMissionBatch", PAIR, {"result": {"missionIds": ["B", "C"]}}),
+        listed(3, RUNS, ("C", "DEFAULT", "table-2"), ("B", "DEFAULT", "table-3")),
+    ],
+    "an id that a mission has": [*OURS, *call(3, "AppendMission", navigate("table-2"), {"result": {"missionId": "A"}})],
+    "a stream that has ended": [*OURS, {"stream": 1, "closed": True, "error": {"status": "INTERNAL"}}, shown(3)],
+    "a number goes back": [*OURS, *told(3, "PAUSE"), shown(1, ("A", "PAUSED"))],
+}
+
+
+@pytest.mark.parametrize("case", NOT_OTHERS)
+def test_others_do_not_change_what_a_mission_is_nor_what_an_answer_says(
+    command_line: CommandLine, tmp_path: Path, case: str
+) -> None:
+    """Others cannot give a mission other goals or another type, nor an id twice, nor make a stream go on that ended."""
+    for first in (OTHERS, {key: value for key, value in OTHERS.items() if key != "transport"}):
+        assert command_line("check", written(tmp_path / "log", [first, *NOT_OTHERS[case]])).status == 1
+
+
+def test_what_others_did_may_be_shown_by_one_stream_long_before_another(
+    command_line: CommandLine, tmp_path: Path
+) -> None:
+    """A slow stream shows what was before a mission of others was cancelled unseen and ours could be created."""
+    lines = [
+        *OURS,
+        *call(3, "SubscribeMissionStatus", {}, {"result": {"stream": 2}}),
+        shown(2, ("A", "RUNNING"), stream=2),
+        *call(4, "CreateMission", navigate("table-1"), {"result": {"missionId": "B"}}),
+        shown(3, ("A", "PAUSED")),
+        shown(4, ("A", "CANCELED")),
+        shown(5, ("A", "CANCELED"), ("B", "RUNNING")),
+        shown(3, ("A", "PAUSED"), stream=2),
+        shown(4, ("A", "CANCELED"), stream=2),
+    ]
+    assert command_line("check", written(tmp_path / "log", [OTHERS, *lines])).status == 0
+
+
 def written(path: Path, lines: list[Any]) -> Path:
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
     return path

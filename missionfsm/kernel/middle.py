@@ -16,7 +16,7 @@ from attrs import evolve
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Ambiguity
-from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.spec import Drive, Glimpses, Spec
 from missionfsm.kernel.step import ONCE_HAD, Emission, Match, Mismatch, Opening, Step
 from missionfsm.kernel.terms import Content, Refs, Request, State, View
 from missionfsm.kernel.values import value
@@ -41,9 +41,16 @@ MIDDLE = (LOG_01, LOG_02)
 
 @value(cache_hash=True)
 class Unknown:
-    """A state of which nothing is known but the world."""
+    """A state of which nothing is known but the world, and what there was: that may be gone, but is nothing else now.
+
+    Attributes:
+        world: the world that it is in.
+        past: what there was, one after the other as it came to be known; each in the order in which it is shown. The
+            names are those of the things, in this order.
+    """
 
     world: Hashable
+    past: tuple[tuple[Hashable, ...], ...] = ()
 
     def __str__(self) -> str:
         return "a state of which nothing is known yet"
@@ -89,7 +96,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
         spontaneous=_of_known(spec.spontaneous, ()),
         matches=functools.partial(_matches, spec),
         remembered=functools.partial(_remembered, spec),
-        names=_of_known(spec.names, 0),
+        names=functools.partial(_names, spec),
         describe=functools.partial(_describe, spec),
         foresees=foresees and _of_known(foresees, unknown=True),
         succeeds=succeeds and _of_known(succeeds, unknown=True),
@@ -114,6 +121,10 @@ def _of_known(function: Callable[Concatenate[State, P], T], unknown: T) -> Calla
         return unknown if isinstance(state, Unknown) else function(state, *more, **named)
 
     return asked
+
+
+def _names(spec: Spec, state: State) -> int:
+    return sum(map(len, state.past)) if isinstance(state, Unknown) else spec.names(state)
 
 
 def _outcomes(spec: Spec, state: State, request: Request, refs: Refs) -> tuple[Step, ...]:
@@ -152,10 +163,25 @@ def _known_only(drive: Drive) -> Drive:
     )
 
 
+@value(cache_hash=True)
+class Imagined:
+    """An answer that some state allows.
+
+    Attributes:
+        step: how it comes about; its names are left out.
+        known: of each name that the answer mentions whether its thing was there before.
+        made: what the others are names of, in their order.
+    """
+
+    step: Step
+    known: tuple[bool, ...]
+    made: tuple[Hashable, ...]
+
+
 @functools.lru_cache(maxsize=1_000)
-def _answers(spec: Spec, world: Hashable, request: Hashable, names: int) -> tuple[Step, ...]:
-    """Every answer that some state allows, without its names."""
-    found: dict[Hashable, Step] = {}
+def imaginable(spec: Spec, world: Hashable, request: Hashable, names: int) -> tuple[Imagined, ...]:
+    """Every answer to a request with so many names that some state in that world allows."""
+    found: dict[Hashable, Imagined] = {}
     glimpses = spec.middle and spec.middle.glimpses
     assert glimpses, "asked only of systems that can be judged so"  # noqa: S101
     for state in glimpses.samples(world):
@@ -163,25 +189,39 @@ def _answers(spec: Spec, world: Hashable, request: Hashable, names: int) -> tupl
         for refs in itertools.product(places, repeat=names):
             for step in spec.outcomes(state, request, refs):
                 if step.answer is not None:
-                    found.setdefault((step.answer, step.assumes, tuple(one.topic for one in step.opens)), step)
+                    one = _imagined(spec, glimpses, state, step)
+                    topics = tuple(opening.topic for opening in step.opens)
+                    found.setdefault((step.answer, step.assumes, topics, one.known, one.made), one)
     return tuple(found.values())
+
+
+def _imagined(spec: Spec, glimpses: Glimpses, state: State, step: Step) -> Imagined:
+    before, after = spec.names(state), spec.names(step.after)
+    of = dict(glimpses.things(step.after, step.names or tuple(range(after))))
+    opened = {opening.ref for opening in step.opens}
+    mentioned = [ref for ref in step.refs if ref not in opened]
+    made = tuple(of[ref] for ref in mentioned if ref >= before and ref in of)
+    return Imagined(step, tuple(ref < before for ref in mentioned), made)
 
 
 def _imaginable(spec: Spec, state: Unknown, request: Hashable, names: int) -> tuple[Step, ...]:
     """Every answer that some state allows, after which as little is known as before."""
-    return tuple(
+    first = sum(map(len, state.past))
+    steps = dict.fromkeys(
         Step(
             state,
-            answer=step.answer,
-            rules=step.rules,
-            assumes=step.assumes,
+            answer=one.step.answer,
+            rules=one.step.rules,
+            assumes=one.step.assumes,
             opens=tuple(
-                Opening(one.topic, at, (Emission(ANY, (), optional=True),)) for at, one in enumerate(step.opens)
+                Opening(each.topic, at, (Emission(ANY, (), optional=True),))
+                for at, each in enumerate(one.step.opens, first)
             ),
-            refs=tuple(range(len(step.opens))),
+            refs=tuple(range(first, first + len(one.step.opens))),
         )
-        for step in _answers(spec, state.world, request, names)
+        for one in imaginable(spec, state.world, request, names)
     )
+    return tuple(steps)
 
 
-__all__ = ["ANY", "LOG_01", "LOG_02", "MIDDLE", "Unknown", "in_the_middle"]
+__all__ = ["ANY", "LOG_01", "LOG_02", "MIDDLE", "Imagined", "Unknown", "imaginable", "in_the_middle"]

@@ -157,6 +157,10 @@ class Parting:
     whose: Callable[[Event], Hashable | None]
 
 
+Things = tuple[tuple[int, Hashable], ...]
+"""Each name with what is known of the thing that has it."""
+
+
 @frozen
 class Glimpses:
     """What messages tell of a system of which nothing else is known.
@@ -167,15 +171,20 @@ class Glimpses:
             formed. The names of each are those of the content, as `Spec.matches` pairs them.
         samples: world to states that stand for all there are as far as answers differ.
         topic: content to the topic of a channel that shows it.
-        follows: (state, its names, state after it, its names) to whether the one may have become the other by
-            whatever calls.
+        things: (state, its names) to what there is of each, in the order in which it is shown: what nobody changes as
+            long as it is there.
+        shown: (view, its names) to the same of what was shown on a channel, which tells more of it.
+        follows: (world, things that were there in their order, content, its names) to what is assumed where a message
+            shows what these may have become by whatever calls; None where they cannot.
     """
 
     world: Callable[[State], Hashable]
     states: Callable[[World, Content], tuple[tuple[State, View], ...]]
     samples: Callable[[World], tuple[State, ...]]
     topic: Callable[[Content], Hashable]
-    follows: Callable[[State, tuple[int, ...], State, tuple[int, ...]], bool]
+    things: Callable[[State, tuple[int, ...]], Things]
+    shown: Callable[[View, tuple[int, ...]], Things]
+    follows: Callable[[World, Things, Content, tuple[int, ...]], tuple[Assumption, ...] | None]
 
 
 @frozen

@@ -10,11 +10,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Hashable, Iterable, Iterator
 
+from attrs import evolve
+
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
-from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown
+from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown, imaginable
 from missionfsm.kernel.readings import Assumption, meet
-from missionfsm.kernel.spec import Glimpses, Spec
+from missionfsm.kernel.spec import Glimpses, Spec, Things
 from missionfsm.kernel.step import Match, Mismatch
 from missionfsm.kernel.terms import Content, State
 from missionfsm.oracle.explanation import (
@@ -25,6 +27,7 @@ from missionfsm.oracle.explanation import (
     Names,
     Owed,
     Ready,
+    channel_names,
     fresh,
     tidy,
 )
@@ -45,34 +48,74 @@ def _glimpses(successors: Successors) -> Glimpses | None:
     return successors.spec.middle.glimpses if successors.spec.middle else None
 
 
+def _world(glimpses: Glimpses, state: State) -> Hashable:
+    return state.world if type(state) is Unknown else glimpses.world(state)
+
+
+def _past(glimpses: Glimpses, here: Explanation) -> tuple[Things, ...]:
+    """What is known of the things that there were, each with its name."""
+    if not is_unknown(here):
+        return (glimpses.things(here.state, here.names),)
+    names = iter(here.names)
+    return tuple(tuple(zip(itertools.islice(names, len(one)), one, strict=True)) for one in here.state.past)
+
+
 def plausible(
-    successors: Successors, explanation: Explanation, call: InFlight, answer: Answer
-) -> Iterator[tuple[Hashable, ...]]:
-    """The topics of the channels that such an answer opens, once for each way in which some state allows it."""
+    successors: Successors, explanation: Explanation, call: InFlight, answer: Answer, names: Names
+) -> Iterator[tuple[tuple[Hashable, ...], Things]]:
+    """The topics of the channels that such an answer opens and what it says was made, for each way that is allowed.
+
+    What is made has a name that nothing had, unless somebody may have shown it before the answer came.
+    """
     glimpses = _glimpses(successors)
-    state = explanation.state
-    if glimpses is not None and not is_unknown(explanation):
-        state = Unknown(glimpses.world(state))
-    yield from dict.fromkeys(
-        tuple(one.topic for one in step.opens)
-        for step in successors.outcomes(state, call.request, (None,) * len(call.args))
-        if step.answer is not None
-        and meet(explanation.assumed, step.assumes)
-        and successors.agreements(step.answer, answer)
-    )
+    assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
+    seen = set() if WILD in call.ready else {*explanation.names, *explanation.gone, GONE}
+    ways = imaginable(successors.spec, _world(glimpses, explanation.state), call.request, len(call.args))
+    found: dict[tuple[tuple[Hashable, ...], Things], None] = {}
+    for one in ways:
+        answered = one.step.answer
+        topics = tuple(opening.topic for opening in one.step.opens)
+        told = names[len(topics) :]
+        assert answered is not None, "an answer that some state allows"  # noqa: S101
+        if not (answered.unordered or _fits(one.known, told, seen)):
+            continue
+        if meet(explanation.assumed, one.step.assumes) and successors.agreements(answered, answer):
+            new = [name for name, known in zip(told, one.known, strict=False) if not known]
+            found[topics, tuple(zip(new, one.made, strict=False))] = None
+    yield from found
+
+
+def _fits(known: tuple[bool, ...], told: Names, seen: set[int]) -> bool:
+    """Whether an answer mentions as many names as it has to, once each where they are new."""
+    new = [name for name, there in zip(told, known, strict=False) if not there]
+    return len(known) == len(told) and len(set(new)) == len(new) and seen.isdisjoint(new)
 
 
 def answered(
     successors: Successors, here: Explanation, position: int, answer: Answer, names: Names
 ) -> Iterator[Successor]:
-    """The explanations in which a call is answered as some state allows, of which nothing more is known."""
+    """The explanations in which a call is answered as some state allows, after which that is all that is known."""
     call = here.calls[position]
     rest = here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
     known = {channel.name for channel in rest.channels}
-    for topics in plausible(successors, here, call, answer):
+    for topics, made in plausible(successors, here, call, answer, names):
         opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
         channels = (*rest.channels, *(one for one in opened if one.name not in known))
-        yield Successor(tidy(rest.replace(channels=channels)))
+        after = rest.replace(channels=channels)
+        yield Successor(tidy(_knowing(after if is_unknown(here) else _lost_sight(successors, after), made)))
+
+
+MAX_PAST = 64
+"""Of how many things it is known what they were, where no message shows which are there."""
+
+
+def _knowing(here: Explanation, made: Things) -> Explanation:
+    """The explanation in which it is known what else there was, if the state does not say so."""
+    new = [(name, thing) for name, thing in made if name not in here.names]
+    if not new or not is_unknown(here) or len(here.names) + len(new) > MAX_PAST:
+        return here  # what is known of fewer things is less, and never wrong
+    past = (*here.state.past, tuple(thing for _, thing in new))
+    return evolve(here, state=Unknown(here.state.world, past), names=(*here.names, *(name for name, _ in new)))
 
 
 def states_shown(
@@ -85,25 +128,74 @@ def states_shown(
     """
     spec, glimpses = successors.spec, _glimpses(successors)
     content, names = arrival.content, arrival.names
-    if glimpses is None:
+    if glimpses is None or arrival.channel == GONE or arrival.channel in here.gone:
         return
     if GONE in names:
         if is_unknown(here):
             yield Successor(here)  # it shows what was before
         return
-    world = here.state.world if is_unknown(here) else glimpses.world(here.state)
-    for state, view in glimpses.states(world, content):
+    world = _world(glimpses, here.state)
+    agreed = _goes_on(glimpses, here, arrival) if then or is_unknown(here) else here.assumed
+    for state, view in glimpses.states(world, content) if agreed else ():
         matches = spec.matches(view, content)
         if isinstance(matches, Mismatch):
             continue
         for match in matches:
             successors.spend()
-            assumed = meet(here.assumed, match.assumes)
+            assumed = meet(agreed, match.assumes)
             own = _names(spec, here, state, match, names)
-            if assumed and not (then and not glimpses.follows(here.state, here.names, state, own)):
+            if assumed:
                 last = Owed(view, own, shown_as=spec.remembered(view, content))
                 after = _standing(here, state, Channel(arrival.channel, glimpses.topic(content), last))
                 yield Successor(tidy(after.replace(assumed=assumed)), match.rules)
+
+
+def shown_meanwhile(
+    successors: Successors, explanations: Iterable[Explanation], assumed: Iterable[Assumption], arrival: Arrival
+) -> Iterator[Successor]:
+    """The explanations in which a message shows an older state than the one of which nothing is known.
+
+    Args:
+        assumed: what is assumed where the numbers of the message compare so with those before.
+    """
+    glimpses, assumed = _glimpses(successors), tuple(assumed)
+    for here in explanations:
+        gone = {GONE, *here.gone}
+        if glimpses is None or not is_unknown(here) or not gone.isdisjoint((*arrival.names, arrival.channel)):
+            continue
+        agreed = meet(_goes_on(glimpses, here, arrival), assumed)
+        for state, view in glimpses.states(here.state.world, arrival.content) if agreed else ():
+            matches = successors.spec.matches(view, arrival.content)
+            found = () if isinstance(matches, Mismatch) else matches
+            after = [meet(agreed, match.assumes) for match in found]
+            if any(after):
+                names = arrival.names[: successors.spec.names(state)]
+                last = Owed(view, names, shown_as=successors.spec.remembered(view, arrival.content))
+                channels = tuple(_showing(one, last) if one.name == arrival.channel else one for one in here.channels)
+                agreed = next(filter(None, after))
+                at_last = here.replace(assumed=agreed, channels=channels, calls=_all_wild(here.calls))
+                yield Successor(tidy(_knowing(at_last, glimpses.things(state, names))))
+                break
+
+
+def _showing(channel: Channel, last: Owed) -> Channel:
+    return Channel(channel.name, channel.topic, last, channel.owed, channel.foretold, channel.done)
+
+
+def _goes_on(glimpses: Glimpses, here: Explanation, arrival: Arrival) -> int:
+    """What is assumed where a message shows what the things that were there have become; 0 where they cannot have.
+
+    What was shown before on its channel tells in which state they were; elsewhere it may have been shown later.
+    """
+    world, assumed = _world(glimpses, here.state), here.assumed
+    lasts = (one.last for one in here.channels if one.name == arrival.channel)
+    shown = (glimpses.shown(one.view, one.names) for one in lasts if one and one.view is not ANY)
+    for before in (*_past(glimpses, here), *shown):
+        follows = glimpses.follows(world, before, arrival.content, arrival.names)
+        assumed = 0 if follows is None else meet(assumed, follows)
+        if not assumed:
+            return 0
+    return assumed
 
 
 def _names(spec: Spec, here: Explanation, state: State, match: Match, names: Names) -> Names:
@@ -139,7 +231,7 @@ def joined(successors: Successors, here: Explanation, channel: int, content: Con
 
     Such a channel may show anything first; where nobody can tell what it is to show, it is not followed.
     """
-    if isinstance(content, Malformed) or channel in {one.name for one in here.channels}:
+    if isinstance(content, Malformed) or channel == GONE or channel in {*channel_names(here), *here.gone}:
         return here, False
     glimpses = _glimpses(successors)
     if glimpses is None:
@@ -176,8 +268,7 @@ def unforeseen(
             answer, names, call = what
             place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
             if place is not None:
-                for after in answered(successors, here, place, answer, names):
-                    yield Successor(_lost_sight(successors, after.explanation))
+                yield from answered(successors, here, place, answer, names)
         elif kind is Driven or (kind is Settled and spec.anywhere):
             yield Successor(_lost_sight(successors, here))
 
@@ -193,10 +284,16 @@ def _lost_sight(successors: Successors, here: Explanation) -> Explanation:
     """The explanation in which nothing is known of the state any more."""
     glimpses = _glimpses(successors)
     assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
-    channels = tuple(Channel(one.name, one.topic, Owed(ANY, ()), (_FREE,)) for one in here.channels)
+    last = Owed(ANY, ())
+    channels = tuple(
+        Channel(one.name, one.topic, one.last or last if successors.spec.others else last, (_FREE,))
+        for one in here.channels
+    )
     calls = _all_wild(here.calls)
-    unknown = Unknown(glimpses.world(here.state))
-    return tidy(Explanation(unknown, (), here.assumed, calls, here.lost, channels, here.gone))
+    things = glimpses.things(here.state, here.names)[-MAX_PAST:]
+    unknown = Unknown(glimpses.world(here.state), (tuple(thing for _, thing in things),) if things else ())
+    names = tuple(name for name, _ in things)
+    return tidy(Explanation(unknown, names, here.assumed, calls, here.lost, channels, here.gone))
 
 
 def wild(
@@ -206,9 +303,9 @@ def wild(
     call = here.calls[position]
     if WILD in call.ready:
         known = {channel.name for channel in here.channels}
-        for topics in itertools.islice(plausible(successors, here, call, answer), 1):
-            if all(name in known for name in names[: len(topics)]):
-                yield here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        ways = plausible(successors, here, call, answer, names)
+        if any(all(name in known for name in names[: len(topics)]) for topics, _ in ways):
+            yield here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
 
 
 __all__ = ["answered", "is_unknown", "joined", "states_shown", "unforeseen", "wild"]

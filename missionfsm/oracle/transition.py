@@ -20,7 +20,7 @@ from missionfsm.oracle.observing import Observing
 from missionfsm.oracle.receiving import numbered_so
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import Successor, Successors
-from missionfsm.oracle.symbols import Part
+from missionfsm.oracle.symbols import Arrival, Part
 
 
 class TransitionFunction:
@@ -55,11 +55,15 @@ class TransitionFunction:
         """
         self.successors.reset()
         explanations = tuple(explanations)
-        found: Iterable[Successor] = self._observing.explained(explanations, kind, *what)
-        if self.eager:
-            found = (*found, *self._eagerly(explanations, kind, *what))
         about = after_event(self.successors, kind, *what)
-        kept = prune(self.successors, found, about)
+        kept: tuple[Successor, ...] = ()
+        if self.eager and self.spec.others and kind is Received:
+            kept = prune(self.successors, self._where_known(explanations, *what), about)
+        if not kept:
+            found: Iterable[Successor] = self._observing.explained(explanations, kind, *what)
+            if self.eager:
+                found = (*found, *self._eagerly(explanations, kind, *what))
+            kept = prune(self.successors, found, about)
         self.presumes = False
         for restarts, more in () if kept else self._beyond(explanations, kind, *what):
             if not kept:
@@ -104,6 +108,23 @@ class TransitionFunction:
             yield from self._lenient[0].explained(explanations, kind, *what)
         if kind is Returned:
             yield from self._unforeseen(explanations, kind, *what)
+
+    def _where_known(self, explanations: tuple[Explanation, ...], *what: Part) -> Iterator[Successor]:
+        """Explanations of a message where the state is known; where it is not, it need not be what is shown.
+
+        Where somebody has acted of whom only later messages tell, what others show is older, or fits by chance.
+        """
+        known = tuple(one for one in explanations if not middle.is_unknown(one))
+        yield from self._observing.explained(known, Received, *what)
+        yield from self._eagerly(known, Received, *what)
+        yield from self._meanwhile(explanations, *what)
+
+    def _meanwhile(self, explanations: tuple[Explanation, ...], *what: Part) -> Iterator[Successor]:
+        """The explanations in which a message is older than what nothing is known of."""
+        content, names, relations, channel = what
+        assumed = numbered_so(self.spec, (one for one in relations if one != REDELIVERED))
+        if assumed is not None:
+            yield from middle.shown_meanwhile(self.successors, explanations, assumed, Arrival(channel, content, names))
 
     def _unforeseen(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> Iterator[Successor]:
         """What somebody who is not in the log may have brought about, if there can be anybody."""

@@ -18,17 +18,19 @@ from missionfsm.bear.mission.state import (
     GOALLESS,
     NOT_CHOSEN,
     PATROLS,
+    Family,
     Fault,
     Kind,
     Mission,
     Robot,
     World,
 )
-from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, Seen, listing
+from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, Seen, listing, same_mission
 from missionfsm.bear.wire.messages import Goal, MissionState, MissionType, State
 from missionfsm.kernel.codec import Malformed
+from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
-from missionfsm.kernel.spec import Glimpses, Middle
+from missionfsm.kernel.spec import Glimpses, Middle, Things
 
 MAX_STATES = 32
 """How many robots are imagined behind one message at most."""
@@ -75,8 +77,8 @@ def _active(world: World, message: MissionState) -> Iterator[Mission]:
     index = message.current_goal_index
     for kind in _kinds(world, message):
         goals = () if kind in GOALLESS else message.goals
-        places = (0,) if kind in GOALLESS else (index, NOT_CHOSEN) if kind in AUTOMATIC else (index,)
-        for goal in places:
+        chosen = (0,) if kind in GOALLESS else (index,) if index in range(len(goals)) else ()
+        for goal in (*chosen, NOT_CHOSEN) if kind in AUTOMATIC else chosen:
             for finishing in (False, True):
                 yield Mission(kind, goals, _state(message), goal, finishing)
 
@@ -146,21 +148,66 @@ def _under_way(world: World, goals: tuple[Goal, ...]) -> Iterator[Mission]:
                 yield Mission(kind, own, state, goal, finishing)
 
 
-def follows(before: Robot, names: tuple[int, ...], after: Robot, names_after: tuple[int, ...]) -> bool:
-    """Whether the one may have become the other by whatever calls.
+def things(robot: Robot, names: tuple[int, ...]) -> Things:
+    """The missions in the order in which they are listed: of which kind they are, and their goals."""
+    return tuple(zip(robot.listed(names), robot.listed(tuple(map(_lasting, robot.turns))), strict=True))
 
-    Missions keep their order, and one that has ended stays as it ended.
+
+@functools.lru_cache(maxsize=10_000)
+def _lasting(mission: Mission) -> Mission:
+    return Mission(mission.kind, mission.goals)
+
+
+def shown(view: Listing, names: tuple[int, ...]) -> Things:
+    """The missions that were listed, each in the state in which it was."""
+    return tuple(zip(names, view.missions, strict=True))
+
+
+def follows(
+    world: World, before: Things, content: Seen | Malformed, names: tuple[int, ...]
+) -> tuple[Assumption, ...] | None:
+    """What is assumed where missions have become those of a message by whatever calls; None where they cannot have.
+
+    Missions keep their order, their goals and their type; one that has ended stays as it ended, and one that has begun
+    never waits again.
     """
-    places = {name: place for place, name in enumerate(after.listed(names_after))}
-    kept = [places[name] for name in before.listed(names) if name in places]
-    ended = zip(names, before.done, strict=False)
-    now = dict(zip(names_after, after.turns, strict=False))
-    return kept == sorted(kept) and all(now[name].state is one.state for name, one in ended if name in now)
+    if isinstance(content, Malformed):
+        return None
+    places = {name: place for place, name in enumerate(names)}
+    kept = [(places[name], mission) for name, mission in before if name in places]
+    if any(one >= other for (one, _), (other, _) in itertools.pairwise(kept)):
+        return None
+    assumes: list[Assumption] = []
+    for place, mission in kept:
+        found = _goes_on(world.family, mission, content.states.missions[place])
+        if found is None:
+            return None
+        assumes += found
+    return tuple(dict.fromkeys(assumes))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _goes_on(family: Family, before: Mission, message: MissionState) -> tuple[Assumption, ...] | None:
+    """What is assumed where a mission is listed so later; None where it cannot be."""
+    if before.state in ENDED and message.state is not before.state:
+        return None
+    if before.state in _BEGUN and message.state in (State.STATE_DEFAULT, State.STATE_UNKNOWN):
+        return None
+    return same_mission(family, before, message)
+
+
+_BEGUN = (State.STATE_RUNNING, State.STATE_PAUSED)
 
 
 MIDDLE = Middle(
     Glimpses(
-        world=lambda robot: robot.world, states=states_shown, samples=samples, topic=lambda _: TOPIC, follows=follows
+        world=lambda robot: robot.world,
+        states=states_shown,
+        samples=samples,
+        topic=lambda _: TOPIC,
+        things=things,
+        shown=shown,
+        follows=follows,
     )
 )
 

@@ -396,6 +396,15 @@ def has_goals(mission: Mission, message: MissionState) -> bool:
     return True
 
 
+def same_mission(family: Family, mission: Mission, message: MissionState) -> Assumed | None:
+    """What is assumed where a message is about a mission, in whatever state; None where it is about another one."""
+    try:
+        _goals(mission, message)
+        return _type(family, mission, message)
+    except _WrongError:
+        return None
+
+
 FLOAT_STEP = 1e-6
 """Poses travel as 32-bit floats: what comes back is as close to what was asked as that."""
 

@@ -143,11 +143,11 @@ class _Tour:
         ({"goals": [], "state": "busy", "speed": 2, "more": []}, _Tour((), "busy", 2)),
         (
             {"goals": [{"name": "a", "at": True}], "state": "on"},
-            Malformed("True is no int @ $.goals.at; 'on' is none of idle, busy @ $.state"),
+            Malformed("true is no int @ $.goals.at; 'on' is none of idle, busy @ $.state"),
         ),
         ({"goals": "ab"}, Malformed("'ab' is no list @ $.goals; state is missing @ $.state")),
         ({"goals": [7], "state": []}, Malformed("7 is no object @ $.goals; [] is none of idle, busy @ $.state")),
-        (None, Malformed("None is no object @ $")),
+        (None, Malformed("null is no object @ $")),
     ],
 )
 def test_a_class_says_what_is_right(message: object, content: object) -> None:

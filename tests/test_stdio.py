@@ -113,7 +113,7 @@ FAILURES = {
     ),
     "answers with an unknown error": (
         "send({'id': id, 'error': {'code': 99, 'message': ''}})",
-        "answered SkipGoal with error 99, status None: not a gRPC error",
+        "answered SkipGoal with error 99, status null: not a gRPC error",
     ),
     "answers with an error that is OK": (
         "send({'id': id, 'error': {'code': 0, 'message': ''}})",
@@ -234,7 +234,7 @@ def test_a_member_that_is_null_beside_the_other_is_absent(
         (
             "send({'method': 'closed', 'params': {'stream': 1, 'error': []}})",
             "settle",
-            "cannot be read: error.status: None is not the name of a gRPC error",
+            "cannot be read: error.status: null is not the name of a gRPC error",
         ),
         (
             "send({'method': 'closed', 'params': {'stream': 1, 'message': {}}})",
@@ -263,7 +263,7 @@ def test_a_robot_that_connects_has_a_connection() -> None:
             done = super().exchange(method, params)
             return evolve(done, result={"happened": True}) if method == "drive" else done
 
-    with pytest.raises(SubjectError, match=r"^the adapter .*connection: None is not the number of a connection$"):
+    with pytest.raises(SubjectError, match=r"^the adapter .*connection: null is not the number of a connection$"):
         conform(system("isaac.server"), Forgetful(system("isaac.server")), drawn=1, tours=1, seed=1)
 
 

@@ -9,9 +9,13 @@ MAX_BRIEF = 60
 """Characters of a value that an error message has room for."""
 
 
+_WORDS = {None: "null", True: "true", False: "false"}
+
+
 def brief(value: object) -> str:
-    """A value as an error message shows it: never long."""
-    text = repr(value)
+    """A value of JSON as an error message shows it: never long."""
+    text = _WORDS.get(value) if value is None or isinstance(value, bool) else None
+    text = text or repr(value)
     return text if len(text) <= MAX_BRIEF else f"{text[: MAX_BRIEF - 3]}..."
 
 

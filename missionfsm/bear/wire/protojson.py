@@ -84,7 +84,8 @@ _DIGITS = re.compile(r"-?[0-9]{1,20}", re.ASCII)
 _NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?|NaN|-?Infinity", re.ASCII)
 
 
-def _integer(bits: int, value: object) -> int:
+def _integer(bits: int, given: object) -> int:
+    value = given
     if isinstance(value, str) and _DIGITS.fullmatch(value):
         value = int(value)
     elif isinstance(value, str) and _NUMBER.fullmatch(value):
@@ -92,9 +93,9 @@ def _integer(bits: int, value: object) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if isinstance(value, bool) or not isinstance(value, int):
-        raise MalformedError(f"{brief(value)} is not an integer")
+        raise MalformedError(f"{brief(given)} is not an integer")
     if not -(1 << bits - 1) <= value < 1 << bits - 1:
-        raise MalformedError(f"{brief(value)} does not fit into {bits} bits")
+        raise MalformedError(f"{brief(given)} does not fit into {bits} bits")
     return value
 
 
@@ -155,11 +156,11 @@ def _enum(value: object, kind: type[enum.IntEnum]) -> int:
         try:
             return kind[value]
         except KeyError:
-            raise MalformedError(f"{kind.__name__} has no {brief(value)}") from None
+            raise MalformedError(f"{brief(value)} is none of {', '.join(kind.__members__)}") from None
     try:
         number = _integer(32, value)
     except MalformedError:
-        raise MalformedError(f"{brief(value)} is not a {kind.__name__}") from None
+        raise MalformedError(f"{brief(value)} is neither the name nor the number of an enum's value") from None
     return kind(number) if number in kind._value2member_map_ else number
 
 

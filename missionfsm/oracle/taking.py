@@ -82,7 +82,11 @@ def take(
 def _pool(explanation: Explanation, step: Step, given: Names) -> Names:
     """The names to which a step refers by position: those of the state, new ones, and those that were given."""
     pool = explanation.names
-    referred = (*(step.names or ()), *step.refs, *[one.ref for one in step.opens])
+    referred = step.names or ()
+    if step.refs:
+        referred += step.refs
+    if step.opens:
+        referred += tuple([one.ref for one in step.opens])
     added = max(referred) + 1 - len(pool) if referred else 0
     if added > 0:
         pool = (*pool, *itertools.islice(fresh(explanation), added))
@@ -94,10 +98,11 @@ def _carried(explanation: Explanation, step: Step, pool: Names) -> tuple[Names, 
     """The names of the state after a step, and those that are gone then."""
     names, gone = explanation.names, explanation.gone
     if step.names is not None:
-        names = tuple([pool[ref] for ref in step.names])
-        lapsed = [name for name in set(explanation.names).difference(names) if name > GONE]
-        if lapsed:
-            gone = outlived(explanation, lapsed)
+        names, before = tuple([pool[ref] for ref in step.names]), explanation.names
+        if names[: len(before)] != before:
+            lapsed = [name for name in set(before).difference(names) if name > GONE]
+            if lapsed:
+                gone = outlived(explanation, lapsed)
     if step.ends:
         ended = [one.name for one in explanation.channels if one.topic in step.ends and one.name > GONE]
         gone = tuple(sorted({*gone, *ended}))

@@ -25,9 +25,6 @@ FEW = 20
 MAX_STATES = 256
 """How many states are looked at to find out which calls never change anything."""
 
-Kind = tuple[Request, Answer | None]
-"""A request, and what it is known to be answered; None where it is not known."""
-
 LostCounts = tuple[int, ...]
 """Of each kind of lost calls, how many have not taken effect."""
 
@@ -42,6 +39,21 @@ class Effects:
 
     idle: bool
     steps: tuple[Step, ...]
+
+
+@define(eq=False, slots=True)
+class Kind:
+    """Calls that ask for the same and are known to be answered the same.
+
+    Attributes:
+        request: what they ask for.
+        answer: what they are answered; None where that is not known.
+        effects: what they may do in a state, as far as that was looked at.
+    """
+
+    request: Request
+    answer: Answer | None
+    effects: dict[State, Effects] = field(factory=dict, repr=False)
 
 
 @define(eq=False, slots=True)
@@ -119,6 +131,7 @@ class CallSearch:
         answers: dict[int, Answer] = {what[2]: what[0] for kind, *what in self._symbols if kind is Returned}
         self._place: dict[int, int] = {}
         self._kinds: list[Kind] = []
+        self._known: dict[tuple[Request, Answer | None], Kind] = {}
         for call in start.calls:
             self._add(call.name, call.request, answers.get(call.name))
         for kind, *what in self._symbols:
@@ -126,16 +139,23 @@ class CallSearch:
                 self._add(what[3], what[0], answers.get(what[3]))
         lost = [request for request, *_ in start.lost]
         lost += [what[0] for kind, *what in self._symbols if kind is Called and what[2]]
-        self._lost: list[Kind] = [(request, None) for request in dict.fromkeys(lost)]
+        self._lost = [self._kind(request, None) for request in dict.fromkeys(lost)]
         self._pending = self._pending_before()
-        self._effects: dict[tuple[State, Kind], Effects] = {}
         self._changing = self._kinds_that_change()
 
     def _add(self, name: int, request: Request, answer: Answer | None) -> None:
         if answer is not None and any(self._successors.failures(InFlight(name, request, ()), answer.code)):
             raise OtherwiseError
         self._place[name] = len(self._kinds)
-        self._kinds.append((request, answer))
+        self._kinds.append(self._kind(request, answer))
+
+    def _kind(self, request: Request, answer: Answer | None) -> Kind:
+        """The one kind of calls that ask for this and are answered so."""
+        key = request, answer
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = Kind(request, answer)
+        return found
 
     def _pending_before(self) -> list[tuple[int, ...]]:
         """Of each event, and of the end, the places of the calls that are in flight before it."""
@@ -151,10 +171,9 @@ class CallSearch:
 
     def effects(self, state: State, kind: Kind) -> Effects:
         """What calls of a kind may do in a state."""
-        key = state, kind
-        found = self._effects.get(key)
+        found = kind.effects.get(state)
         if found is None:
-            found = self._effects[key] = self._found(state, *kind)
+            found = kind.effects[state] = self._found(state, kind.request, kind.answer)
         return found
 
     def _found(self, state: State, request: Request, answer: Answer | None) -> Effects:
@@ -200,10 +219,14 @@ class CallSearch:
         """
         if not all(map(self._may_be_answered, self._start.calls)):
             return None
-        stack = [self._noticing(self._first())]
+        forks = [iter((self._noticing(self._first()),))]
         tried: dict[Hashable, list[tuple[int, LostCounts]]] = {}
-        while stack:
-            here = self._walked(stack.pop())
+        while forks:
+            following = next(forks[-1], None)
+            if following is None:
+                forks.pop()
+                continue
+            here = self._walked(following)
             if here.at == len(self._symbols):
                 return here
             self._successors.spend()
@@ -211,7 +234,7 @@ class CallSearch:
             if any(not here.ready & ~ready and all(map(int.__le__, here.lost, lost)) for ready, lost in others):
                 continue
             others.append((here.ready, here.lost))
-            stack += self._forks(here)
+            forks.append(self._forks(here))
         return None
 
     def _may_be_answered(self, call: InFlight) -> bool:
@@ -224,7 +247,7 @@ class CallSearch:
             return True
         if self._is_ready(call):
             raise OtherwiseError
-        answer = self._kinds[self._place[call.name]][1]
+        answer = self._kinds[self._place[call.name]].answer
         return answer is None or bool(self._successors.agreements(call.done.answer, answer))
 
     def _first(self) -> Standing:
@@ -233,11 +256,11 @@ class CallSearch:
         done = sum(1 << place[call.name] for call in start.calls if call.done)
         ready = sum(1 << place[call.name] for call in start.calls if self._is_ready(call))
         lost = {request: times for request, _, times in start.lost}
-        return Standing(0, start.state, done, ready, tuple(lost.get(request, 0) for request, _ in self._lost))
+        return Standing(0, start.state, done, ready, tuple(lost.get(kind.request, 0) for kind in self._lost))
 
     def _is_ready(self, call: InFlight) -> bool:
         """Whether a call of the start could have been answered as it is, without effect, before the start."""
-        answer = self._kinds[self._place[call.name]][1]
+        answer = self._kinds[self._place[call.name]].answer
         return answer is not None and any(self._successors.agreements(one.answer, answer) for one in call.ready)
 
     def _noticing(self, node: Standing) -> Standing:
@@ -260,7 +283,7 @@ class CallSearch:
                     break
                 done, ready = done & ~bit, ready & ~bit
             elif what[2]:
-                number = self._lost.index((what[0], None))
+                number = self._lost.index(self._kind(what[0], None))
                 lost = (*lost[:number], lost[number] + 1, *lost[number + 1 :])
             elif self.effects(state, self._kinds[self._place[what[3]]]).idle:
                 ready |= 1 << self._place[what[3]]
@@ -269,22 +292,19 @@ class CallSearch:
         return node if at == node.at else Standing(at, state, done, ready, lost, node, 0)
 
     def _forks(self, node: Standing) -> Iterator[Standing]:
-        """Where it can go on before an answer of a call that has not taken effect; the likeliest last."""
+        """Where it can go on before an answer of a call that has not taken effect; the likeliest first."""
+        state, done, ready, lost = node.state, node.done, node.ready, node.lost
         call = self._place[self._symbols[node.at][3]]
-        bit = 1 << call
-        for number, times in enumerate(node.lost):
-            for step in self.effects(node.state, self._lost[number]).steps if times else ():
-                left = (*node.lost[:number], times - 1, *node.lost[number + 1 :])
-                yield self._noticing(
-                    Standing(node.at, step.after, node.done, node.ready, left, node, -1 - number, step)
-                )
-        for place in (*(one for one in self._pending[node.at] if one != call), call):
+        if ready & 1 << call:
+            yield Standing(node.at + 1, state, done, ready & ~(1 << call), lost, node)
+        for place in (call, *(one for one in reversed(self._pending[node.at]) if one != call)):
             own = 1 << place
-            for step in () if node.done & own else self.effects(node.state, self._kinds[place]).steps:
-                after = Standing(node.at, step.after, node.done | own, node.ready & ~own, node.lost, node, place, step)
-                yield self._noticing(after)
-        if node.ready & bit:
-            yield Standing(node.at + 1, node.state, node.done, node.ready & ~bit, node.lost, node)
+            for step in () if done & own else reversed(self.effects(state, self._kinds[place]).steps):
+                yield self._noticing(Standing(node.at, step.after, done | own, ready & ~own, lost, node, place, step))
+        for number in reversed(range(len(lost))):
+            left = (*lost[:number], lost[number] - 1, *lost[number + 1 :])
+            for step in reversed(self.effects(state, self._lost[number]).steps) if lost[number] else ():
+                yield self._noticing(Standing(node.at, step.after, done, ready, left, node, -1 - number, step))
 
     def explanations(self, end: Standing) -> list[tuple[Explanation, tuple[str, ...]]]:
         """The explanation of the first n events at position n, each with the rules that the event exercises."""
@@ -327,7 +347,7 @@ class CallSearch:
     def _after(self, here: Explanation, by: int, names: Sequence[int], step: Step) -> Explanation:
         """The explanation after a call has taken effect, or a lost one of a kind."""
         if by < 0:
-            request = self._lost[-1 - by][0]
+            request = self._lost[-1 - by].request
             position = next(at for at, (known, *_) in enumerate(here.lost) if known == request)
             here = here.replace(lost=without_lost(here.lost, position))
         late: tuple[Ready, ...] = ()

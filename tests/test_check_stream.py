@@ -158,3 +158,17 @@ def test_what_a_webhook_repeats_says_the_same(
     assert (ended.status, len(found)) == (0, 0 if rule is None else 1)
     assert rule is None or rule in found[0]
     assert command_line("check", str(path), "--no-flagged").status == (1 if rule else 0)
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_subscription_with_a_violation_stands_before_those_that_conform(
+    command_line: CommandLine, tmp_path: Path, *, first: bool
+) -> None:
+    """Whichever of them began first; what is wrong on one is not made good by another."""
+    online = {"metadata": {"timestamp": "2025-01-01T00:00:00Z", "sequenceNumber": 1}, "onlineStates": {}}
+    wrong = [battery(3), battery(2)]
+    path = written(tmp_path / "s.jsonl", *([*wrong, online] if first else [online, *wrong]))
+    ended = command_line("check", str(path))
+    heads = [line for line in ended.out.splitlines() if "a stream of" in line]
+    assert ended.status == 1
+    assert [" violates: " in heads[0], " conforms" in heads[1], len(heads)] == [True, True, 2]

@@ -69,8 +69,10 @@ def check_file(
     doubtful = {robot for robot, verdict in found if verdict.violation and verdict.violation.at <= LONGEST_SECOND_LOOK}
     if not doubtful:
         return found
-    again = dict(_read_twice(path, evolve(asked, eager=True, only=frozenset(doubtful)), lambda _: None))
-    return [(robot, _better(verdict, again.get(robot))) for robot, verdict in found]
+    second = _read_twice(path, evolve(asked, eager=True, only=frozenset(doubtful)), lambda _: None)
+    # Of bare messages each subscription has a verdict, and none of them a robot.
+    again = {(robot, verdict.implementation): verdict for robot, verdict in second}
+    return [(robot, _better(verdict, again.get((robot, verdict.implementation)))) for robot, verdict in found]
 
 
 LONGEST_SECOND_LOOK = 20_000

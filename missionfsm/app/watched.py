@@ -201,7 +201,7 @@ def _concerned(spec: Spec, topic: str) -> tuple[Rule, ...]:
 
 
 def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *, strict: bool = False) -> list[Verdict]:
-    """The verdict on each subscription; every problem is told as soon as its message is there.
+    """The verdict on each subscription, those with violations first; every problem is told when its message is there.
 
     What only departs from the letter of the page, in a way that a reading tolerates, is told, but breaks nothing.
 
@@ -229,7 +229,7 @@ def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *,
         for problem in problems:
             tell(f"line {number}: {problem}" + (" (tolerated)" if problem.flagged else ""))
             one.note(number, problem)
-    return [one.verdict() for one in found.values()]
+    return sorted((one.verdict() for one in found.values()), key=lambda verdict: verdict.conforms)
 
 
 class UnplacedError(UnreadableError):

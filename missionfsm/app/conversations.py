@@ -96,19 +96,20 @@ def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
     if len({where.name for where, _, _ in found}) > 1:
         return verdicts[-1]
     where, judges = found[-1][0], [judge for _, judge, _ in found]
-    whole = _added_up(verdicts)
+    undecided = next((verdict for _, judge, verdict in found if judge.exhausted), None)
+    whole = _added_up(verdicts, undecided)
     violation = together(where, judges)
     if violation is None:
         return whole
     return evolve(whole, outcome=Outcome.VIOLATES, violation=violation, story=story_of(where, violation))
 
 
-def _added_up(verdicts: Sequence[Verdict]) -> Verdict:
-    """What conversations come to of which none is bad."""
+def _added_up(verdicts: Sequence[Verdict], undecided: Verdict | None) -> Verdict:
+    """What conversations come to of which none is bad; where one is undecided, no more than that."""
     exercised: Counter[str] = Counter()
     for one in verdicts:
         exercised.update(one.exercised)
-    basis = next((one for one in verdicts if one.conforms), verdicts[-1])
+    basis = undecided or next((one for one in verdicts if one.conforms), verdicts[-1])
     ruled_out: dict[str, Mapping[str, str]] = {}
     for one in verdicts:
         ruled_out |= {name: {**events, **ruled_out.get(name, {})} for name, events in one.ruled_out.items()}

@@ -60,6 +60,7 @@ class Judge:
     Attributes:
         right: whether everything so far is explained, within the budget.
         exhausted: whether it was not within the budget.
+        held_back: whether events waited for those after them: readings that they rule out may be thought left.
         place: where the line is that nothing explains, if it was not the last one that came.
         read, events, succeeded: how many lines and events were taken into account, and answers were OK.
         recent: the calls that were answered last.
@@ -121,6 +122,7 @@ class Judge:
         self._asked: Any = None
         self._patient = waits
         self._held: Held | None = None
+        self.held_back = False
         self._presumed: Presumed | None = None
         self.place: int | None = None
 
@@ -245,6 +247,7 @@ class Judge:
         """Events wait for those that follow."""
         held = self._held
         assert held is not None, "somebody has begun to hold events back"  # noqa: S101
+        self.held_back = True
         for event in events:
             held.add(HeldEvent(event, self.transcript.answered, self.read, place, open_calls))
         return self._decide(held, whole=False) if held.due else True

@@ -12,6 +12,7 @@ from missionfsm.kernel.readings import UNCONSTRAINED, Ambiguity, meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
 from missionfsm.oracle.automaton import Automaton
+from missionfsm.oracle.belief import Belief
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
@@ -20,6 +21,9 @@ from missionfsm.tools.check.verdict import Allowed, Side, Violation
 
 MAX_KEPT = 1_000_000
 """How many lines of a conversation are kept to be judged again."""
+
+MAX_LED = 1_000
+"""How many lines of a conversation are judged anew, as somebody does who leads it."""
 
 Evidence = Mapping[tuple[str, str], Judge]
 """Ambiguity id and letter to the judge of a conversation that rules it out."""
@@ -85,6 +89,7 @@ def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
 
 def together(system: System, judges: Sequence[Judge]) -> Violation | None:
     """What is wrong with conversations each of which is explained, if no choice of readings explains all of them."""
+    judges = [_at_leisure(system, judge) for judge in judges]
     evidence: dict[tuple[str, str], Judge] = {}
     left: dict[str, tuple[str, ...]] = {}
     for judge in judges:
@@ -106,11 +111,27 @@ def together(system: System, judges: Sequence[Judge]) -> Violation | None:
     return None
 
 
+def _at_leisure(system: System, judge: Judge) -> Judge:
+    """The judge of a conversation who knows what every event rules out, as whoever led it does, if that can be had.
+
+    One who had events wait found one explanation of them, and did not ask which others there are.
+    """
+    whole = len(judge.lines) == judge.read
+    if not judge.held_back or not whole or judge.read > MAX_LED or not isinstance(judge.belief, Belief):
+        return judge
+    again = _judged_again(system, judge, judge.automaton.assumed)
+    return again if again.right else judge
+
+
 def under(system: System, judge: Judge, readings: Mapping[str, tuple[str, ...]]) -> Judge:
     """The judge of the same conversation, of an implementation that follows one of some readings of each question."""
     ambiguities = system.spec.ambiguities
     decided = meet(UNCONSTRAINED, (one[readings[one.id]] for one in ambiguities if readings.get(one.id)))
-    automaton = Automaton(system.spec, judge.head.drives, decided or UNCONSTRAINED)
+    return _judged_again(system, judge, decided or UNCONSTRAINED)
+
+
+def _judged_again(system: System, judge: Judge, assumed: int) -> Judge:
+    automaton = Automaton(system.spec, judge.head.drives, assumed)
     again = Judge(system, judge.head, automaton, keep=MAX_KEPT, apart=True, waits=False)
     for line in judge.lines:
         if not again.feed(line):

@@ -33,7 +33,8 @@ class Focus:
         what: the request that was answered, or the event that was driven.
         refs: the positions of its names among those of the state, as for outcomes.
         answer: the answer, where a request was answered.
-        topics: of the channels that may be those of a message or of an end.
+        topics: of the channels that may be those of a message or of an end; where everything has settled, of those that
+            owe what has to be seen: nothing settles that does not rid them of it.
         calls: the requests in flight, which may take effect before it, each with the positions of its names.
         aside: whether it leaves the state as it is, and is about no channel that a call in flight may have opened.
     """

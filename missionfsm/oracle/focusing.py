@@ -10,6 +10,7 @@ from missionfsm.kernel.terms import Refs
 from missionfsm.oracle.explanation import GONE, Explanation, Names
 from missionfsm.oracle.successors import FocusOf, Successors
 from missionfsm.oracle.symbols import Part
+from missionfsm.oracle.unsaid import Unsaid
 
 
 def after_event(successors: Successors, kind: type, *what: Part) -> FocusOf:
@@ -24,6 +25,16 @@ def before_rest(successors: Successors) -> FocusOf:
 
     def about(here: Explanation) -> Focus:
         return Focus(SETTLED, calls=_in_flight(successors, here))
+
+    return about
+
+
+def before_settling(successors: Successors, unsaid: Unsaid) -> FocusOf:
+    """The same where it has just been observed: channels that owe something yet have to be rid of it first."""
+
+    def about(here: Explanation) -> Focus:
+        topics = tuple(one.topic for one in here.channels if unsaid.keeps_from_rest(one))
+        return Focus(SETTLED, topics=topics, calls=_in_flight(successors, here))
 
     return about
 

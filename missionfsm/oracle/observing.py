@@ -25,7 +25,7 @@ from missionfsm.oracle.explanation import (
     unify,
     with_lost,
 )
-from missionfsm.oracle.focusing import before_drive, before_message, before_rest
+from missionfsm.oracle.focusing import before_drive, before_message, before_settling
 from missionfsm.oracle.middle import is_unknown
 from missionfsm.oracle.receiving import Receiving
 from missionfsm.oracle.successors import Seen, Successor, Successors
@@ -149,7 +149,7 @@ class Observing:
 
     def _settled(self, explanations: Iterable[Explanation]) -> Iterator[Successor]:
         # What is urgent need not be what happened: a call or the surroundings may have come before it.
-        about = before_rest(self._successors)
+        about = before_settling(self._successors, self._unsaid)
         seen: Seen = {}
         todo = [Successor(explanation) for explanation in explanations]
         while todo:

@@ -85,6 +85,12 @@ class Unsaid:
                 channels = (*explanation.channels[:position], passed, *explanation.channels[position + 1 :])
                 yield explanation.replace(assumed=assumed, channels=channels), channel.topic
 
+    def keeps_from_rest(self, channel: Channel) -> bool:
+        """Whether a channel owes what it shows every time, so that nothing settles before it has."""
+        if self._level or not channel.owed or not self._spec.delivery(channel.topic).every_time:
+            return False
+        return self._skips(channel) is None and any(not owed.passing for owed in channel.owed)
+
     def nothing_owed(self, explanation: Explanation) -> Iterator[Explanation]:
         """The explanations in which every channel has shown where things stand; none if one has not."""
         ways: tuple[int, ...] = (explanation.assumed,)

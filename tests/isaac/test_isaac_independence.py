@@ -8,10 +8,13 @@ from typing import Any
 
 import attrs
 import pytest
-from server_history import SERVER, History
+from server_history import SERVER, SETTLED, History
 from test_isaac_runtime_profiles import Live
 
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
+from missionfsm.isaac.server import spec
+from missionfsm.isaac.server import time as passing
+from missionfsm.isaac.server.dispatch import makes_no_difference
 from missionfsm.isaac.server.independence import Part, concerned, parts
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Link, Mission, Server, Status
@@ -210,12 +213,76 @@ def test_what_is_left_out_explains_nothing_more_often() -> None:
         compared(seed)
 
 
+def queue_of(count: int, *, start: float = 2.5) -> History:
+    """One robot and so many missions: each is sent in a pass and takes a second, those that wait may time out."""
+    history = History()
+    for number in range(1, count + 1):
+        history.submit(number, start_timeout=start, config={"n": number})
+        history.lines.append(SETTLED)
+    history = history.robot(1).settles
+    for number in range(1, count + 1):
+        history = history.waits(1).sends(1, number, f'{{"n":{number}}}').settles
+        history = history.reports(1, number, "running").settles.waits(1).settles.reports(1, number, "success").settles
+    return history
+
+
+def in_any_order(monkeypatch: pytest.MonkeyPatch, *, whatever: bool) -> None:
+    """From here on clocks strike before or after everything else, also (`whatever`) where that makes no difference."""
+    spec._advance.cache_clear()
+    monkeypatch.setattr(passing, "makes_no_difference", (lambda *_: False) if whatever else makes_no_difference)
+
+
+def test_clocks_of_missions_in_a_queue_do_not_multiply() -> None:
+    """Of eight missions that wait for one robot each may have timed out or not, whichever are sent: it is decided."""
+    assert queue_of(8, start=5).shows(*["SUCCESS"] * 8).judged().conforms
+    assert queue_of(2, start=5).shows("SUCCESS", "QUEUED").judged().violation is not None
+
+
+def compared_in_any_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same verdict and readings, with those clocks left open and not."""
+    draw = random.Random(seed)
+    profile = attrs.evolve(DOCUMENTED, scheduling_period=draw.choice([0.0, 1.0, 1.0]))
+    readings = {"AI-06": draw.choice("abc"), "AI-07": "a", "AI-11": "a", "AI-24.whole": "x", "AI-31": "b"}
+    readings |= {"AI-05": draw.choice("bcd"), "AI-13": draw.choice("aab"), "AI-39.order": "n"}
+    readings |= {"AI-08": draw.choice("ac"), "AI-39.limits": draw.choice("ab")}
+    it = Live(profile)
+    for _ in range(draw.randint(2, 3)):
+        upstream = [draw.randint(1, it.calls)] if it.calls and draw.random() < 0.2 else []
+        it.mission("r", upstream=upstream, start_timeout=draw.choice([0.5, 1, 2]), timeout=draw.choice([1, 4]))
+    it.connects().named(1)
+    for _ in range(draw.randint(2, 4)):
+        if draw.random() < 0.5 and it.sent:
+            it.says_it(1, -1, draw.choice(["running", "success", "failure"]))
+        it.after(draw.choice([0.4, 1, 1.3])) if draw.random() < 0.7 else it.mission("r")
+    for history in (it, spoilt(draw, it), spoilt(draw, it)):
+        found = []
+        for whatever in (False, True):
+            in_any_order(monkeypatch, whatever=whatever)
+            found.append(told(history, SERVER, readings))
+        assert found[0] == found[1]
+
+
+def test_clocks_that_make_no_difference_explain_nothing_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where they strike before or after everything else, the verdict and what is left of each question are the same."""
+    for seed in range(10):
+        compared_in_any_order(seed, monkeypatch)
+
+
+@pytest.mark.slow
+def test_clocks_that_make_no_difference_explain_nothing_more_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So it is on many more."""
+    for seed in range(10, 60):
+        compared_in_any_order(seed, monkeypatch)
+
+
 def test_the_full_exploration_is_another_one() -> None:
     """What it is compared with does think of more: twice as many robots, many times as many explanations looked at."""
     spent = {}
-    for name, spec in (("focused", SPEC), ("full", FULL.spec)):
-        automaton = Automaton(spec, ("connect", "line", "disconnect", "advance"))
-        judge = Judge(attrs.evolve(SERVER, spec=spec), Head("isaac.server", {}, automaton.successors.driven), automaton)
+    for name, tried in (("focused", SPEC), ("full", FULL.spec)):
+        automaton = Automaton(tried, ("connect", "line", "disconnect", "advance"))
+        judge = Judge(
+            attrs.evolve(SERVER, spec=tried), Head("isaac.server", {}, automaton.successors.driven), automaton
+        )
         assert isinstance(judge.belief, Belief)
         costs = []
         for line in fleet(5).waits(5.5).settles.shows(*["FAILED_TIMEDOUT"] * 5).lines:

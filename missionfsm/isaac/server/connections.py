@@ -324,7 +324,8 @@ def _served(move: Move, link: Link) -> Moves:
     move = move.with_link(link.slot, serves=True, early=())
     there = shared(move.state, link, found.name)
     for index, mission in enumerate(move.state.missions):
-        if not there and mission.robot == found.name and mission.status is Status.QUEUED:
+        over = any(one.since == "connect" and one.hi is None for one in mission.clocks)
+        if not (there or over) and mission.robot == found.name and mission.status is Status.QUEUED:
             move = started(move, index, START, "connect")
     moves = list(back(move, found.name))
     for report in found.early:

@@ -42,6 +42,7 @@ from missionfsm.isaac.server.state import (
     START,
     UNDER_WAY,
     WAITS,
+    Clock,
     Link,
     Mission,
     Move,
@@ -205,6 +206,28 @@ def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
     for index in queue:
         lanes.setdefault(missions[index].channel, []).append(index)
     return list(lanes.values())
+
+
+def makes_no_difference(state: Server, index: int, clock: Clock, until: int) -> bool:
+    """Whether nothing that may happen by then depends on whether a clock aborts a queued mission before it or after.
+
+    Nobody waits for the mission, it does not hold up others of its robot, and would not be the first to be sent.
+    What is cancelled, is sent again or is anybody's is left as it comes.
+    """
+    missions, mission = state.missions, state.missions[index]
+    if mission.status is not Status.QUEUED or clock.kind not in (START, RUN) or mission.robot is None:
+        return False
+    if mission.sent or mission.doomed or any(index in one.waits for one in missions):
+        return False
+    if any(other.lo <= until for one in mission.waits for other in missions[one].ticking):
+        return False
+    queue = [at for at, one in enumerate(missions) if one.robot == mission.robot and one.status is Status.QUEUED]
+    return not any(index in _foremost(missions, lane) for lane in (queue, *_lanes(missions, queue)))
+
+
+def _foremost(missions: tuple[Mission, ...], lane: list[int]) -> tuple[int, ...]:
+    """The first mission of a queue, and the first that is ready."""
+    return (*lane[:1], *[index for index in lane if missions[index].ready][:1])
 
 
 def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:

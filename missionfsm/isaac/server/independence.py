@@ -16,6 +16,7 @@ from missionfsm.isaac.server.inputs import NAME, Drops, Incoming, Submission
 from missionfsm.isaac.server.readings import AI_19
 from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Link, Mission, Server, first_link_ref, missions_of, topic
 from missionfsm.kernel.focus import DRIVEN, RETURNED, Focus
+from missionfsm.kernel.focus import ENDED as CLOSED
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.values import value
 
@@ -106,6 +107,11 @@ def concerned(server: Server, focus: Focus) -> tuple[Part, ...]:
         or not slots.isdisjoint(part.slots)
         or any(server.missions[index].robot in names for index in part.missions)
     )
+
+
+def asked_of(server: Server, focus: Focus) -> frozenset[int] | None:
+    """The missions that something observed asks more of than what else happens; None: all, as where a server ends."""
+    return None if focus.kind == CLOSED else frozenset(_about(server, focus)[0])
 
 
 def _about(server: Server, focus: Focus) -> tuple[set[int], set[int], set[str | None]]:

@@ -272,12 +272,20 @@ def shared(server: Server, link: Link, name: str | None) -> bool:
 
 
 def unconnected(move: Move, link: Link) -> Move:
-    """The time to start that counts from when a robot connects counts no more for what waits for one that has gone."""
+    """The time to start that counts from when a robot connects counts no more for what waits for one that has gone.
+
+    Where it may be over by now, that may have been noticed before, or be noticed later.
+    """
     if not link.serves or shared(move.state, link, link.name):
         return move
     for index, mission in enumerate(move.state.missions):
         if mission.robot == link.name and mission.status is Status.QUEUED:
-            move = stopped(move, index, (START, "connect"))
+            clocks = (
+                evolve(one, hi=None) if (one.kind, one.since) == (START, "connect") else one
+                for one in mission.clocks
+                if (one.kind, one.since) != (START, "connect") or one.lo <= move.at[1]
+            )
+            move = ticking(move, index, clocks)
     return move
 
 

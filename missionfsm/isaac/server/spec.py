@@ -17,7 +17,7 @@ from missionfsm.isaac.server.connections import connects, drops, hears, is_over,
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
 from missionfsm.isaac.server.describe import describe
 from missionfsm.isaac.server.dispatch import urgent
-from missionfsm.isaac.server.independence import Part, concerned, parts
+from missionfsm.isaac.server.independence import Part, asked_of, concerned, parts
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Statuses, Submission
 from missionfsm.isaac.server.lifecycle import closed
 from missionfsm.isaac.server.properties import INVARIANTS, POSSIBILITIES
@@ -259,8 +259,8 @@ def _spontaneous(server: Server) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _silent_in(server: Server, part: Part) -> tuple[Step, ...]:
-    return (*_urgent_in(server, part), *(_step(server, move) for move in dict.fromkeys(unseen(server, part))))
+def _silent_in(server: Server, part: Part, asked: frozenset[int] | None = frozenset()) -> tuple[Step, ...]:
+    return (*_urgent_in(server, part), *(_step(server, move) for move in dict.fromkeys(unseen(server, part, asked))))
 
 
 def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
@@ -270,18 +270,43 @@ def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
     of one after the other: of the first that is not shown as it stands.
     """
     if focus.kind == SETTLED:
-        return _before_rest(server)
+        return _before_rest(server, focus)
     if focus.kind == RETURNED and isinstance(focus.what, Statuses):
         return _silent_before(server, focus)
-    return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part))
+    asked = asked_of(server, focus)
+    return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part, asked))
 
 
-def _before_rest(server: Server) -> tuple[Step, ...]:
+def _before_rest(server: Server, focus: Focus) -> tuple[Step, ...]:
+    if focus.topics and not _may_be_rid(server, focus.topics):
+        return ()
     for part in parts(server):
         due = _urgent_in(server, part)
         if due:
             return _silent_in(server, part) if _may_be_late(server, part) else due
     return ()
+
+
+def _may_be_rid(server: Server, topics: tuple[Hashable, ...]) -> bool:
+    """Whether connections that owe what has to be seen may be gone before anything else is seen.
+
+    Only a clock that strikes ends one by itself (AI-08 c): one that may have struck, or starts and strikes at once.
+    """
+    if server.unsteady:
+        return True
+    slots = {link.slot for link in server.ends if topic(link.slot) in topics}
+    ending = (
+        slot
+        for part in parts(server)
+        if any(_may_strike(server, server.missions[index]) for index in part.missions)
+        for slot in part.slots
+    )
+    return slots <= set(ending)
+
+
+def _may_strike(server: Server, mission: Mission) -> bool:
+    at_once = any(time is not None and time <= server.tolerance for time in (mission.start, mission.run))
+    return at_once or any(clock.lo <= 0 for clock in mission.clocks)
 
 
 def _may_be_late(server: Server, part: Part) -> bool:
@@ -295,8 +320,9 @@ def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
     if not isinstance(seen, tuple) or len(seen) != len(server.missions):
         return ()
     for part in parts(server):
-        if any(not may_be_called(server, index, seen[index]) for index in part.missions):
-            return _silent_in(server, part)
+        other = frozenset(index for index in part.missions if not may_be_called(server, index, seen[index]))
+        if other:
+            return _silent_in(server, part, other)
     return ()
 
 

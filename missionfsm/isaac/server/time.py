@@ -19,7 +19,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server.connections import drops, inherited
 from missionfsm.isaac.server.deciding import merged, split, ways
-from missionfsm.isaac.server.dispatch import in_vain, lapses, possible, sends, urgent
+from missionfsm.isaac.server.dispatch import in_vain, lapses, makes_no_difference, possible, sends, urgent
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
@@ -207,11 +207,21 @@ def _latest(here: _Moment, part: Part) -> tuple[float, float]:
 
 
 def _next(here: _Moment, part: Part, until: int) -> Iterator[_Moment]:
-    """Everything that may happen next in a part, no later than `until`."""
+    """Everything that may happen next in a part, no later than `until`.
+
+    What aborts a mission and makes no difference to anything else until then may as well happen later: it is left open,
+    and where it must have happened by then it does in the order of submission.
+    """
+    due: int | None = None
     for index in part.missions:
         for clock in here.move.state.missions[index].ticking:
-            if clock.lo <= until:
-                yield from _strike(here, part, index, clock, until)
+            if clock.lo > until:
+                continue
+            if makes_no_difference(here.move.state, index, clock, until):
+                if clock.hi is None or clock.hi > until or due not in (None, index):
+                    continue
+                due = index
+            yield from _strike(here, part, index, clock, until)
     yield from _passes(here, part, until)
     yield from _unnoticed(here, part, until)
 
@@ -358,20 +368,23 @@ def _looked_after(state: Server, link: Link, time: int) -> Link:
     return evolve(link, pass_since=min(EVER, time + (link.pass_since or 0)))
 
 
-def unseen(state: Server, part: Part) -> Iterator[Move]:
+def unseen(state: Server, part: Part, asked: frozenset[int] | None = None) -> Iterator[Move]:
     """What may have happened in a part by now though it need not.
 
     Clocks that have struck, passes that have come, and where nobody says when they do, connections that have dropped.
+
+    Args:
+        asked: missions of which more is asked than what else happens; None: all of them.
     """
-    yield from _unsaid(state, part)
+    yield from _unsaid(state, part, asked)
     if state.unsteady:
         for link in state.links:
             if link.slot in part.slots:
                 yield from drops(Move(state), link, seen=True)
 
 
-def _unsaid(state: Server, part: Part) -> Iterator[Move]:
-    for struck in _struck(state, part):
+def _unsaid(state: Server, part: Part, asked: frozenset[int] | None) -> Iterator[Move]:
+    for struck in _struck(state, part, asked):
         yield from (_pass_possible_since(after, part) for after in _followed(struck, part))
     for slot in part.slots:
         link = state.link_at(slot)
@@ -387,11 +400,12 @@ def _unsaid(state: Server, part: Part) -> Iterator[Move]:
         )
 
 
-def _struck(state: Server, part: Part) -> Iterator[Move]:
+def _struck(state: Server, part: Part, asked: frozenset[int] | None) -> Iterator[Move]:
     """A clock has struck by now."""
     for index in part.missions:
+        anyway = asked is None or index in asked
         for clock in state.missions[index].ticking:
-            if clock.lo <= 0:
+            if clock.lo <= 0 and (anyway or not makes_no_difference(state, index, clock, 0)):
                 for one in strikes(Move(state, at=(clock.lo, 0)), index, clock, due=False)[0]:
                     yield from inherited(state, one)
 

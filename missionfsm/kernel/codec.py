@@ -135,7 +135,7 @@ class Codec:
         write_request: (request, names) to params.
         write_answer: (method, answer, names) to a result.
         write_message: (view, names, choice, number, seconds) to a message: the sequence number is `number`, the
-            timestamp so many seconds after the epoch.
+            timestamp so many seconds after the epoch. None where the channel ends, which no message shows.
         write_world: a world to the parameters of `reset`.
         write_drive_result: (event, names) to what the result of a drive says besides that it happened.
         read_drive_result: the JSON of a drive that happened, with what its result says, to the event and its names,

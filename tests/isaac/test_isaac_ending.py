@@ -30,6 +30,11 @@ def test_a_server_that_has_ended_takes_no_mission_and_no_connection() -> None:
     assert _done().robot(2, "q").closes(1).submit(2, robot="q").sends(2, 2).judged().outcome is Outcome.VIOLATES
 
 
+def test_a_server_that_was_stopped_answers_nothing() -> None:
+    stopped = History().submit(1).robot(1).sends(1, 1).settles.closes(1)
+    assert stopped.shows("STARTED").judged().outcome is Outcome.VIOLATES
+
+
 def test_what_a_robot_still_says_to_a_server_that_has_ended_means_nothing() -> None:
     history = _done().robot(2, "q").closes(1).says(2, "q").drive("disconnect", connection=2).waits(9).settles
     assert history.shows("SUCCESS").judged().outcome is Outcome.CONFORMS

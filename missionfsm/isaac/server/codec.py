@@ -23,7 +23,7 @@ from missionfsm.isaac.server.inputs import (
     Submission,
 )
 from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
-from missionfsm.isaac.server.state import Sends, World
+from missionfsm.isaac.server.state import Closes, Sends, World
 from missionfsm.isaac.shared.drives import ADVANCE, in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import (
     MICROSECONDS,
@@ -335,8 +335,10 @@ def split_message(line: JSON) -> tuple[Part, ...]:
     return () if greets else (part_of(line, names, said),)
 
 
-def write_message(view: Sends, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
-    """The line that sends a mission."""
+def write_message(view: Sends | Closes, names: tuple[Name, ...], choice: int, number: int, at: float) -> JSON:
+    """The line that sends a mission; None where the connection ends."""
+    if isinstance(view, Closes):
+        return None
     time = round(at * 1e9)
     uuid = Uuid.of(names[0][1])  # type: ignore[index]
     # The message's own is no mission's, whatever names those are given, and another one for each that an event causes.

@@ -103,7 +103,8 @@ def _heirs(server: Server, gone: Link) -> list[Link]:
 
 def inherited(before: Server, move: Move) -> Moves:
     """A move that may have ended the connection of a robot, with what another of that name becomes then."""
-    ended = [one for one in before.links if one.serves and move.state.link_at(one.slot) is None]
+    still = {one.slot for one in move.state.links if not one.closing}
+    ended = [one for one in before.links if one.serves and one.slot not in still]
     if ended:
         yield from _succeeded(move, ended[0])
     else:

@@ -16,7 +16,7 @@ from missionfsm.isaac.server.inputs import (
     Statuses,
     Submission,
 )
-from missionfsm.isaac.server.state import Link, Mission, Sends, Server
+from missionfsm.isaac.server.state import Closes, Link, Mission, Sends, Server
 from missionfsm.isaac.shared.drives import Elapsed, Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.codec import Malformed
@@ -31,6 +31,8 @@ def describe(value: object) -> str:
         return _submission(value)
     if isinstance(value, Incoming):
         return _heard(value)
+    if isinstance(value, Closes):
+        return "the connection ends"
     if isinstance(value, Sends):
         return f"a mission on {value.channel} with {value.config}"
     if isinstance(value, LineContent):

@@ -136,7 +136,7 @@ AI_10 = Ambiguity(
         "d": "by its channel alone: it is about the robot's current one there",
     },
     default="a",
-    flagged=frozenset("d"),
+    flagged=frozenset("cd"),
     rule="a-final-status-ends-the-mission",
 )
 AI_10_FROM = Ambiguity(

@@ -104,10 +104,10 @@ def _outcomes(
     request: Submission | Statuses,
     refs: Refs,
 ) -> tuple[Step, ...]:
+    if server.over and not (isinstance(request, Statuses) and all(one.status in ENDED for one in server.missions)):
+        return ()  # a server that was stopped answers nothing
     if isinstance(request, Statuses):
         return tuple(status_answers(server))
-    if server.over:
-        return ()
     return _submitted(operations["submit"], server, request, tuple(mission_of_handle(server, ref) for ref in refs))
 
 
@@ -199,6 +199,8 @@ def _line(server: Server, heard: Incoming, refs: Refs) -> tuple[Step, ...]:
         return ()
     if server.over:
         return (Step(server),)
+    if server.links[position].closing:
+        return ()
     named = mission_of_uuid(server, refs[1]) if heard.named else None
     header = mission_of_uuid(server, refs[-1]) if heard.header else None
     quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, heard, refs)))
@@ -210,6 +212,8 @@ def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
     position = _link_at(server, refs[0] if refs else None)
     if position is None:
         return ()
+    if server.links[position].closing:
+        return (_seen_to_end(server, server.links[position]),)
     if server.over:
         return (_step(server, Move(without(server, server.links[position]))),)
     quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, Drops(), refs)))
@@ -232,11 +236,19 @@ def _with_silence(before: Server, move: Move) -> Move:
     return move.to(move.state, rules.SILENCE.id) if goes_on else move
 
 
+def _seen_to_end(server: Server, link: Link) -> Step:
+    """The end is seen of a connection that the server has closed."""
+    links = tuple(one for one in server.links if one is not link)
+    return evolve(_step(server, Move(evolve(server, links=links))), drains=(), closes=(topic(link.slot),))
+
+
 def _closing(server: Server, at: Hashable) -> tuple[Step, ...]:
     """A connection is closed, whenever that is: since it said no name (AI-18.unnamed), or with the server (AI-29)."""
     link = server.link_of_topic(at)
     if link is None:
         return ()
+    if link.closing:
+        return (_seen_to_end(server, link),)
     over = is_over(Move(server), link)
     steps = () if over is None else (_step(server, over),)
     _, tired = (None, None) if link.name is not None or server.over else split(Move(server), AI_18_UNNAMED, "c")

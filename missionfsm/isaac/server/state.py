@@ -186,6 +186,7 @@ class Link:
         pass_since: how many microseconds ago a scheduling pass may have come that sent or cancelled something here, and
             of which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
         rests: microseconds for which nothing need be sent, since its robot has reported a failure (AI-39.failed b).
+        closing: whether the server has closed it, which has yet to be seen (AI-08 c); it is nobody's then.
     """
 
     slot: int
@@ -197,6 +198,7 @@ class Link:
     held: tuple[int, int] = (0, 0)
     pass_since: int | None = None
     rests: int = 0
+    closing: bool = False
 
 
 Left = tuple[tuple[str, str], ...]
@@ -281,6 +283,11 @@ class Sends:
 
 
 @value(cache_hash=True)
+class Closes:
+    """That a connection ends is owed."""
+
+
+@value(cache_hash=True)
 class Move:
     """Where something leads: the state, what was sent on the way, and why.
 
@@ -288,7 +295,7 @@ class Move:
     """
 
     state: Server
-    sent: tuple[tuple[int, int, Sends], ...] = ()
+    sent: tuple[tuple[int, int, Sends | Closes], ...] = ()
     rules: tuple[str, ...] = ()
     at: tuple[int, int] = (0, 0)
 
@@ -319,8 +326,8 @@ class Move:
         links = tuple(evolve(one, **changes) if one.slot == slot else one for one in self.state.links)
         return evolve(self, state=evolve(self.state, links=links))
 
-    def emit(self, slot: int, index: int, view: Sends) -> Move:
-        """The same with a line sent to a connection, about a mission."""
+    def emit(self, slot: int, index: int, view: Sends | Closes) -> Move:
+        """The same with something sent to a connection, about a mission or, below 0, about none."""
         return evolve(self, sent=(*self.sent, (slot, index, view)))
 
 
@@ -366,6 +373,6 @@ def emissions(move: Move) -> tuple[Emission, ...]:
     """What a move owes to the connections; each gets its lines in order. What is sent in vain may be seen."""
     gone = {one.slot for one in move.state.gone}
     return tuple(
-        Emission(topic(slot), view, (uuid_ref(index),), certain=True, optional=slot in gone)
+        Emission(topic(slot), view, (uuid_ref(index),) if index >= 0 else (), certain=True, optional=slot in gone)
         for slot, index, view in sorted(move.sent, key=lambda one: one[0])
     )

@@ -17,7 +17,7 @@ from missionfsm.isaac.server.readings import (
     AI_28_UUID,
 )
 from missionfsm.isaac.server.rules import OPERATIONS
-from missionfsm.isaac.server.state import Mission, Sends, Server, Status, handle_ref
+from missionfsm.isaac.server.state import Closes, Mission, Sends, Server, Status, handle_ref
 from missionfsm.isaac.server.time import nothing_open_happened
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.codec import Malformed
@@ -115,10 +115,12 @@ def _broken(one: str, other: str) -> str:
     return (OPERATIONS["statuses"].promises[0] if pair == {"queued", "created"} else rules.SENT).id
 
 
-def matches(view: Sends, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
+def matches(view: Sends | Closes, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
     """Whether a line is the MissionProto that is owed, with what it assumes."""
     if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
+    if isinstance(view, Closes):
+        return Mismatch(rules.SENT.id, "the connection has to end")
     if content.kind != "mission":
         return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
     wrong = [path for path in content.bare if path != "header.uuid"]

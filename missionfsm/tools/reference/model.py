@@ -107,7 +107,10 @@ def recognised(
         mutate_message: what becomes of it on the way.
     """
     codec = system.codec
-    message = mutate_message(codec.write_message(view, names, choice, 1, 0.0))
+    message = codec.write_message(view, names, choice, 1, 0.0)
+    if message is None:  # the channel ends, which no message shows
+        return ()
+    message = mutate_message(message)
     return tuple(system.spec.matches(view, codec.read_content(rest)) for _, _, rest in codec.split_message(message))
 
 

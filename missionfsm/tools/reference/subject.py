@@ -136,10 +136,13 @@ class ReferenceSubject:
         codec, choice = self.model.system.codec, self.model.choice
         if same is None:
             seconds = self._seconds(sent.number)
-            message = self._mutate_message(codec.write_message(sent.view, sent.names, choice, sent.number, seconds))
+            message = codec.write_message(sent.view, sent.names, choice, sent.number, seconds)
+            message = message if message is None else self._mutate_message(message)
         else:
             message = same.get("message", same.get("line"))
         kind, number = _channel(sent.channel)
+        if message is None:
+            return Notification("closed", {kind: number})
         if kind == "connection":
             return Notification("line", {"connection": number, "line": message})
         return Notification("message", {"stream": number, "message": message})

@@ -60,6 +60,14 @@ def test_check_ends_with_its_verdict(command_line: CommandLine, tmp_path: Path) 
     assert statuses == [0, 1, 1, 0]
 
 
+@pytest.mark.parametrize("command", ["check", "conform"])
+def test_what_exit_statuses_mean_is_said_where_one_looks(command_line: CommandLine, command: str) -> None:
+    """The help of what ends with a verdict names all four."""
+    shown = " ".join(command_line(command, "--help").out.split())
+    _, _, says = shown.partition("Exit status: ")
+    assert [f" {number}" in f" {says[:400]}" for number in range(4)] == [True] * 4
+
+
 def test_nothing_exercised_is_inconclusive(command_line: CommandLine, tmp_path: Path) -> None:
     """A history in which nothing happened is inconclusive, which ends with 1."""
     ended = command_line("check", history(tmp_path / "none", (FIRST, {"settled": True})))

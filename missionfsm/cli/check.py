@@ -86,7 +86,11 @@ def check(
     github: Github = None,
     verbose: Verbose = False,
 ) -> None:
-    """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks."""
+    """Judge recorded histories, or bare messages of live subscriptions and bodies of webhooks.
+
+    Exit status: 0 if all conform, flagged or not, 1 if one violates or is inconclusive, 2 for bad usage or a file that
+    cannot be read (one line says where and why). 3, that the adapter failed, comes of conform alone.
+    """
     from missionfsm.app.many import histories  # noqa: PLC0415 - commands load what they need
     from missionfsm.cli.summary import Told  # noqa: PLC0415
     from missionfsm.tools.check.baseline import Baseline  # noqa: PLC0415

@@ -183,7 +183,11 @@ def conform(
     github: Github = None,
     verbose: Verbose = False,
 ) -> None:
-    """Judge an implementation behind the adapter protocol."""
+    """Judge an implementation behind the adapter protocol.
+
+    Exit status: 0 if it conforms, flagged or not, 1 if it violates or the verdict is inconclusive, 2 for bad usage or
+    bad input, 3 if the adapter failed, which is no verdict.
+    """
     from missionfsm.adapters.tracefile import tracing  # noqa: PLC0415 - commands load what they need
     from missionfsm.app.bridged import Sockets  # noqa: PLC0415
     from missionfsm.cli.signals import interruptible  # noqa: PLC0415

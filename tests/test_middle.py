@@ -107,6 +107,12 @@ def call(number: int, method: str, params: Any, answer: Any) -> list[Any]:
     return [{"call": number, "method": method, "params": params}, {"return": number, **answer}]
 
 
+def told(number: int, command: str, answer: Any, mission: str = "A") -> list[Any]:
+    asked = {"missionCommand": {"missionId": mission, "command": f"COMMAND_{command}"}}
+    return call(number, "UpdateMission", asked, answer)
+
+
+SETTLED = {"settled": True}
 HEAD = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}, "transport": "strict"}
 ANYWHERE, OTHERS = {**HEAD, "begins": "anywhere"}, {**HEAD, "others": True}
 REFUSED = {"error": {"status": "FAILED_PRECONDITION", "message": ""}}
@@ -152,6 +158,18 @@ WRONG = {
     "missions change places": (ANYWHERE, [BUSY, shown(4212, ("Y", "SUCCEEDED"), ("X", "SUCCEEDED"))]),
     "goals change": (ANYWHERE, [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), table="table-2")]),
     "numbers go back": (ANYWHERE, [BUSY, shown(4210, ("X", "SUCCEEDED"), ("Y", "SUCCEEDED"))]),
+    "we create while a mission is known to run": (
+        {**ANYWHERE, "drives": ["goalReached", "missionSucceeded", "missionFailed"]},
+        [BUSY, SETTLED, *call(1, "CreateMission", navigate("table-1"), {"result": {"missionId": "Z"}})],
+    ),
+    "what was shown had settled, and an unknown call adds to it": (
+        ANYWHERE,
+        [BUSY, SETTLED, shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), ("Z", "DEFAULT"))],
+    ),
+    "a mission that we paused goes on by itself": (
+        ANYWHERE,
+        [BUSY, SETTLED, *told(1, "PAUSE", {"result": {}}, "Y"), SETTLED],
+    ),
     "a mission of others runs again": (OTHERS, [*FIRST, *MINE, THEIRS, shown(4, ("A", "RUNNING"), ("T", "SUCCEEDED"))]),
     "nobody said that there are others": (HEAD, [*FIRST, *MINE, THEIRS]),
     "nobody said that it begins anywhere": (HEAD, [BUSY]),
@@ -173,21 +191,16 @@ OURS = [*FIRST, *MINE]
 DRIVEN = {"drives": ["goalReached", "missionSucceeded", "missionFailed"]}
 
 
-def told(number: int, command: str, answer: Any = REFUSED) -> list[Any]:
-    asked = {"missionCommand": {"missionId": "A", "command": f"COMMAND_{command}"}}
-    return call(number, "UpdateMission", asked, answer)
-
-
 BEFORE_THE_ANSWER = {
-    "others paused": [*OURS, *told(3, "PAUSE"), shown(3, ("A", "PAUSED"))],
+    "others paused": [*OURS, *told(3, "PAUSE", REFUSED), shown(3, ("A", "PAUSED"))],
     "others resumed": [
         *OURS,
         *told(3, "PAUSE", {"result": {}}),
         shown(3, ("A", "PAUSED")),
-        *told(4, "RESUME"),
+        *told(4, "RESUME", REFUSED),
         shown(4, ("A", "RUNNING")),
     ],
-    "others cancelled": [*OURS, *told(3, "PAUSE"), shown(3, ("A", "CANCELED"))],
+    "others cancelled": [*OURS, *told(3, "PAUSE", REFUSED), shown(3, ("A", "CANCELED"))],
     "others cancelled and created": [
         *OURS,
         *told(3, "CANCEL", GONE),
@@ -232,7 +245,7 @@ NOT_OTHERS = {
     ],
     "an id that a mission has": [*OURS, *call(3, "AppendMission", navigate("table-2"), {"result": {"missionId": "A"}})],
     "a stream that has ended": [*OURS, {"stream": 1, "closed": True, "error": {"status": "INTERNAL"}}, shown(3)],
-    "a number goes back": [*OURS, *told(3, "PAUSE"), shown(1, ("A", "PAUSED"))],
+    "a number goes back": [*OURS, *told(3, "PAUSE", REFUSED), shown(1, ("A", "PAUSED"))],
 }
 
 

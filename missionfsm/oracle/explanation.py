@@ -128,6 +128,8 @@ class Explanation:
     channels: tuple[Channel, ...] = ()
     gone: Names = ()
     """Observed names, sorted, whose things are no more: nothing else can have them."""
+    all_known: bool = False
+    """Whether nothing from before the log can take effect any more: a state was shown, and things have settled."""
 
     def ref(self, name: int) -> int | None:
         """The position of a name among those of the state."""
@@ -151,6 +153,7 @@ class Explanation:
             self.lost if lost is None else lost,
             self.channels if channels is None else channels,
             self.gone if gone is None else gone,
+            self.all_known,
         )
 
 
@@ -276,6 +279,7 @@ def rename(explanation: Explanation, new: dict[int, int]) -> Explanation:
         tuple([(request, each(args), times) for request, args, times in explanation.lost]),
         tuple(map(channel, explanation.channels)),
         tuple(sorted(each(explanation.gone))),
+        explanation.all_known,
     )
 
 

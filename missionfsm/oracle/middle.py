@@ -223,7 +223,8 @@ def _standing(here: Explanation, state: State, showing: Channel) -> Explanation:
     ]
     calls = _all_wild(here.calls)
     gone = tuple(one for one in here.gone if one not in last.names)
-    return Explanation(state, last.names, here.assumed, calls, here.lost, (showing, *channels), gone)
+    channels = [showing, *channels]
+    return Explanation(state, last.names, here.assumed, calls, here.lost, tuple(channels), gone, here.all_known)
 
 
 def joined(successors: Successors, here: Explanation, channel: int, content: Content) -> tuple[Explanation, bool]:
@@ -260,6 +261,10 @@ def unforeseen(
         here = one.replace(assumed=agreed)
         if not agreed or is_unknown(here):
             continue
+        if here.all_known and not spec.others:
+            if kind is Received:
+                yield from _late(here, what[3], what[0])
+            continue
         if kind is Received:
             content, names, _, channel = what
             yield from states_shown(successors, here, Arrival(channel, content, names), then=True)
@@ -293,7 +298,7 @@ def _lost_sight(successors: Successors, here: Explanation) -> Explanation:
     things = glimpses.things(here.state, here.names)[-MAX_PAST:]
     unknown = Unknown(glimpses.world(here.state), (tuple(thing for _, thing in things),) if things else ())
     names = tuple(name for name, _ in things)
-    return tidy(Explanation(unknown, names, here.assumed, calls, here.lost, channels, here.gone))
+    return tidy(Explanation(unknown, names, here.assumed, calls, here.lost, channels, here.gone, here.all_known))
 
 
 def wild(

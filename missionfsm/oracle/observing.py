@@ -172,8 +172,10 @@ class Observing:
             todo = later
 
     def _calmed(self, explanation: Explanation) -> Explanation:
-        state = self._spec.calmed(explanation.state)
-        return explanation if state is explanation.state else evolve(explanation, state=state)
+        state, known = self._spec.calmed(explanation.state), explanation.all_known or self._spec.anywhere
+        if state is explanation.state and known is explanation.all_known:
+            return explanation
+        return evolve(explanation, state=state, all_known=known)
 
 
 def _named_so(explanation: Explanation, name: int) -> tuple[int, ...]:

@@ -428,4 +428,5 @@ def place_with_lost(explanation: Explanation) -> Place:
 
 def place(explanation: Explanation) -> Place:
     """Where an explanation is, whatever it assumed and whichever lost calls it has left."""
-    return explanation.state, explanation.names, explanation.calls, explanation.channels, explanation.gone
+    here = explanation
+    return here.state, here.names, here.calls, here.channels, here.gone, here.all_known

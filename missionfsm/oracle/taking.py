@@ -75,7 +75,8 @@ def take(
     if step.opens:
         opened = (Channel(pool[one.ref], one.topic, None, tuple(map(owing, one.owed))) for one in step.opens)
         channels = (*channels, *opened)
-    after = Explanation(step.after, names, assumed, explanation.calls, explanation.lost, channels, gone)
+    here = explanation
+    after = Explanation(step.after, names, assumed, here.calls, here.lost, channels, gone, here.all_known)
     return after, tuple([pool[ref] for ref in step.refs])
 
 

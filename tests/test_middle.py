@@ -359,6 +359,18 @@ def battery(number: int, percent: int, stream: int = 1) -> Any:
     return {"stream": stream, "message": {"robotId": "r1", "metadata": metadata, "batteryState": state}}
 
 
+def test_others_change_nothing_of_statuses(command_line: CommandLine, tmp_path: Path) -> None:
+    """Nobody can do anything to a status: `--others` is taken, and explains nothing."""
+    world = {"robots": [{"robotId": "r1", "locationId": "L1"}], "locations": [{"locationId": "L1"}]}
+    first = {"missionfsm": 1, "system": "bear.status", "world": world}
+    asked = {"selector": {"robotIds": {"ids": ["r1"]}}}
+    opened = call(1, "SubscribeBatteryStatus", asked, {"result": {"stream": 1}})
+    for percent in (50, 150):
+        log = written(tmp_path / "log", [first, *opened, battery(18, percent)])
+        alone, among_others = command_line("check", log), command_line("check", log, "--others")
+        assert (among_others.status, among_others.out) == (alone.status, alone.out) == (int(percent > 100), alone.out)
+
+
 def test_streams_of_statuses_from_before_the_log_are_held_to_their_form() -> None:
     """What comes on a stream that was opened before the log is right if it may come at all; on others all is judged."""
     world = {"robots": [{"robotId": "r1", "locationId": "L1"}], "locations": [{"locationId": "L1"}]}

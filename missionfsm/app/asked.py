@@ -57,7 +57,7 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
     """
     found = system(name)
     middle = found.spec.middle
-    if (anywhere and middle is None) or (others and (middle is None or middle.glimpses is None)):
+    if (anywhere or others) and middle is None:
         says = "a log of it has to begin with its beginning" if anywhere else "it does not say what others may do"
         message = f"{name}: {says}"
         raise UnreadableError(message)

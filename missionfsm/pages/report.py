@@ -9,8 +9,10 @@ from collections.abc import Callable, Iterable, Sequence
 from attrs import frozen
 
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.middle import MIDDLE
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.system import System
+from missionfsm.kernel.transport import over_transport
 from missionfsm.pages.outline import (
     MEANINGS,
     Evidence,
@@ -215,7 +217,11 @@ def _line(line: JSON) -> str:
 
 
 def readings_asked(spec: Spec, verdict: Verdict) -> tuple[Asked, ...]:
-    """The ambiguities that mattered in a verdict, each with all its readings."""
+    """The ambiguities that mattered in a verdict, each with all its readings.
+
+    Those of a system as its transport and its log may show it are among them.
+    """
+    every = {one.id: one for one in (*over_transport(spec).ambiguities, *MIDDLE)}
     return tuple(
         Asked(
             ambiguity.id,
@@ -233,7 +239,7 @@ def readings_asked(spec: Spec, verdict: Verdict) -> tuple[Asked, ...]:
             ),
             tuple(one for one in verdict.experiments if one.ambiguity == ambiguity.id),
         )
-        for ambiguity in spec.ambiguities
+        for ambiguity in every.values()
         if ambiguity.id in verdict.readings
     )
 

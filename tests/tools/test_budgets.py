@@ -98,7 +98,7 @@ def test_time_bounds_advice() -> None:
     asked = itertools.count()
 
     def run(limit: int) -> Verdict:
-        return conform(robot, ReferenceSubject(robot, {}), plan=plan, seed=1, enough=lambda: next(asked) >= limit)
+        return conform(robot, ReferenceSubject(robot, {}), plan=plan, seed=2, enough=lambda: next(asked) >= limit)
 
     assert run(10**9).rare
     whole = next(asked) - 1
@@ -108,6 +108,22 @@ def test_time_bounds_advice() -> None:
         {},
         (f"it was stopped after 3 of 3 conversations; it did not come to {ADVICE}",),
     )
+
+
+def test_advice_that_was_given_is_not_missing() -> None:
+    """Where the time was up only after what is thought about at the end, a run does not say that it missed that."""
+    robot, plan = system("isaac.robot"), Plan(drawn=1, tours=2, scripts=1, steps=5, fills=0)
+    asked = itertools.count()
+
+    def run(limit: int) -> Verdict:
+        return conform(robot, ReferenceSubject(robot, {}), plan=plan, seed=2, enough=lambda: next(asked) >= limit)
+
+    assert run(10**9).rare
+    whole = next(asked)
+    asked = itertools.count()
+    verdict = run(whole - 1)
+    assert verdict.rare
+    assert verdict.notes[-1:] == ("it was stopped after 3 of 3 conversations",)
 
 
 @pytest.mark.parametrize("name", names())

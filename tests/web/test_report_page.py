@@ -12,7 +12,9 @@ from browsing import Opener, expect, missionfsm
 
 from missionfsm.pages.outline import Standing
 from missionfsm.pages.render import specification_page
+from missionfsm.pages.report import readings_asked
 from missionfsm.systems import system
+from missionfsm.tools.check.verdict import Outcome, Verdict
 from missionfsm.tools.specpages import clauses
 
 pytestmark = pytest.mark.slow
@@ -230,3 +232,12 @@ def test_the_map_is_about_the_system() -> None:
     ] == []
     assert specification_page("no.such") == ""
     assert system("bear.mission").spec.rules_by_id[BROKEN].code == "FAILED_PRECONDITION"
+
+
+@pytest.mark.parametrize("name", ["TR-01", "LOG-01", "LOG-03", "AM-02"])
+def test_readings_of_transports_and_logs_are_told_like_others(name: str) -> None:
+    """As many mattered on the page as in the headline."""
+    spec = system("bear.mission").spec
+    name = next((one.id for one in spec.ambiguities if one.id.startswith(name)), name)  # a part of one that is split
+    verdict = Verdict(Outcome.CONFORMS, "bear.mission", readings={name: ("a", "b")})
+    assert [one.id for one in readings_asked(spec, verdict)] == [name]

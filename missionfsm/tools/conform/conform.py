@@ -165,6 +165,8 @@ def conform(  # noqa: PLR0913 - every one has a default
         run.ledger.note(f"the adapter had not answered when it was stopped: {error}")
     verdict = verdict_of(run, seed, known, advice=advice)
     if enough() and not _has_found(run):
+        if verdict.rare and ADVICE in left:  # the time was up only after that
+            left.remove(ADVICE)
         if verdict.untested.drives:
             left.append(MISSED)
         done = f"it was stopped after {run.ledger.examples} of {plan.conversations(run.system)} conversations"

@@ -14,7 +14,6 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 
 from missionfsm.kernel.history import Cancelled, Driven, Ended, Event, Name, Received, Settled
 from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.transport import TR_06
 from missionfsm.oracle import memory
 from missionfsm.oracle.automaton import Automaton, Node, Tally
 from missionfsm.oracle.numbering import Numbered, Numbering
@@ -196,9 +195,6 @@ class Belief:
                 one.assumed & ambiguity.group != ambiguity.group for one in self.node.explanations
             ):
                 found[ambiguity.id] = ambiguity.possible(left)
-        # That software is not too old says nothing; that it may be does.
-        if found.get(TR_06.id) == (TR_06.default,):
-            del found[TR_06.id]
         return found
 
     @property

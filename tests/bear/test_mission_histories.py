@@ -316,7 +316,7 @@ def test_calls_that_wait_long_are_not_lost(tmp_path: Path, *, answered: bool) ->
     lines, _ = long_history(40, 0)
     lines = [call(9001, "SkipGoal"), *lines, *([{"return": 9001, "result": {}}] if answered else [])]
     known = judged(*lines, lost=frozenset() if answered else frozenset({9001}))
-    ((_, found),) = check_file(written(tmp_path / "log.jsonl", lines))
+    ((_, found),) = check_file(written(tmp_path / "log.jsonl", lines), strict=True)
     assert (found.outcome, found.events, found.readings) == (known.outcome, known.events, known.readings)
     # Nothing answers a skip with OK and without the name of a mission.
     assert found.conforms is not answered

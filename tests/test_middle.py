@@ -258,6 +258,23 @@ def test_others_do_not_change_what_a_mission_is_nor_what_an_answer_says(
         assert command_line("check", written(tmp_path / "log", [first, *NOT_OTHERS[case]])).status == 1
 
 
+def test_a_snapshot_may_be_older_than_what_another_stream_has_shown(command_line: CommandLine, tmp_path: Path) -> None:
+    """Of a robot in use, a second stream begins with what was before; a mission of others is cancelled unseen."""
+    lines = [
+        {"call": 1, "method": "SubscribeMissionStatus", "params": {}},
+        {"call": 2, "method": "CreateMission", "params": navigate("table-1")},
+        shown(2, ("A", "RUNNING"), stream=1),
+        {"return": 1, "result": {"stream": 2}},
+        {"return": 2, "result": {"missionId": "A"}},
+        shown(0, stream=2),
+        shown(3, ("A", "CANCELED"), stream=2),
+        *call(3, "AppendMission", navigate("table-1"), REFUSED),
+    ]
+    first = {key: value for key, value in ANYWHERE.items() if key != "transport"}
+    log = written(tmp_path / "log", [{**first, "others": True}, *lines])
+    assert command_line("check", log).status == 0
+
+
 def test_what_others_did_may_be_shown_by_one_stream_long_before_another(
     command_line: CommandLine, tmp_path: Path
 ) -> None:

@@ -174,7 +174,8 @@ def shown_meanwhile(
                 channels = tuple(_showing(one, last) if one.name == arrival.channel else one for one in here.channels)
                 agreed = next(filter(None, after))
                 at_last = here.replace(assumed=agreed, channels=channels, calls=_all_wild(here.calls))
-                yield Successor(tidy(_knowing(at_last, glimpses.things(state, names))))
+                rules = next(match.rules for match, assumes in zip(found, after, strict=True) if assumes)
+                yield Successor(tidy(_knowing(at_last, glimpses.things(state, names))), rules)
                 break
 
 

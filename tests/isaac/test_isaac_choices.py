@@ -231,3 +231,34 @@ def test_a_robot_that_took_another_name_is_gone() -> None:
     history = History().robot(1).submit(1).sends(1, 1).submit(2, start_timeout=3).settles.waits(1).says(1, "q")
     readings = {"AI-05": "d", "AI-17": "b", "AI-17.under-way": "k"}
     assert history.waits(5).settles.shows("STARTED", "QUEUED").judged(readings=readings).conforms
+
+
+def _heard(status: str = "running") -> History:
+    begun = History().submit(1).robot(1).settles.waits(1).sends(1, 1).settles
+    return begun.reports(1, 1, status).settles
+
+
+def test_a_report_may_be_worked_off_in_the_next_pass() -> None:
+    """AI-39.reports b: a second later it is shown at the latest."""
+    later = _heard().shows("STARTED").waits(1).settles.shows("RUNNING").reports(1, 1, "success").settles
+    later = later.shows("RUNNING").waits(1).settles.shows("SUCCESS")
+    assert follows(later.judged(no_flagged=True), AI_39_reports="b")
+    assert not _heard().shows("STARTED").waits(1).settles.shows("STARTED").judged(readings={"AI-10": "ab"}).conforms
+
+
+def test_what_is_shown_at_once_is_not_worked_off_in_a_pass() -> None:
+    begun = _heard().shows("RUNNING")
+    assert follows(begun.judged(no_flagged=True), AI_39_reports="a")
+    mixed = begun.reports(1, 1, "success").settles.shows("RUNNING")
+    assert not mixed.judged(readings={"AI-10": "ab"}).conforms
+
+
+def test_a_server_that_sends_at_once_shows_reports_at_once() -> None:
+    begun = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles.shows("STARTED")
+    assert not begun.judged(readings={"AI-10": "ab"}).conforms
+
+
+def test_a_dependant_is_sent_in_the_pass_that_works_off_the_report() -> None:
+    begun = History().submit(1).submit(2, robot="q", upstream=[1]).robot(1).robot(2, "q").settles.waits(1).sends(1, 1)
+    begun = begun.settles.reports(1, 1, "success").settles.shows("STARTED", "QUEUED").waits(1).sends(2, 2).settles
+    assert begun.shows("SUCCESS", "STARTED").judged(no_flagged=True).conforms

@@ -52,8 +52,8 @@ def explore_size(server: Server) -> int:
 def canonical(server: Server) -> Server:
     """The server with all readings open again, clocks that may strike at any time, and nothing kept for later."""
     missions = tuple(
-        evolve(one, lingers="", clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
-        if one.clocks or one.lingers
+        evolve(one, lingers="", was=None, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
+        if one.clocks or one.lingers or one.was
         else one
         for one in server.missions
     )

@@ -443,6 +443,12 @@ AI_39_LIMITS = Ambiguity(
     {"a": "at once", "b": "when it looks, about once a second"},
     default="a",
 )
+AI_39_REPORTS = Ambiguity(
+    "AI-39.reports",
+    "When does a server that looks about once a second show what a robot has reported?",
+    {"a": "at once", "b": "when it looks"},
+    default="a",
+)
 AI_39_ORDER = Ambiguity(
     "AI-39.order",
     "A scheduling pass takes up names and drops, and sends: in which order?",

@@ -18,6 +18,7 @@ from missionfsm.isaac.server.readings import (
     AI_18_EARLY,
     AI_39,
     AI_39_FAILED,
+    AI_39_REPORTS,
 )
 from missionfsm.isaac.server.state import (
     DROP,
@@ -177,15 +178,28 @@ def _happens(move: Move, index: int, report: Report) -> Moves:
     if mission.status not in UNDER_WAY:
         yield from _late(move, index, mission, report)
     elif report.status == "running":
-        yield acknowledged(move.to(move.state, rules.RUNNING.id), index)
+        yield _unlooked_at(acknowledged(move.to(move.state, rules.RUNNING.id), index), index, mission)
     else:
         heard, deaf = (move, None) if mission.status is Status.RUNNING else split(move, AI_07, "ac")
         if heard is not None:
             trigger = "report success" if report.status == "success" else "report failure"
-            ended = ends(heard, index, trigger, rules.FINAL.id)
+            ended = _unlooked_at(ends(heard, index, trigger, rules.FINAL.id), index, mission)
             yield ended if report.status == "success" else _rests(ended, mission)
         if deaf is not None:
             yield means_nothing(deaf)
+
+
+def _unlooked_at(move: Move, index: int, before: Mission) -> Move:
+    """AI-39.reports: what is reported may be shown only once a scheduling pass has come."""
+    letters = move.state.letters
+    if (
+        "b" not in letters(AI_39)
+        or "b" not in letters(AI_39_REPORTS)
+        or before.status is move.state.missions[index].status
+    ):
+        return move
+    was = before.status if before.was is None else before.was[0]
+    return move.with_mission(index, was=(was, move.state.next_pass(0) + move.state.tolerance, True))
 
 
 def _rests(move: Move, mission: Mission) -> Move:

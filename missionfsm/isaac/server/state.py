@@ -121,6 +121,8 @@ class Mission:
             said anything of it, else `HEARD`; empty where it does not linger.
         sent_on: the slot of the connection that it was sent on; None before, and where that is gone.
         sent: whether it was sent.
+        was: what it was before its robot reported something that a pass may have yet to look at (AI-39.reports b), for
+            how many microseconds that may be, and whether no time has passed; None where there is no such thing.
         depends: whether it has upstreams at all.
     """
 
@@ -139,6 +141,7 @@ class Mission:
     depends: bool = False
     fated: tuple[int, ...] = ()
     lingers: str = ""
+    was: tuple[Status, int, bool] | None = None
 
     @property
     def ticking(self) -> tuple[Clock, ...]:

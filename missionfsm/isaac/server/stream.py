@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from attrs import evolve
+
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.readings import (
     AI_02_ABORTED,
@@ -15,6 +17,8 @@ from missionfsm.isaac.server.readings import (
     AI_27_UUID,
     AI_28_CONFIG,
     AI_28_UUID,
+    AI_39,
+    AI_39_REPORTS,
 )
 from missionfsm.isaac.server.rules import OPERATIONS
 from missionfsm.isaac.server.state import Closes, Mission, Sends, Server, Status, handle_ref
@@ -39,6 +43,12 @@ Called = tuple[tuple[str, tuple[Assumption, ...]], ...]
 def _called(server: Server, mission: Mission) -> Called:
     """What a mission may be shown as, each with what that assumes."""
     status = mission.status
+    if mission.was is not None:
+        earlier = _called(server, evolve(mission, status=mission.was[0], was=None))
+        unlooked = tuple((word, (*assumes, AI_39["b"], AI_39_REPORTS["b"])) for word, assumes in earlier)
+        fresh = (AI_39_REPORTS["a"],) if mission.was[2] else ()
+        now = _called(server, evolve(mission, was=None))
+        return (*((word, (*assumes, *fresh)) for word, assumes in now), *unlooked)
     if status is Status.STARTED:
         return ("started", (AI_04_SENT["s"],)), ("queued", (AI_04_SENT["t"],))
     if status is Status.CANCELED:

@@ -323,6 +323,9 @@ def _shifted(move: Move, time: int) -> Move:
 
 def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
     """A mission whose clocks say how much is left so much later."""
+    if mission.was is not None:
+        status, left, fresh = mission.was
+        mission = evolve(mission, was=(status, left - time, fresh and not time) if left > time else None)
     if not mission.clocks:
         return mission
     clocks = (
@@ -348,7 +351,7 @@ def _takeover_noticed(move: Move, link: Link, time: int) -> Move:
 def elapsed(state: Server, time: int | None) -> Server:
     """The server so much later as its log tells, or any time later: what is due may have happened, and need not."""
     long = EVER if time is None else time
-    missions = tuple(_with_clocks_loosened(one, long) if one.clocks else one for one in state.missions)
+    missions = tuple(_with_clocks_loosened(one, long) if one.clocks or one.was else one for one in state.missions)
     links = tuple(_looked_after(state, link, long) for link in state.links)
     return evolve(state, missions=missions, links=links)
 
@@ -358,7 +361,8 @@ def _with_clocks_loosened(mission: Mission, time: int) -> Mission:
         evolve(clock, lo=clock.lo - time if clock.lo - time > ABOUT else min(clock.lo, 0), hi=None)
         for clock in mission.clocks
     )
-    return evolve(mission, clocks=tuple(clocks))
+    was = mission.was and (*mission.was[:2], False)
+    return evolve(mission, clocks=tuple(clocks), was=was)
 
 
 def _looked_after(state: Server, link: Link, time: int) -> Link:

@@ -42,6 +42,7 @@ SHIPPED_SERVER: Mapping[str, str] = {
     "AI-28.uuid": "y",
     "AI-31": "b",
     "AI-39": "b",
+    "AI-39.reports": "a",
 }
 """The mission server (2020.2): names, drops, time-outs and cancellations are noticed in a pass once a second."""
 

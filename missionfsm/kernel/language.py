@@ -41,7 +41,7 @@ from missionfsm.kernel.rules import (
 )
 from missionfsm.kernel.shapes import Shapes, record
 from missionfsm.kernel.spec import Delivery, Drive, Failure, Invariant, Spec
-from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
+from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step, Unowed
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Refs
 from missionfsm.kernel.text import brief
@@ -98,6 +98,7 @@ __all__ = [
     "StepMutation",
     "StepMutator",
     "System",
+    "Unowed",
     "UnreadableError",
     "WorldForm",
     "as_text",

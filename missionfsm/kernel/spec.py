@@ -27,7 +27,7 @@ from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver, promise
-from missionfsm.kernel.step import Match, Mismatch, Step
+from missionfsm.kernel.step import Match, Mismatch, Step, Unowed
 from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, Topic, View, World
 
 
@@ -329,7 +329,7 @@ class Spec:
     answers_for: Mapping[str, tuple[str, ...]] = field(factory=dict)
     waived: tuple[Waiver, ...] = ()
     unopened: tuple[str, ...] = ()
-    unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...] | Mismatch] | None = None
+    unowed: Callable[[State, Hashable, Content, Refs], tuple[str, ...] | Mismatch | Unowed] | None = None
     undelivered: Callable[[View], tuple[str, ...]] | None = None
     transport: bool = False
     restarted: Callable[[State], Step] | None = None

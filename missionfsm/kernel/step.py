@@ -121,6 +121,14 @@ class Match:
 
 
 @frozen
+class Unowed:
+    """Why a message is not due: the rules that it breaks, the nearest first, and what is wrong."""
+
+    rules: tuple[str, ...]
+    says: str
+
+
+@frozen
 class Mismatch:
     """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong.
 

@@ -32,7 +32,7 @@ def describe(value: object) -> str:
     if isinstance(value, Incoming):
         return _heard(value)
     if isinstance(value, Closes):
-        return "the connection ends"
+        return "its end"
     if isinstance(value, Sends):
         return f"a mission on {value.channel} with {value.config}"
     if isinstance(value, LineContent):

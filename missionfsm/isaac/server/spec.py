@@ -60,7 +60,7 @@ from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Delivery, Drive, Spec
-from missionfsm.kernel.step import Opening, Step
+from missionfsm.kernel.step import Opening, Step, Unowed
 from missionfsm.kernel.terms import Refs
 
 
@@ -338,23 +338,55 @@ def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:
     return ()
 
 
-def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[str, ...]:
-    """The rules that a server breaks that sends a mission now: before its upstreams, to another robot, or twice."""
+def _unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[str, ...] | Unowed:
+    """What is wrong with a mission that is sent now: before its upstreams, to another robot, or twice."""
     link = server.link_of_topic(at)
-    if link is None or not isinstance(content, LineContent) or any(ref is not None for ref in refs):
+    if link is None or not isinstance(content, LineContent) or content.kind != "mission":
         return ()
+    known = [mission_of_uuid(server, ref) for ref in refs if ref is not None]
+    if known:
+        return _once_more([server.missions[index] for index in known if index >= 0])
     return _too_early(link, [one for one in server.missions if _says(content, one)])
 
 
-def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...]:
-    """The rules that are broken where one of these missions is sent on a connection though it is not due there."""
+def _once_more(meant: list[Mission]) -> tuple[str, ...] | Unowed:
+    """Why a mission that was sent before is not due."""
+    for one in meant:
+        if one.status in ENDED:
+            return Unowed((rules.SENT.id,), f"the mission with that uuid has ended, it is {_word(one.status)}")
+        if one.sent:
+            return Unowed((rules.SENT.id,), "the mission with that uuid was sent already")
+    return ()
+
+
+def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...] | Unowed:
+    """Why none of these missions is due on a connection."""
     queued = [one for one in meant if one.status is Status.QUEUED]
     own = [one for one in queued if link.serves and one.robot == link.name]
+    if own and all(one.ready for one in own):
+        return (rules.SENT.id,)
     if own:
-        return (rules.SENT.id,) if all(one.ready for one in own) else (rules.UPSTREAM.id, rules.SENT.id)
+        waits = "an upstream of the mission with that configuration has {}"
+        says = waits.format("failed" if all(one.doomed for one in own) else "not succeeded")
+        return Unowed((rules.UPSTREAM.id, rules.SENT.id), says)
     if any(one.status is Status.CANCELED and one.robot == link.name for one in meant):
-        return (rules.CANCELED.id, rules.UPSTREAM.id)
-    return (rules.UNNAMED.id,) if queued else ()
+        says = "the mission with that configuration was cancelled, since an upstream of it has failed"
+        return Unowed((rules.CANCELED.id, rules.UPSTREAM.id), says)
+    ended = next((one for one in meant if one.status in ENDED and not one.sent), None)
+    if not queued and ended is not None:
+        return Unowed((rules.SENT.id,), f"the mission with that configuration has ended, it is {_word(ended.status)}")
+    if not queued:
+        says = "was sent already, with another uuid" if meant else "was never accepted"
+        return Unowed((rules.SENT.id,), f"a mission with that channel and that configuration {says}")
+    robots = ", ".join(dict.fromkeys(repr(one.robot) for one in queued))
+    whose = "has said no name" if link.name is None else f"is that of {link.name!r}"
+    return Unowed((rules.UNNAMED.id,), f"the mission with that configuration is for {robots}, the connection {whose}")
+
+
+def _word(status: Status) -> str:
+    return {Status.ABORTED: "timed out", Status.CANCELED: "cancelled", Status.LOST: "lost"}.get(
+        status, status.value.lower()
+    )
 
 
 def _says(content: LineContent, mission: Mission) -> bool:

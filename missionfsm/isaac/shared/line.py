@@ -55,9 +55,19 @@ class LineContent:
     unsigned: bool = False
 
 
+class Halves(int):
+    """The number of an identifier, which is told as the wire writes it."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        uuid = Uuid.of(int(self))
+        return f"(lower {uuid.lower}, upper {uuid.upper})"
+
+
 def uuid_name(uuid: Uuid) -> Name:
     """The name under which the oracle knows a mission by its identifier."""
-    return ("uuid", uuid.value)
+    return ("uuid", Halves(uuid.value))
 
 
 def uuid_json(name: Any) -> JSON:  # noqa: ANN401 - a name of this system, a pair
@@ -70,7 +80,7 @@ def new_uuid(serial: int) -> Name:
     """An identifier whose halves differ and are too large for a double; another one for every serial number."""
     lower = (serial * 0x9E3779B97F4A7C15 + 0x7F4A7C15F39CC061) % (1 << 64) | 1
     upper = (serial * 0xC2B2AE3D27D4EB4F + 0x165667B19E3779F9) % (1 << 64) | 1 << 62 | 1
-    return ("uuid", upper << 64 | lower)
+    return ("uuid", Halves(upper << 64 | lower))
 
 
 def canonical(text: str) -> str | None:

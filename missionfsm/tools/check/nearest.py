@@ -19,7 +19,7 @@ from missionfsm.kernel.middle import ANY, Unknown
 from missionfsm.kernel.readings import Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
-from missionfsm.kernel.step import Mismatch, Step
+from missionfsm.kernel.step import Mismatch, Step, Unowed
 from missionfsm.kernel.terms import Content, View
 from missionfsm.kernel.text import counted
 from missionfsm.oracle.belief import Belief
@@ -268,6 +268,10 @@ class Nearest:
         if self.spec.unowed is not None:
             refs = tuple(map(here.ref, message.given))
             found = self.spec.unowed(here.state, channel.topic, message.content, refs)
+            if isinstance(found, Unowed):
+                seen = () if channel.last is None else self._matched(here, channel, channel.last, message)
+                yield Problem(found.says, found.rules, UNOWED + seen[0].weight if seen else UNBEGUN)
+                return
             own, unbegun = ((found.rule,), found.says) if isinstance(found, Mismatch) else (found, unbegun)
         if isinstance(message.content, Malformed):
             yield Problem(message.content.says, delivery.malformed or delivery.unowed, SHAPE)

@@ -1,0 +1,64 @@
+"""What a person is told of a mission that was sent though it was not due."""
+
+import pytest
+from server_history import SERVER, History
+
+from missionfsm.isaac.shared.line import new_uuid, uuid_name
+from missionfsm.isaac.wire.messages import Uuid
+from missionfsm.tools.check.phrases import name_words
+
+
+def _told(history: History, **options: object) -> str:
+    verdict = history.judged(**options)
+    assert verdict.violation is not None
+    return str(verdict)
+
+
+def _first(**mission: object) -> History:
+    return History().submit(1, config={"a": {"b": {"c": 1}}}, **mission)
+
+
+A = '{"a":{"b":{"c":1}}}'
+
+
+def test_an_upstream_has_not_succeeded() -> None:
+    history = _first().submit(2, upstream=[1]).robot(1).sends(1, 1, A).settles.sends(1, 2)
+    assert "an upstream of the mission with that configuration has not succeeded" in _told(history)
+
+
+def test_an_upstream_has_failed() -> None:
+    begun = _first().robot(1).sends(1, 1, A).settles.reports(1, 1, "failure").settles.shows("FAILED")
+    told = _told(begun.submit(2, upstream=[1]).sends(1, 2), readings={"AI-10": "ab"})
+    assert "an upstream of the mission with that configuration has failed" in told
+    assert "nothing changed since" not in told
+
+
+def test_a_mission_is_sent_twice() -> None:
+    history = _first().robot(1).sends(1, 1, A).settles.sends(1, 1, A)
+    assert "the mission with that uuid was sent already" in _told(history)
+
+
+def test_a_mission_has_ended() -> None:
+    begun = _first().robot(1).sends(1, 1, A).settles.reports(1, 1, "success").settles.shows("SUCCESS")
+    assert "the mission with that uuid has ended, it is success" in _told(begun.sends(1, 1, A))
+    never = History().submit(1, start_timeout=2).settles.waits(9).settles.shows("FAILED_TIMEDOUT").robot(1)
+    assert "the mission with that configuration has ended, it is timed out" in _told(never.sends(1, 1))
+
+
+def test_a_mission_is_for_another_robot() -> None:
+    history = _first(robot="q").robot(1).settles.sends(1, 1, A)
+    assert "the mission with that configuration is for 'q', the connection is that of 'r'" in _told(history)
+    nobody = _first().drive("connect", connection=1).settles.sends(1, 1, A)
+    assert "is for 'r', the connection has said no name" in _told(nobody)
+
+
+def test_a_mission_was_never_accepted() -> None:
+    history = History().submit(1, refused=True, start_timeout=-1).robot(1).sends(1, 1)
+    assert "a mission with that channel and that configuration was never accepted" in _told(history)
+
+
+@pytest.mark.parametrize("name", [uuid_name(Uuid(2, 7)), new_uuid(3)])
+def test_a_uuid_is_told_by_its_halves(name: object) -> None:
+    uuid = Uuid.of(name[1])  # type: ignore[index]
+    assert name_words(name) == f"uuid (lower {uuid.lower}, upper {uuid.upper})"
+    assert SERVER.naming.write(name) == {"lower": str(uuid.lower), "upper": str(uuid.upper)}

@@ -66,6 +66,16 @@ def test_a_name_without_a_signed_type_id_counts_or_does_not(proto: str | None, *
     assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
 
 
+def test_a_mission_that_says_that_it_is_a_text_is_no_greeting() -> None:
+    proto = str(json.loads(_written(TextProto("hello"), "log"))["header"]["proto"])
+    mission = {"connection": 1, "line": _written(MissionProto(ONE, "{}"), "mission", {"proto": proto})}
+    greeting = {"connection": 1, "line": _written(TextProto("hello"), "mission")}
+    for line, right in ((mission, False), (greeting, True)):
+        history = History().robot(1)
+        history.lines.append(line)
+        assert history.settles.judged().conforms is right, line
+
+
 # The robot.
 
 DRIVES = ("line", "behaviorSucceeded", "behaviorFailed", "advance")

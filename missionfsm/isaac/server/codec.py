@@ -332,6 +332,8 @@ def split_message(line: JSON) -> tuple[Part, ...]:
     """
     names, said = see(line)
     greets = isinstance(said, LineContent) and said.kind == "text" and not said.bare
+    if greets and "config" in json.loads(line)["payload"]:
+        greets, said = False, Malformed("header.proto is the type id of a text, the payload is a mission")
     return () if greets else (part_of(line, names, said),)
 
 

@@ -8,7 +8,7 @@ import orjson
 import pytest
 from attrs import evolve
 from busy import Habits, busy
-from traffic import MISSION, SUBSCRIBE, Recorder, navigate, readings_at_random
+from traffic import MISSION, SUBSCRIBE, Recorder, hourly, navigate, readings_at_random
 
 from missionfsm.app.recorded import check_file
 from missionfsm.bear.mission.stream import GOALS
@@ -51,6 +51,21 @@ def test_a_busy_log_that_is_cut_anywhere_is_no_violation(tmp_path: Path, seed: i
         if verdict.violation is not None:
             wrong[cut] = str(verdict)
     assert wrong == {}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_log_of_streams_that_end_is_no_violation_wherever_it_is_cut(tmp_path: Path, seed: int) -> None:
+    """A log of streams that end again and again conforms, and is no violation whatever is missing at its beginning."""
+    first, *lines = hourly(seed).history
+    path = tmp_path / "log"
+    found = []
+    for cut in range(len(lines)):
+        left = [{**first, **({"begins": "anywhere"} if cut else {})}, *lines[cut:]]
+        path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in left))
+        ((_, verdict),) = check_file(str(path))
+        found.append(verdict)
+    assert found[0].conforms
+    assert [str(one) for one in found if one.violation is not None] == []
 
 
 @pytest.mark.parametrize("missions", [3, 6])

@@ -14,7 +14,7 @@ from typing import Any
 import orjson
 import pytest
 from mutated import MANY, SECONDS, limited, mutated
-from traffic import MISSION, one_more, walk
+from traffic import MISSION, hourly, one_more, walk
 
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
@@ -82,6 +82,7 @@ FORMS: dict[str, Callable[[], list[Any]]] = {
     "bare statuses": statuses,
     "webhook": bodies,
     "fleet": fleet,
+    "hourly": lambda: hourly(3).history,
     "anywhere": lambda: [{**(lines := history("bear.mission"))[0], "begins": "anywhere", "others": True}, *lines[4:]],
 }
 

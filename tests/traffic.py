@@ -109,6 +109,25 @@ def walk(seed: int, steps: int, choice: Mapping[str, str] | None = None, *, driv
     return log
 
 
+def hourly(seed: int) -> Recorder:
+    """A client whose stream ends again and again, and is opened anew."""
+    random = Random(seed)
+    log = Recorder(readings_at_random(seed) if seed % 2 else None, drives=random.random() < 0.5)
+    for _ in range(5):
+        log.call(SUBSCRIBE)
+        for _ in range(random.randrange(1, 4)):
+            what = random.randrange(5)
+            if what < 2:
+                log.call(("CreateMission", "AppendMission")[what], navigate("table-1"))
+            elif what == 2:
+                log.call(random.choice(("SkipGoal", "ClearMissionStatus", "ChargeRobot")))
+            else:
+                log.drive(event=random.choice(DRIVES))
+        log.lines.append({"stream": log.streams[-1], "closed": True})
+        log.reference.exchange("cancel", {"stream": log.streams[-1]})
+    return log
+
+
 def readings_at_random(seed: int, of: System = MISSION) -> dict[str, str]:
     """A letter of some ambiguities, the others as by default."""
     random = Random(seed)

@@ -13,6 +13,7 @@ from commandline import CommandLine
 from traffic import navigate, one_more, readings_at_random, walk
 
 from missionfsm.app.asked import judged_system
+from missionfsm.app.recorded import check_file
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import head
@@ -49,6 +50,23 @@ def test_a_conforming_history_that_is_cut_anywhere_is_no_violation(seed: int) ->
         if not judge.right:
             wrong[cut] = str(judge.verdict())
     assert wrong == {}
+
+
+@pytest.mark.parametrize("strict", [True, False])
+@pytest.mark.parametrize("seed", range(1_000, 1_012))
+def test_a_conforming_history_of_which_calls_are_hidden_is_no_violation(
+    tmp_path: Path, seed: int, *, strict: bool
+) -> None:
+    """However many calls of a right history are somebody else's, it is never a violation where there are others."""
+    random, log = Random(seed), walk(seed, 20, readings_at_random(seed) if seed % 3 == 0 else {}, drives=seed % 2 == 0)
+    calls = [
+        line for line in log.lines if "call" in line and line["method"] not in ("SubscribeMissionStatus", "cancel")
+    ]
+    hidden = {line["call"] for line in calls if random.random() < 0.4}
+    left = [line for line in log.lines if hidden.isdisjoint((line.get("call"), line.get("return")))]
+    first = {**log.head, "others": True} | ({"transport": "strict"} if strict else {})
+    ((_, verdict),) = check_file(str(written(tmp_path / "log", [first, *left])))
+    assert verdict.violation is None, str(verdict)
 
 
 STATUS = judged_system("bear.status", strict=True)

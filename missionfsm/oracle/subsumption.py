@@ -1,12 +1,15 @@
 """Of many explanations only those that the others do not already stand for.
 
-Three things keep a belief small: explanations that differ in a single question become one; one that has used up more
-lost calls than another at the same point is left out; and so is one that another can silently become.
+Four things keep a belief small: explanations that differ in a single question become one; one that has used up more
+lost calls than another at the same point is left out; so is one that has to show something more often than another that
+may show it as often; and so is one that another can silently become.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import itertools
+import operator
+from collections.abc import Hashable, Iterable, Iterator
 
 from missionfsm.kernel.readings import covers, merge
 from missionfsm.oracle.explanation import GONE, Explanation, Lost, mentioned_besides, within
@@ -28,7 +31,7 @@ def prune(successors: Successors, found: Iterable[Successor], focus: FocusOf | N
     for successor in found:
         here = place_with_lost(successor.explanation)
         points[here] = _widened(successors, points.get(here, []), successor)
-    kept = _without_dominated([successor for same in points.values() for successor in same])
+    kept = _without_busier(_without_dominated([successor for same in points.values() for successor in same]))
     return tuple(kept) if len(kept) <= 1 else tuple(_without_later(successors, kept, focus))
 
 
@@ -72,6 +75,55 @@ def _without_dominated(found: list[Successor]) -> list[Successor]:
         if not any(covers(other, assumed) and within(lost, left) for other, left, _ in others):
             others.append((assumed, lost, successor))
     return [successor for others in kept.values() for _, _, successor in others]
+
+
+def _without_busier(found: list[Successor]) -> list[Successor]:
+    """Without those that owe a message more often than another that is the same otherwise and may show it as often."""
+    if not any(_offers_again(one.explanation) for one in found):
+        return found
+    kept: dict[Hashable, list[tuple[tuple[int, ...], Successor]]] = {}
+    for successor in found:
+        here = successor.explanation
+        shapes, times = _duties(here)
+        others = kept.setdefault((here.state, here.names, here.calls, here.lost, here.gone, shapes), [])
+        if not any(_fewer(less, times) and covers(one.explanation.assumed, here.assumed) for less, one in others):
+            others[:] = [
+                (more, one)
+                for more, one in others
+                if not (_fewer(times, more) and covers(here.assumed, one.explanation.assumed))
+            ]
+            others.append((times, successor))
+    return [successor for others in kept.values() for _, successor in others]
+
+
+def _offers_again(explanation: Explanation) -> bool:
+    """Whether a channel owes a message and may show the same again after it."""
+    return any(
+        after.stays and (one.view, one.names) == (after.view, after.names)
+        for channel in explanation.channels
+        for one, after in itertools.pairwise(channel.owed)
+    )
+
+
+def _fewer(times: tuple[int, ...], others: tuple[int, ...]) -> bool:
+    return all(map(operator.le, times, others))
+
+
+def _duties(explanation: Explanation) -> tuple[Hashable, tuple[int, ...]]:
+    """What the channels owe but for how often, and how often where one may show the same any number of times then."""
+    shapes: list[Hashable] = []
+    times: list[int] = []
+    for channel in explanation.channels:
+        runs: list[Hashable] = []
+        for _, alike in itertools.groupby(channel.owed, lambda one: (one.view, one.names)):
+            run = tuple(alike)
+            if run[-1].stays and all(one.only is None and one.shown_as is None for one in run):
+                runs.append(run[-1])
+                times.append(sum(not one.passing for one in run))
+            else:
+                runs.append(run)
+        shapes.append((channel.name, channel.topic, channel.last, channel.foretold, channel.done, tuple(runs)))
+    return tuple(shapes), tuple(times)
 
 
 def surviving_names(explanations: Iterable[Explanation]) -> dict[int, int]:

@@ -16,7 +16,7 @@ from missionfsm.isaac.wire.messages import Header, Message, MissionProto, Missio
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
-from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.judge import Judge, check
 from missionfsm.tools.check.nearest import rules_about
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
@@ -72,6 +72,30 @@ def rules(verdict: Verdict) -> list[str]:
 def test_what_a_codelet_may_say(lines: tuple[Any, ...]) -> None:
     """RUNNING as often as it likes while a tree runs, one final status, FAILURE for what is preempted."""
     assert judged(*lines).conforms
+
+
+def test_a_robot_that_reports_each_second_has_few_explanations() -> None:
+    """What came how often need not be told apart: twelve rounds have at most twice the explanations of six."""
+
+    def widest(rounds: int) -> int:
+        judge = Judge(ROBOT, Head("isaac.robot", {}, ("line", "behaviorSucceeded", "behaviorFailed", "advance")))
+        most = 0
+        for line in (arrives(ONE), says("running"), SETTLED, *[passes(1), says("running")] * rounds):
+            assert judge.feed(line)
+            most = max(most, len(judge.belief.node.explanations))
+        return most
+
+    assert widest(12) <= 2 * widest(6) + 10
+
+
+def test_running_that_was_due_has_to_come() -> None:
+    """However often it was due: where it was not shown at all since, that is noticed once everything has settled."""
+    five = passes(5)
+    assert rules(judged(arrives(ONE), says("running"), SETTLED, five, five, SETTLED))
+    assert judged(
+        arrives(ONE), says("running"), SETTLED, five, says("running"), five, says("running"), SETTLED
+    ).conforms
+    assert rules(judged(arrives(ONE), says("running"), SETTLED, five, five, says("running"), SETTLED))
 
 
 @pytest.mark.parametrize(

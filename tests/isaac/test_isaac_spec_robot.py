@@ -194,9 +194,14 @@ def test_the_robot_that_ships_conforms() -> None:
     }
 
 
+UNASKED = ("AI-27.taken", "AI-28.taken")
+"""Of lines that no tester sends: they are recorded (`test_isaac_odd_lines.py`)."""
+FOLLOWED = [one for one in AMBIGUITIES if one.id not in UNASKED]
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("entry", "letter"), [(one.id, letter) for one in AMBIGUITIES for letter in one.readings if letter != one.default]
+    ("entry", "letter"), [(one.id, letter) for one in FOLLOWED for letter in one.readings if letter != one.default]
 )
 def test_the_reference_follows_every_reading(entry: str, letter: str) -> None:
     """The reference under a single other reading conforms, and is found to follow it."""

@@ -238,6 +238,26 @@ def test_clocks_of_missions_in_a_queue_do_not_multiply() -> None:
     assert queue_of(2, start=5).shows("SUCCESS", "QUEUED").judged().violation is not None
 
 
+@pytest.mark.slow
+def test_queues_of_three_robots_are_decided() -> None:
+    """Three robots with four missions each that look alike, sent in passes: nothing tells which of them is which."""
+    history, robots = History(), (1, 2, 3)
+    for number in range(1, 13):
+        history.submit(number, robot=f"r{(number - 1) % 3 + 1}")
+        history.lines.append(SETTLED)
+    for robot in robots:
+        history = history.robot(robot, f"r{robot}").settles
+    for turn in range(4):
+        history.waits(1)
+        for robot in robots:
+            history.sends(robot, 3 * turn + robot)
+        for status in ("running", "success"):
+            history.lines.append(SETTLED)
+            for robot in robots:
+                history.reports(robot, 3 * turn + robot, status)
+    assert history.settles.shows(*["SUCCESS"] * 12).judged().conforms
+
+
 def compared_in_any_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same verdict and readings, with those clocks left open and not."""
     draw = random.Random(seed)

@@ -34,9 +34,9 @@ def test_nothing_is_heard_on_a_connection_that_is_closed() -> None:
     assert not history.settles.judged(readings=ABORTS).conforms
 
 
-def test_a_log_may_tell_of_the_close_as_of_a_drop() -> None:
-    history = History().submit(1).robot(1).sends(1, 1).settles.waits(9).drive("disconnect", connection=1).settles
-    assert history.submit(2).settles.judged(readings=ABORTS).conforms
+def test_what_the_server_has_closed_does_not_drop() -> None:
+    history = History().submit(1).robot(1).sends(1, 1).settles.waits(9).closes(1).settles
+    assert not history.drive("disconnect", connection=1).judged(readings=ABORTS).conforms
 
 
 def test_the_reference_tells_that_a_connection_ends() -> None:

@@ -213,7 +213,7 @@ def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
     if position is None:
         return ()
     if server.links[position].closing:
-        return (_seen_to_end(server, server.links[position]),)
+        return ()
     if server.over:
         return (_step(server, Move(without(server, server.links[position]))),)
     quiet = nothing_open_happened(server, concerned(server, Focus(DRIVEN, Drops(), refs)))

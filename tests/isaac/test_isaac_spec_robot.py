@@ -189,7 +189,7 @@ def test_the_robot_that_ships_conforms() -> None:
         "AI-33.null": ("b",),
         "AI-33.preempts": ("a",),
         "AI-33.running": ("a", "b"),
-            "AI-33.unknown": ("a",),
+        "AI-33.unknown": ("a",),
         "AI-33.unusable": ("a",),
         "AI-33.value": ("a",),
     }

@@ -8,6 +8,9 @@ from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.language import JSON, Refs, Sketch
 
 _MISSION = '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"%s"}}}'
+_WAITING = 2
+"""How many statuses wait for the codelet's tick in a picture; under some readings there is no end of them."""
+
 _DRIVES: tuple[JSON, ...] = (
     {"event": "line", "line": _MISSION % "{}"},
     {"event": "line", "line": _MISSION % "no json"},
@@ -41,7 +44,7 @@ SKETCHES = (
         "what a robot reports of its missions",
         node=_node,
         label=_label,
-        within=lambda _: True,
+        within=lambda codelet: len(codelet.waiting) <= _WAITING,
         shows=_shows,
         drives=_DRIVES,
         contrasts=("AI-33.unusable=b",),

@@ -55,7 +55,7 @@ def disregarding(spec: Spec, ways: Broken) -> Spec:
     def both(state: State, steps: Iterable[Step]) -> tuple[Step, ...]:
         right = tuple(steps)
         wrong = (mutate(state, one) for one in right for at, mutate in ways if at in one.rules)
-        return *right, *(one for one in wrong if one is not None and one not in right and _fits(spec, one))
+        return *right, *(one for one in wrong if one is not None and one not in right and _fits(spec, state, one))
 
     def driven(drive: Drive) -> Drive:
         return evolve(drive, steps=lambda state, event, refs: both(state, drive.steps(state, event, refs)))
@@ -75,6 +75,7 @@ def disregarding(spec: Spec, ways: Broken) -> Spec:
     )
 
 
-def _fits(spec: Spec, step: Step) -> bool:
-    """Whether a step names as many things as there are after it."""
-    return step.names is None or len(step.names) == spec.names(step.after)
+def _fits(spec: Spec, before: State, step: Step) -> bool:
+    """Whether a step names as many things as there are after it, and mentions none that there is not."""
+    there = {*range(spec.names(before)), *(step.names or ()), *(one.ref for one in step.opens)}
+    return there.issuperset(step.refs) and (step.names is None or len(step.names) == spec.names(step.after))

@@ -34,11 +34,7 @@ class Answering:
     ) -> Iterator[Successor]:
         """The explanations in which a call is answered so, now or by a step that comes before."""
         undone, reply = [], Reply(answer, names)
-        if self._level > 1:
-            explanations = (*explanations, *lenient.restarted(self._successors, self._spec, explanations))
-        if answer.code == OK and self._spec.transport and self._spec.added:
-            explanations = lenient.up_to_date(self._successors, explanations, call)
-        for explanation in explanations:
+        for explanation in self._over_transport(explanations, answer, call):
             position = _position(explanation, call)
             if position is None:
                 continue
@@ -59,7 +55,19 @@ class Answering:
             # What is silent may as well come after the answer.
             for after, rules in self._answered(explanation, position, reply):
                 yield Successor(tidy(after), rules)
-        about = before_answer(self._successors, call, answer)
+        yield from self._answered_after_others(undone, call, reply)
+
+    def _over_transport(self, explanations: Iterable[Explanation], answer: Answer, call: int) -> Iterable[Explanation]:
+        """The explanations with those that only a transport has, and what a success says of the robot's software."""
+        if self._level > 1:
+            explanations = (*explanations, *lenient.restarted(self._successors, self._spec, explanations))
+        if answer.code == OK and self._spec.transport and self._spec.added:
+            return lenient.up_to_date(self._successors, explanations, call)
+        return explanations
+
+    def _answered_after_others(self, undone: list[Explanation], call: int, reply: Reply) -> Iterator[Successor]:
+        """The explanations in which something else comes before the call takes effect and is answered."""
+        about = before_answer(self._successors, call, reply.answer)
         for successor in self._successors.closure(undone, besides=call, focus=about):
             position = _position(successor.explanation, call)
             if position is not None:

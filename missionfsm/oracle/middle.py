@@ -262,21 +262,25 @@ def unforeseen(
         here = one.replace(assumed=agreed)
         if not agreed or is_unknown(here):
             continue
-        if here.all_known and not spec.others:
-            if kind is Received:
-                yield from _late(here, what[3], what[0])
-            continue
-        if kind is Received:
-            content, names, _, channel = what
-            yield from states_shown(successors, here, Arrival(channel, content, names), then=True)
-            yield from _late(here, channel, content)
-        elif kind is Returned:
-            answer, names, call = what
-            place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
-            if place is not None:
-                yield from answered(successors, here, place, answer, names)
-        elif kind is Driven or (kind is Settled and spec.anywhere):
-            yield Successor(_lost_sight(successors, here))
+        if not here.all_known or spec.others:
+            yield from _brought_about(successors, here, kind, *what)
+        elif kind is Received:
+            yield from _late(here, what[3], what[0])
+
+
+def _brought_about(successors: Successors, here: Explanation, kind: type, *what: Part) -> Iterator[Successor]:
+    """How somebody may have brought an event about in one explanation."""
+    if kind is Received:
+        content, names, _, channel = what
+        yield from states_shown(successors, here, Arrival(channel, content, names), then=True)
+        yield from _late(here, channel, content)
+    elif kind is Returned:
+        answer, names, call = what
+        place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
+        if place is not None:
+            yield from answered(successors, here, place, answer, names)
+    elif kind is Driven or (kind is Settled and successors.spec.anywhere):
+        yield Successor(_lost_sight(successors, here))
 
 
 def _late(here: Explanation, name: int, content: Content) -> Iterator[Successor]:

@@ -359,25 +359,34 @@ def _once_more(meant: list[Mission]) -> tuple[str, ...] | Unowed:
     return ()
 
 
+def _waits(own: list[Mission]) -> tuple[str, ...] | Unowed:
+    """Why none of these missions of the robot is due, which are queued."""
+    if all(one.ready for one in own):
+        return (rules.SENT.id,)
+    has = "failed" if all(one.doomed for one in own) else "not succeeded"
+    return Unowed((rules.UPSTREAM.id, rules.SENT.id), f"an upstream of the mission with that configuration has {has}")
+
+
+def _not_queued(meant: list[Mission]) -> Unowed:
+    """Why none of these missions is due, of which none is queued."""
+    ended = next((one for one in meant if one.status in ENDED and not one.sent), None)
+    if ended is not None:
+        return Unowed((rules.SENT.id,), f"the mission with that configuration has ended, it is {_word(ended.status)}")
+    says = "was sent already, with another uuid" if meant else "was never accepted"
+    return Unowed((rules.SENT.id,), f"a mission with that channel and that configuration {says}")
+
+
 def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...] | Unowed:
     """Why none of these missions is due on a connection."""
     queued = [one for one in meant if one.status is Status.QUEUED]
     own = [one for one in queued if link.serves and one.robot == link.name]
-    if own and all(one.ready for one in own):
-        return (rules.SENT.id,)
     if own:
-        waits = "an upstream of the mission with that configuration has {}"
-        says = waits.format("failed" if all(one.doomed for one in own) else "not succeeded")
-        return Unowed((rules.UPSTREAM.id, rules.SENT.id), says)
+        return _waits(own)
     if any(one.status is Status.CANCELED and one.robot == link.name for one in meant):
         says = "the mission with that configuration was cancelled, since an upstream of it has failed"
         return Unowed((rules.CANCELED.id, rules.UPSTREAM.id), says)
-    ended = next((one for one in meant if one.status in ENDED and not one.sent), None)
-    if not queued and ended is not None:
-        return Unowed((rules.SENT.id,), f"the mission with that configuration has ended, it is {_word(ended.status)}")
     if not queued:
-        says = "was sent already, with another uuid" if meant else "was never accepted"
-        return Unowed((rules.SENT.id,), f"a mission with that channel and that configuration {says}")
+        return _not_queued(meant)
     robots = ", ".join(dict.fromkeys(repr(one.robot) for one in queued))
     whose = "has said no name" if link.name is None else f"is that of {link.name!r}"
     return Unowed((rules.UNNAMED.id,), f"the mission with that configuration is for {robots}, the connection {whose}")

@@ -40,6 +40,17 @@ _LOST_IS_CALLED = ("failed", "aborted")
 Called = tuple[tuple[str, tuple[Assumption, ...]], ...]
 
 
+def _called_queued(server: Server, mission: Mission) -> Called:
+    """What a mission that is queued may be shown as."""
+    reasons = []
+    if mission.waits or mission.doomed:
+        reasons.append((AI_04["a"], AI_04["b"]))
+    if server.serving(mission.robot) is None:
+        reasons.append((AI_04_ROBOT["q"], AI_04_ROBOT["r"]))
+    queued = tuple(reason[0] for reason in reasons)
+    return ("queued", queued), *(("created", (reason[1],)) for reason in reasons)
+
+
 def _called(server: Server, mission: Mission) -> Called:
     """What a mission may be shown as, each with what that assumes."""
     status = mission.status
@@ -56,13 +67,7 @@ def _called(server: Server, mission: Mission) -> Called:
     if status is Status.ABORTED:
         return tuple((word, (AI_02_ABORTED[letter],)) for letter, word in _ABORTED.items())
     if status is Status.QUEUED:
-        reasons = []
-        if mission.waits or mission.doomed:
-            reasons.append((AI_04["a"], AI_04["b"]))
-        if server.serving(mission.robot) is None:
-            reasons.append((AI_04_ROBOT["q"], AI_04_ROBOT["r"]))
-        queued = tuple(reason[0] for reason in reasons)
-        return ("queued", queued), *(("created", (reason[1],)) for reason in reasons)
+        return _called_queued(server, mission)
     return (("lost" if status is Status.LOST else status.value.lower(), ()),)
 
 

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
-from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned, Settled
+from missionfsm.kernel.history import Driven, Ended, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
@@ -246,20 +246,25 @@ def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
 
 
 def _strangers(nearest: Nearest, event: Received) -> list[str]:
-    """Names in a message that no call was answered with, and the calls that were answered last.
-
-    Names of a kind that no call was answered with come from elsewhere, those of missions in lines for example.
-    """
-    belief = nearest.belief
-    answered = {name for call in nearest.about.recent for name in call.names}
-    kinds = {name[0] for name in answered if isinstance(name, tuple)}
-    foreign = [name for name in event.names if isinstance(name, tuple) and name[0] not in kinds]
-    unknown = [name for name in event.names if belief.number(name) < 0 and name not in {*answered, *foreign}]
+    """Names in a message that no call was answered with, and the calls that were answered last."""
     elsewhere = nearest.spec.anywhere or nearest.spec.others  # they may come from calls that are not in the log
-    if not unknown or elsewhere or not nearest.about.recent:
+    unknown = [] if elsewhere else _never_answered(nearest, event)
+    if not unknown or not nearest.about.recent:
         return []
     calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-MAX_CALLS:])
     return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
+
+
+def _never_answered(nearest: Nearest, event: Received) -> list[Name]:
+    """Names in a message that no call was answered with.
+
+    Names of a kind that no call was answered with come from elsewhere, those of missions in lines for example.
+    """
+    answered = {name for call in nearest.about.recent for name in call.names}
+    kinds = {name[0] for name in answered if isinstance(name, tuple)}
+    foreign = [name for name in event.names if isinstance(name, tuple) and name[0] not in kinds]
+    number = nearest.belief.number
+    return [name for name in event.names if number(name) < 0 and name not in {*answered, *foreign}]
 
 
 def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:

@@ -165,12 +165,8 @@ class Judge:
         if not self.right:
             return False
         self.read += 1
-        if self.transcript.silenced and not self._speaks_on:
-            self._speaks_on = any(type(one) is Received and one.channel in self.transcript.silenced for one in events)
-        if self._elapsing is not None:
-            passed = self._elapsing.before(events)
-            self.events -= len(passed)
-            events = (*passed, *events)
+        if self.transcript.silenced or self._elapsing is not None:
+            events = self._with_what_passes(events)
         if self._held is not None:
             return self._hold(events, place, open_calls=open_calls)
         belief = self.belief
@@ -180,13 +176,7 @@ class Judge:
             try:
                 explained = belief.observe(event)
             except ExhaustedError:
-                if self._patient and isinstance(belief, Belief):
-                    self.events -= 1
-                    self._held = Held(belief)
-                    return self._hold(events[position:], place, open_calls=open_calls)
-                self._undecided = event
-                self.exhausted, self.right = True, False
-                return False
+                return self._put_off(events[position:], place, open_calls=open_calls)
             if belief.presumed is not None:
                 self._presume(event, belief.presumed, place, seen=explained and type(event) is Received)
             if not explained:
@@ -200,6 +190,27 @@ class Judge:
             if kind is Returned or kind is Settled or kind is Called:
                 self._count(event, self.transcript.answered, open_calls=open_calls)
         return True
+
+    def _with_what_passes(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """The events of a line behind the time that passes before it; one on a stream that was cancelled is noticed."""
+        silenced = self.transcript.silenced
+        if silenced and not self._speaks_on:
+            self._speaks_on = any(type(one) is Received and one.channel in silenced for one in events)
+        if self._elapsing is None:
+            return events
+        passed = self._elapsing.before(events)
+        self.events -= len(passed)
+        return (*passed, *events)
+
+    def _put_off(self, events: tuple[Event, ...], place: int, *, open_calls: bool) -> bool:
+        """The first of these events is too dear to explain at once: it waits, or nothing more is judged."""
+        if self._patient and isinstance(self.belief, Belief):
+            self.events -= 1
+            self._held = Held(self.belief)
+            return self._hold(events, place, open_calls=open_calls)
+        self._undecided = events[0]
+        self.exhausted, self.right = True, False
+        return False
 
     def _presume(self, event: Event, before: Belief, place: int, *, seen: bool) -> None:
         """Nothing but a restart explains an answer; a message shows whether there was one.

@@ -279,9 +279,16 @@ class Nearest:
         if channel.last is None:
             yield Problem(unbegun, own or delivery.unowed, UNBEGUN)
             return
-        wrong = self._matched(here, channel, channel.last, message)
+        yield from self._unchanged(here, channel, channel.last, message, own or ())
+
+    def _unchanged(
+        self, here: Explanation, channel: Channel, shown: Owed, message: _Message, own: tuple[str, ...]
+    ) -> Iterator[Problem]:
+        """Nothing changed since a channel showed something: the message is another one, or the same again."""
+        delivery = self.spec.delivery(channel.topic)
+        wrong = self._matched(here, channel, shown, message)
         if wrong:
-            last = described(self.spec, channel.last.view)
+            last = described(self.spec, shown.view)
             rules = own or (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
             says = f"nothing changed since it showed {last}: " + "; ".join(one.says for one in wrong)
             yield Problem(says, rules, UNOWED + wrong[0].weight)

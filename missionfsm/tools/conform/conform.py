@@ -165,14 +165,21 @@ def conform(  # noqa: PLR0913 - every one has a default
         run.ledger.note(f"the adapter had not answered when it was stopped: {error}")
     verdict = verdict_of(run, seed, known, advice=advice)
     if enough() and not _has_found(run):
-        if verdict.rare and ADVICE in left:  # the time was up only after that
-            left.remove(ADVICE)
-        if verdict.untested.drives:
-            left.append(MISSED)
         done = f"it was stopped after {run.ledger.examples} of {plan.conversations(run.system)} conversations"
-        rest = f"; it did not come to {', nor to '.join(left)}" if left else ""
-        verdict = evolve(verdict, notes=(*verdict.notes, done + rest))
+        verdict = evolve(verdict, notes=(*verdict.notes, done + _unreached(verdict, left)))
     return held_to_the_text(verdict) if no_flagged else verdict
+
+
+def _unreached(verdict: Verdict, left: list[str]) -> str:
+    """What a run did not come to whose time was up, in words.
+
+    Args:
+        left: what it had yet to do.
+    """
+    told = [one for one in left if not (one == ADVICE and verdict.rare)]  # the time was up only after that
+    if verdict.untested.drives:
+        told.append(MISSED)
+    return f"; it did not come to {', nor to '.join(told)}" if told else ""
 
 
 def search(run: Run, plan: Plan, seed: int) -> None:

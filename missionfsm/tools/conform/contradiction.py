@@ -87,6 +87,11 @@ def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
     return ()
 
 
+def _about(ambiguity: Ambiguity, evidence: Mapping[tuple[str, str], Judge]) -> dict[str, Judge]:
+    """Which conversation rules out each letter of an ambiguity."""
+    return {letter: which for (name, letter), which in evidence.items() if name == ambiguity.id}
+
+
 def together(system: System, judges: Sequence[Judge]) -> Violation | None:
     """What is wrong with conversations each of which is explained, if no choice of readings explains all of them."""
     judges = [_at_leisure(system, judge) for judge in judges]
@@ -101,8 +106,7 @@ def together(system: System, judges: Sequence[Judge]) -> Violation | None:
             evidence.update({(ambiguity.id, one): judge for one in before if one not in letters})
             left[ambiguity.id] = tuple(one for one in before if one in letters)
             if not left[ambiguity.id]:
-                own = {letter: which for (name, letter), which in evidence.items() if name == ambiguity.id}
-                return inconsistent(system.spec, ambiguity, own)
+                return inconsistent(system.spec, ambiguity, _about(ambiguity, evidence))
     for judge in judges:
         again = under(system, judge, left)
         if again.violation is not None:

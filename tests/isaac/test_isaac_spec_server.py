@@ -185,7 +185,7 @@ def shipped() -> dict[str, Verdict]:
     """The verdicts on the server that ships, under both profiles."""
     profiles = {"documented": DOCUMENTED, "as-shipped": AS_SHIPPED}
     return {
-        name: conform(SERVER, ServerSubject(profile), plan=Plan(4, 4, 40, 20, 0), seed=1)
+        name: conform(SERVER, ServerSubject(profile), plan=Plan(4, 4, 60, 20, 0), seed=1)
         for name, profile in profiles.items()
     }
 

@@ -359,6 +359,22 @@ class Spec:
         """The same system with those operations instead of its own."""
         return evolve(self, operations=operations) if self.rebuilt is None else self.rebuilt(operations)
 
+    def with_steps(self, change: Callable[[State, Iterable[Step]], tuple[Step, ...]]) -> Spec:
+        """The same system where the steps from a state that no request brings about are changed."""
+
+        def driven(drive: Drive) -> Drive:
+            return evolve(drive, steps=lambda state, event, refs: change(state, drive.steps(state, event, refs)))
+
+        silent_for, closing = self.silent_for, self.closing
+        return evolve(
+            self,
+            drives=[driven(one) for one in self.drives.values()],
+            urgent=lambda state: change(state, self.urgent(state)),
+            spontaneous=lambda state: change(state, self.spontaneous(state)),
+            silent_for=silent_for and (lambda state, focus: change(state, silent_for(state, focus))),
+            closing=closing and (lambda state, topic: change(state, closing(state, topic))),
+        )
+
     def search_size(self, state: State) -> int:
         """How large a state is for a search."""
         return (self.abstraction.search_size or self.names)(state)

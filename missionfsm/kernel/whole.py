@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from attrs import evolve
 
 from missionfsm.kernel.rules import Operation, Rule
-from missionfsm.kernel.spec import Delivery, Drive, Spec
+from missionfsm.kernel.spec import Delivery, Spec
 from missionfsm.kernel.step import Emission, Match, Mismatch, Opening, Step
-from missionfsm.kernel.terms import Content, Incident, Refs, Request, State, View
+from missionfsm.kernel.terms import Content, Refs, Request, State, View
 
 TOPIC = "state"
 """What all channels of such streams are about."""
@@ -39,11 +39,8 @@ def shown_whole(spec: Spec, rule: Rule) -> Spec:
 
         return evolve(operation, effect=effect)
 
-    def driven(drive: Drive) -> Drive:
-        def steps(state: State, event: Incident, refs: Refs) -> tuple[Step, ...]:
-            return tuple(seen(state, step) for step in drive.steps(state, event, refs))
-
-        return evolve(drive, steps=steps)
+    def all_seen(before: State, steps: Iterable[Step]) -> tuple[Step, ...]:
+        return tuple(seen(before, step) for step in steps)
 
     def matches(view: View, content: Content) -> tuple[Match, ...] | Mismatch:
         if view == content:
@@ -51,11 +48,8 @@ def shown_whole(spec: Spec, rule: Rule) -> Spec:
         return Mismatch(rule.id, f"it shows {spec.describe(content)}, and due is {spec.describe(view)}")
 
     return evolve(
-        spec,
+        spec.with_steps(all_seen),
         operations=[watched(one) for one in spec.operations.values()],
-        drives=[driven(one) for one in spec.drives.values()],
-        urgent=lambda state: tuple(seen(state, step) for step in spec.urgent(state)),
-        spontaneous=lambda state: tuple(seen(state, step) for step in spec.spontaneous(state)),
         matches=matches,
         delivery=lambda _topic: Delivery(unowed=(rule.id,), named=(rule.id,), unending=(rule.id,)),
         undelivered=lambda _view: (rule.id,),

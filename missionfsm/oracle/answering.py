@@ -35,7 +35,7 @@ class Answering:
         """The explanations in which a call is answered so, now or by a step that comes before."""
         undone, reply = [], Reply(answer, names)
         for explanation in self._over_transport(explanations, answer, call):
-            position = _position(explanation, call)
+            position = explanation.place_of(call)
             if position is None:
                 continue
             failed = tuple(self._failed(explanation, position, reply))
@@ -69,7 +69,7 @@ class Answering:
         """The explanations in which something else comes before the call takes effect and is answered."""
         about = before_answer(self._successors, call, reply.answer)
         for successor in self._successors.closure(undone, besides=call, focus=about):
-            position = _position(successor.explanation, call)
+            position = successor.explanation.place_of(call)
             if position is not None:
                 for after, rules in self._answered(successor.explanation, position, reply):
                     yield Successor(tidy(after), successor.rules + rules)
@@ -105,7 +105,7 @@ class Answering:
     ) -> Iterator[tuple[Explanation, tuple[str, ...]]]:
         answer, names = reply.answer, reply.names
         call = here.calls[position]
-        rest = here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+        rest = here.without_call(position)
         if call.done:
             for match in self._successors.agreements(call.done.answer, answer):
                 assumed = self._successors.meet(rest.assumed, match.assumes)
@@ -152,11 +152,6 @@ class Answering:
             bound = unify(explanation, pairs)
             if bound:
                 yield bound
-
-
-def _position(explanation: Explanation, call: int) -> int | None:
-    """Where among the calls in flight the one with this name stands."""
-    return next((position for position, one in enumerate(explanation.calls) if one.name == call), None)
 
 
 def _pairings(explanation: Explanation, own: Names, observed: Names) -> Iterator[list[tuple[int, int]]]:

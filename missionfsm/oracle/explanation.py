@@ -135,6 +135,14 @@ class Explanation:
         """The position of a name among those of the state."""
         return self.names.index(name) if name in self.names else None
 
+    def place_of(self, call: int) -> int | None:
+        """The place of a call among those in flight."""
+        return next((place for place, one in enumerate(self.calls) if one.name == call), None)
+
+    def without_call(self, place: int) -> Explanation:
+        """The same explanation once the call at a place is in flight no more."""
+        return self.replace(calls=(*self.calls[:place], *self.calls[place + 1 :]))
+
     def replace(
         self,
         *,

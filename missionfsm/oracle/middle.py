@@ -48,7 +48,8 @@ def _glimpses(successors: Successors) -> Glimpses | None:
     return successors.spec.middle.glimpses if successors.spec.middle else None
 
 
-def _world(glimpses: Glimpses, state: State) -> Hashable:
+def world_of(glimpses: Glimpses, state: State) -> Hashable:
+    """The world of a state, of which nothing more may be known."""
     return state.world if type(state) is Unknown else glimpses.world(state)
 
 
@@ -70,7 +71,7 @@ def plausible(
     glimpses = _glimpses(successors)
     assert glimpses is not None, "asked only of systems that can be judged so"  # noqa: S101
     seen = set() if WILD in call.ready else {*explanation.names, *explanation.gone, GONE}
-    ways = imaginable(successors.spec, _world(glimpses, explanation.state), call.request, len(call.args))
+    ways = imaginable(successors.spec, world_of(glimpses, explanation.state), call.request, len(call.args))
     found: dict[tuple[tuple[Hashable, ...], Things], None] = {}
     for one in ways:
         answered = one.step.answer
@@ -96,7 +97,7 @@ def answered(
 ) -> Iterator[Successor]:
     """The explanations in which a call is answered as some state allows, after which that is all that is known."""
     call = here.calls[position]
-    rest = here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+    rest = here.without_call(position)
     known = {channel.name for channel in rest.channels}
     for topics, made in plausible(successors, here, call, answer, names):
         opened = (Channel(name, topic, None, (_FREE,)) for name, topic in zip(names, topics, strict=False))
@@ -134,7 +135,7 @@ def states_shown(
         if is_unknown(here):
             yield Successor(here)  # it shows what was before
         return
-    world = _world(glimpses, here.state)
+    world = world_of(glimpses, here.state)
     agreed = _goes_on(glimpses, here, arrival) if then or is_unknown(here) else here.assumed
     for state, view in glimpses.states(world, content) if agreed else ():
         matches = spec.matches(view, content)
@@ -188,7 +189,7 @@ def _goes_on(glimpses: Glimpses, here: Explanation, arrival: Arrival) -> int:
 
     What was shown before on its channel tells in which state they were; elsewhere it may have been shown later.
     """
-    world, assumed = _world(glimpses, here.state), here.assumed
+    world, assumed = world_of(glimpses, here.state), here.assumed
     lasts = (one.last for one in here.channels if one.name == arrival.channel)
     shown = (glimpses.shown(one.view, one.names) for one in lasts if one and one.view is not ANY)
     for before in (*_past(glimpses, here), *shown):
@@ -276,7 +277,7 @@ def _brought_about(successors: Successors, here: Explanation, kind: type, *what:
         yield from _late(here, channel, content)
     elif kind is Returned:
         answer, names, call = what
-        place = next((place for place, each in enumerate(here.calls) if each.name == call), None)
+        place = here.place_of(call)
         if place is not None:
             yield from answered(successors, here, place, answer, names)
     elif kind is Driven or (kind is Settled and successors.spec.anywhere):
@@ -315,7 +316,7 @@ def wild(
         known = {channel.name for channel in here.channels}
         ways = plausible(successors, here, call, answer, names)
         if any(all(name in known for name in names[: len(topics)]) for topics, _ in ways):
-            yield here.replace(calls=(*here.calls[:position], *here.calls[position + 1 :]))
+            yield here.without_call(position)
 
 
-__all__ = ["answered", "is_unknown", "joined", "states_shown", "unforeseen", "wild"]
+__all__ = ["answered", "is_unknown", "joined", "states_shown", "unforeseen", "wild", "world_of"]

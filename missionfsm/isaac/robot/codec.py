@@ -8,7 +8,7 @@ from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, 
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
-from missionfsm.isaac.shared.line import from_json, is_unsigned, new_uuid, part_of, see, see_other, uuid_name
+from missionfsm.isaac.shared.line import from_json, is_untyped, new_uuid, part_of, see, see_other, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
@@ -46,14 +46,14 @@ def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
     uuid = message.payload.uuid
     names = () if uuid is None or uuid.value == 0 else (uuid_name(uuid),)
     raw = json.loads(line)
-    proto, given = raw["header"].get("proto"), raw["payload"].get("config")
+    given = raw["payload"].get("config")
     kind = _configuration(raw, message.payload)
     arrives = Arrives(
         kind,
         bool(names),
         numeric,
         channel=channel,
-        untyped=proto is None or is_unsigned(proto),
+        untyped=is_untyped(raw),
         misplaced=given is not None and not (isinstance(given, dict) and _is_text(given.get("serialized", ""), given)),
         nodes=kind == USABLE and bool(strictjson.parse(message.payload.config)),
     )

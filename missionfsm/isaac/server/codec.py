@@ -30,7 +30,7 @@ from missionfsm.isaac.shared.line import (
     LineContent,
     canonical,
     from_json,
-    is_unsigned,
+    is_untyped,
     new_uuid,
     part_of,
     see,
@@ -270,8 +270,7 @@ def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     numeric = isinstance(decode_line(data, numbers=False)[0], WireError)
     payload, channel = message.payload, message.header.channel
     raw = json.loads(line)
-    proto = raw["header"].get("proto")
-    untyped = proto is None or is_unsigned(proto)
+    untyped = is_untyped(raw)
     if isinstance(payload, TextProto):
         return Incoming(NAME, payload.text, channel, numeric=numeric, untyped=untyped), ()
     if not isinstance(payload, MissionStatusProto):

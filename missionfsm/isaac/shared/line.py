@@ -197,6 +197,12 @@ def is_unsigned(proto: JSON) -> bool:
     return str(proto).isdecimal() and int(proto) >= 1 << 63
 
 
+def is_untyped(raw: JSON) -> bool:
+    """Whether the header of a line has no type id, or one that is too large to be a signed one."""
+    proto = raw["header"].get("proto")
+    return proto is None or is_unsigned(proto)
+
+
 def _bare(raw: JSON) -> tuple[str, ...]:
     """Where a 64-bit integer came as a number."""
     found = [f"header.{key}" for key in _HEADER_INTEGERS if isinstance(raw["header"].get(key), int)]

@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Name, Received, Returned
-from missionfsm.kernel.middle import ANY, Unknown
+from missionfsm.kernel.middle import ANY
 from missionfsm.kernel.readings import Ambiguity, Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
@@ -24,6 +24,7 @@ from missionfsm.kernel.terms import Content, View
 from missionfsm.kernel.text import counted
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owed, unify
+from missionfsm.oracle.middle import world_of
 from missionfsm.oracle.successors import ExhaustedError, Successor
 from missionfsm.oracle.symbols import call_of, names_of
 from missionfsm.tools.check.candidates import (
@@ -245,7 +246,7 @@ class Nearest:
         glimpses = self.spec.middle.glimpses if self.spec.middle else None
         if owed.view is not ANY or glimpses is None:
             return
-        world = here.state.world if isinstance(here.state, Unknown) else glimpses.world(here.state)
+        world = world_of(glimpses, here.state)
         views = (view for _, view in glimpses.states(world, message.content))
         wrong = [self.spec.matches(view, message.content) for view in views]
         if all(isinstance(one, Mismatch) for one in wrong):
@@ -279,7 +280,7 @@ class Nearest:
         if channel.last is None:
             yield Problem(unbegun, own or delivery.unowed, UNBEGUN)
             return
-        yield from self._unchanged(here, channel, channel.last, message, own or ())
+        yield from self._unchanged(here, channel, channel.last, message, own)
 
     def _unchanged(
         self, here: Explanation, channel: Channel, shown: Owed, message: _Message, own: tuple[str, ...]

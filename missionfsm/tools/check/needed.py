@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from attrs import evolve
 
 from missionfsm.kernel.mutations import StepMutator, unshown, without_effect
-from missionfsm.kernel.spec import Drive, Spec
+from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import State
@@ -57,18 +57,9 @@ def disregarding(spec: Spec, ways: Broken) -> Spec:
         wrong = (mutate(state, one) for one in right for at, mutate in ways if at in one.rules)
         return *right, *(one for one in wrong if one is not None and one not in right and _fits(spec, state, one))
 
-    def driven(drive: Drive) -> Drive:
-        return evolve(drive, steps=lambda state, event, refs: both(state, drive.steps(state, event, refs)))
-
-    silent_for, closing = spec.silent_for, spec.closing
     return evolve(
-        spec,
+        spec.with_steps(both),
         outcomes=lambda state, request, refs: both(state, spec.outcomes(state, request, refs)),
-        drives={name: driven(drive) for name, drive in spec.drives.items()},
-        urgent=lambda state: both(state, spec.urgent(state)),
-        spontaneous=lambda state: both(state, spec.spontaneous(state)),
-        silent_for=silent_for and (lambda state, focus: both(state, silent_for(state, focus))),
-        closing=closing and (lambda state, topic: both(state, closing(state, topic))),
         parting=None,
         decided=None,
         rebuilt=None,

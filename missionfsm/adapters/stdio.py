@@ -56,7 +56,8 @@ def serve(subject: Subject, requests: IO[bytes], responses: IO[bytes]) -> None:
     """Answer requests until their end, in order."""
     for line in requests:
         if line.strip():
-            responses.writelines(orjson.dumps(one) + b"\n" for one in _respond(subject, line))
+            # In one piece: what follows an answer is there when the answer is, however much that is.
+            responses.write(b"".join(orjson.dumps(one) + b"\n" for one in _respond(subject, line)))
             responses.flush()
 
 

@@ -22,7 +22,7 @@ from missionfsm.kernel.mutations import (
     unsent,
 )
 from missionfsm.kernel.picture import Plan, Sketch, every_state
-from missionfsm.kernel.readings import Ambiguity, Assumption, declared, meet, to_the_letter
+from missionfsm.kernel.readings import Ambiguity, Assumption, asked_of_each, declared, meet, to_the_letter
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
     FAILED_PRECONDITION,
@@ -102,6 +102,7 @@ __all__ = [
     "UnreadableError",
     "WorldForm",
     "as_text",
+    "asked_of_each",
     "breaks",
     "brief",
     "decide",

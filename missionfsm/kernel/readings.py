@@ -12,7 +12,7 @@ from __future__ import annotations
 import difflib
 import functools
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from attrs import field, frozen
@@ -129,12 +129,55 @@ class Ambiguity:
         return tuple(letter for letter, bit in self._bit.items() if assumed & bit)
 
 
+def asked_of_each(
+    entry: str,
+    question: str,
+    readings: Mapping[str, str],
+    default: str,
+    parts: Mapping[str, str] | Iterable[str],
+    flagged: str = "",
+    *,
+    alike: bool = True,
+) -> Mapping[str, Ambiguity]:
+    """One ambiguity for each part of a question, such as each call: nothing that is written ties one to another.
+
+    Args:
+        entry: the id, to which each part adds its name: ``AM-01.CreateMission``.
+        question: what is asked, with `{}` for the part.
+        readings: as those of an `Ambiguity`, like the arguments after it.
+        default: the letter that the reference model follows.
+        parts: the name of each part to the words for it; just the names where these are the words.
+        flagged: letters that depart from the letter of the text.
+        alike: whether different answers to different parts are more often wrong than free.
+    """
+    words = parts if isinstance(parts, Mapping) else {part: part for part in parts}
+    return {
+        part: Ambiguity(
+            f"{entry}.{part}",
+            question.format(text),
+            readings,
+            default,
+            frozenset(flagged),
+            alike=entry if alike and len(words) > 1 else None,
+        )
+        for part, text in words.items()
+    }
+
+
 def declared(names: Mapping[str, object], kind: type[T]) -> tuple[T, ...]:
-    """What a module calls by names of its own that is of a type, in the order in which it is written down.
+    """The values of a type to which a module gives public names, by themselves or in mappings, in their order.
 
     ``AMBIGUITIES = declared(globals(), Ambiguity)`` stands behind the ambiguities of a system.
     """
-    return tuple(one for name, one in names.items() if isinstance(one, kind) and not name.startswith("_"))
+    return tuple(dict.fromkeys(_held([value for name, value in names.items() if not name.startswith("_")], kind)))
+
+
+def _held(values: Iterable[object], kind: type[T]) -> Iterator[T]:
+    for value in values:
+        if isinstance(value, kind):
+            yield value
+        elif isinstance(value, Mapping):
+            yield from _held(value.values(), kind)
 
 
 UNCONSTRAINED = -1

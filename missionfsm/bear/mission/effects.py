@@ -16,27 +16,14 @@ from missionfsm.bear.mission.adding import append, charge, create, create_workfl
 from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS, decisions
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
-from missionfsm.bear.mission.readings import (
-    AM_09,
-    AM_09_SKIP,
-    AM_10,
-    AM_10_START,
-    AM_17_LAST,
-    AM_17_PATROL,
-    AM_18,
-    AM_19,
-    AM_19_RETURN,
-    AM_29,
-    AM_30,
-    AM_34,
-    AM_45_NONE,
-    AM_45_WHEN,
-    AM_53,
-    AM_61,
-    AM_64,
-    AM_64_AUTOMATIC,
-    part_of,
-)
+from missionfsm.bear.mission.readings.clearing import AM_34
+from missionfsm.bear.mission.readings.goals import AM_45_NONE, AM_45_WHEN
+from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.queue import AM_09, AM_09_SKIP, AM_10, AM_10_START
+from missionfsm.bear.mission.readings.skipping import AM_17_LAST, AM_17_PATROL, AM_18, AM_19, AM_19_RETURN
+from missionfsm.bear.mission.readings.starting import AM_53
+from missionfsm.bear.mission.readings.unlisted import AM_61
+from missionfsm.bear.mission.readings.updating import AM_29, AM_30, AM_64, AM_64_AUTOMATIC
 from missionfsm.bear.mission.rules import ABILITY, CHARGING, LAST_GOAL, waiting
 from missionfsm.bear.mission.state import (
     AUTOMATIC,

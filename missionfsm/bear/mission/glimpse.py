@@ -10,7 +10,7 @@ import functools
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
-from missionfsm.bear.mission.readings import AM_26
+from missionfsm.bear.mission.readings.workflows import AM_26
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     ENDED,

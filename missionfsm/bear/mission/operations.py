@@ -8,25 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.bear.mission.inputs import Call
-from missionfsm.bear.mission.readings import (
-    AM_01,
-    AM_01_BLOCKED,
-    AM_04,
-    AM_04_NO_ID,
-    AM_11,
-    AM_12_HALTED,
-    AM_12_PAUSED,
-    AM_38_BUSY,
-    AM_41,
-    AM_43,
-    AM_44,
-    AM_44_AUTOMATIC,
-    AM_45_REFUSED,
-    AM_53,
-    AM_58,
-    DOCK,
-    LOCATION,
-)
+from missionfsm.bear.mission.readings.charging import AM_38_BUSY, DOCK, LOCATION
+from missionfsm.bear.mission.readings.codes import AM_01, AM_01_BLOCKED, AM_04, AM_04_NO_ID
+from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_44, AM_44_AUTOMATIC, AM_45_REFUSED
+from missionfsm.bear.mission.readings.queue import AM_11, AM_12_HALTED, AM_12_PAUSED
+from missionfsm.bear.mission.readings.starting import AM_53
+from missionfsm.bear.mission.readings.unlisted import AM_58
 from missionfsm.bear.mission.rules import (
     ABILITY,
     CHARGING,

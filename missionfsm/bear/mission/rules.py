@@ -6,30 +6,22 @@ import functools
 from collections.abc import Mapping
 
 from missionfsm.bear.mission.inputs import Call, Defect, Target, Wanted
-from missionfsm.bear.mission.readings import (
+from missionfsm.bear.mission.readings.charging import AM_37_PAUSED, AM_37_QUEUED, AM_38_DOCK, AM_40
+from missionfsm.bear.mission.readings.clearing import AM_33, AM_34
+from missionfsm.bear.mission.readings.codes import (
     AM_02_CLEARED,
     AM_02_ENDED,
     AM_02_QUEUED,
     AM_02_UNKNOWN,
     AM_03,
     AM_04_NO_ID,
-    AM_06,
-    AM_07,
-    AM_16,
-    AM_29,
-    AM_31,
-    AM_33,
-    AM_34,
-    AM_37_PAUSED,
-    AM_37_QUEUED,
-    AM_38_DOCK,
-    AM_40,
-    BLOCKED,
     BUSY,
-    GAP,
-    HALTED,
     IDLE,
 )
+from missionfsm.bear.mission.readings.parts import BLOCKED, GAP, HALTED
+from missionfsm.bear.mission.readings.queue import AM_06, AM_07
+from missionfsm.bear.mission.readings.skipping import AM_16
+from missionfsm.bear.mission.readings.updating import AM_29, AM_31
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     MISSION,

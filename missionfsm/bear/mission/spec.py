@@ -17,7 +17,9 @@ from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, ADDED, GONE, STREAM, Outcome
 from missionfsm.bear.mission.properties import INVARIANTS, POSSIBILITIES
-from missionfsm.bear.mission.readings import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54, AM_58_SENT, AM_61, AMBIGUITIES
+from missionfsm.bear.mission.readings import AMBIGUITIES
+from missionfsm.bear.mission.readings.messages import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54
+from missionfsm.bear.mission.readings.unlisted import AM_58_SENT, AM_61
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     LIFECYCLE,

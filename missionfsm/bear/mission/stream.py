@@ -7,22 +7,22 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 
 from attrs import evolve
 
-from missionfsm.bear.mission.readings import (
+from missionfsm.bear.mission.readings.messages import (
     AM_08,
     AM_14_ENDED,
     AM_14_GAP,
     AM_14_HALTED,
-    AM_26,
     AM_35,
     AM_36,
     AM_49,
     AM_50_MEMBER,
     AM_50_SHAPE,
     AM_51,
-    AM_58_SENT,
-    AM_63,
-    part_of,
 )
+from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.starting import AM_63
+from missionfsm.bear.mission.readings.unlisted import AM_58_SENT
+from missionfsm.bear.mission.readings.workflows import AM_26
 from missionfsm.bear.mission.state import (
     ENDED,
     FAMILY,

@@ -6,7 +6,7 @@ import pytest
 from attrs import evolve
 
 from missionfsm.bear.mission.compiled import forget_ended
-from missionfsm.bear.mission.readings.parts import FIELDLESS
+from missionfsm.bear.mission.readings.scope import FIELDLESS
 from missionfsm.bear.mission.state import Robot
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import UNCONSTRAINED, choose

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from attrs import evolve
 
-from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.skipping import LOOPS
 from missionfsm.bear.mission.samples import CANCEL, FINISH, PAUSE, RESUME, TABLES, of_family
 from missionfsm.bear.mission.scripts import APPENDED, CREATED, call, commanded, drive

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from status_helpers import SYSTEM, reference, walk
 
-from missionfsm.bear.status.readings import AMBIGUITIES, WAIVED
+from missionfsm.bear.status.readings import AMBIGUITIES
+from missionfsm.bear.status.readings.waived import WAIVED
 from missionfsm.tools.check.verdict import Outcome
 
 ALTERNATIVES = list(

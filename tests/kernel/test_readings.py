@@ -15,10 +15,12 @@ from missionfsm.kernel.readings import (
     UNCONSTRAINED,
     Ambiguity,
     Assumption,
+    asked_of_each,
     by_bit,
     choose,
     clashes,
     constrain,
+    declared,
     meet,
     merge,
     unflagged,
@@ -180,3 +182,24 @@ def test_unflagged_leaves_what_the_text_says() -> None:
     odd = Ambiguity("R-4", "Odd?", {"a": "no", "b": "yes", "c": "very"}, "a", flagged=frozenset("bc"))
     left = unflagged((*ALL, odd))
     assert (odd.possible(left), choices(left)) == (("a",), choices(UNCONSTRAINED))
+
+
+def test_a_question_that_is_asked_of_each_part_has_an_ambiguity_for_each() -> None:
+    """Each part has its name in the id and its words in the question; several are alike, unless that is not meant."""
+    rooms = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", {"hall": "great hall", "attic": "attic"})
+    lone = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", ("hall",), flagged="a")
+    free = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", ("hall", "attic"), alike=False)
+    assert [(part, one.id, one.question, one.alike) for part, one in rooms.items()] == [
+        ("hall", "R-5.hall", "Which lamp in the great hall?", "R-5"),
+        ("attic", "R-5.attic", "Which lamp in the attic?", "R-5"),
+    ]
+    assert [(one.question, one.flagged, one.alike) for one in lone.values()] == [
+        ("Which lamp in the hall?", frozenset("a"), None)
+    ]
+    assert {one.alike for one in free.values()} == {None}
+
+
+def test_what_a_module_declares_is_what_it_names_in_public() -> None:
+    """Values are found by themselves and in mappings, each once, in their order; private names declare nothing."""
+    names = {"COLOUR": COLOUR, "_DAY": DAY, "BY_DAY": {"first": HOUR, "inner": {"second": COLOUR}}, "OTHER": "red"}
+    assert declared(names, Ambiguity) == (COLOUR, HOUR)

@@ -12,8 +12,8 @@ from missionfsm.bear.mission.inputs import Call, Wanted
 from missionfsm.bear.mission.outcome import ADDED, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings.charging import AM_37_QUEUED
 from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_45_WHEN
-from missionfsm.bear.mission.readings.parts import part_of
 from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_12_HALTED, AM_13
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_25, AM_27
 from missionfsm.bear.mission.rules import waiting
 from missionfsm.bear.mission.state import (

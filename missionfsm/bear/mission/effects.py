@@ -18,8 +18,8 @@ from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS, decisions
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings.clearing import AM_34
 from missionfsm.bear.mission.readings.goals import AM_45_NONE, AM_45_WHEN
-from missionfsm.bear.mission.readings.parts import part_of
 from missionfsm.bear.mission.readings.queue import AM_09, AM_09_SKIP, AM_10, AM_10_START
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.skipping import AM_17_LAST, AM_17_PATROL, AM_18, AM_19, AM_19_RETURN
 from missionfsm.bear.mission.readings.starting import AM_53
 from missionfsm.bear.mission.readings.unlisted import AM_61

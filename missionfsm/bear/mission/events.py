@@ -10,7 +10,7 @@ from attrs import evolve
 from missionfsm.bear.mission.effects import become, end, failed, failed_to_start, reselected, turned_away
 from missionfsm.bear.mission.outcome import Way
 from missionfsm.bear.mission.readings.goals import AM_43_LEFT, AM_45_NONE
-from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.starting import AM_53_THEN, QUEUE
 from missionfsm.bear.mission.state import (
     AUTOMATIC,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from missionfsm.bear.mission.readings.messages import AM_08, AM_35, AM_36, AM_50_MEMBER, AM_50_SHAPE, AM_51
-from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_26
 from missionfsm.bear.mission.state import (
     AUTOMATIC,

@@ -18,8 +18,8 @@ from missionfsm.bear.mission.readings.codes import (
     BUSY,
     IDLE,
 )
-from missionfsm.bear.mission.readings.parts import BLOCKED, GAP, HALTED
 from missionfsm.bear.mission.readings.queue import AM_06, AM_07
+from missionfsm.bear.mission.readings.scope import BLOCKED, GAP, HALTED
 from missionfsm.bear.mission.readings.skipping import AM_16
 from missionfsm.bear.mission.readings.updating import AM_29, AM_31
 from missionfsm.bear.mission.state import (

@@ -19,7 +19,7 @@ from missionfsm.bear.mission.readings.messages import (
     AM_50_SHAPE,
     AM_51,
 )
-from missionfsm.bear.mission.readings.parts import part_of
+from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.starting import AM_63
 from missionfsm.bear.mission.readings.unlisted import AM_58_SENT
 from missionfsm.bear.mission.readings.workflows import AM_26

@@ -13,19 +13,16 @@ from missionfsm.bear.status.messages import (
     RobotConnection,
     RobotState,
 )
-from missionfsm.bear.status.readings import (
-    AS_03_SERVED,
-    AS_04,
-    AS_04_BLANK,
+from missionfsm.bear.status.readings.selecting import AS_03_SERVED, AS_04, AS_04_BLANK, AS_34
+from missionfsm.bear.status.readings.unknown import (
     AS_07,
     AS_07_UNKNOWN,
     AS_09_GONE,
     AS_09_OFFLINE,
     AS_09_UNKNOWN,
-    AS_18,
     AS_27_OFFLINE,
-    AS_34,
 )
+from missionfsm.bear.status.readings.values import AS_18
 from missionfsm.bear.status.rules import OPERATIONS, foreign, own, ranking
 from missionfsm.bear.status.state import (
     GET,

@@ -15,18 +15,10 @@ from missionfsm.bear.status.messages import (
     Stuck,
     Wifi,
 )
-from missionfsm.bear.status.readings import (
-    AS_03_SERVED,
-    AS_09_OFFLINE,
-    AS_09_UNSET,
-    AS_13_FIELDS,
-    AS_13_SIGNAL,
-    AS_13_THROTTLE,
-    AS_18,
-    AS_25,
-    AS_28,
-    AS_32,
-)
+from missionfsm.bear.status.readings.selecting import AS_03_SERVED
+from missionfsm.bear.status.readings.streams import AS_13_FIELDS, AS_13_SIGNAL, AS_13_THROTTLE, AS_25
+from missionfsm.bear.status.readings.unknown import AS_09_OFFLINE, AS_09_UNSET
+from missionfsm.bear.status.readings.values import AS_18, AS_28, AS_32
 from missionfsm.bear.status.state import (
     LOCALIZATION,
     STATE_PARTS,

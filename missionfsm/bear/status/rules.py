@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from attrs import evolve
 
-from missionfsm.bear.status.readings import (
+from missionfsm.bear.status.readings.selecting import (
     AS_01,
     AS_02,
     AS_03_EMPTY,
@@ -21,10 +21,9 @@ from missionfsm.bear.status.readings import (
     AS_06_FIELD,
     AS_06_LIST,
     AS_06_ORDER,
-    Question,
 )
 from missionfsm.bear.status.state import GET, STATUS, SYSTEM_NAME, Endpoint, Fleet, Location, Request, Robot
-from missionfsm.kernel.readings import Assumption
+from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import (
     INTERNAL,
     INVALID_ARGUMENT,
@@ -311,8 +310,8 @@ def _situation(request: Request, fleet: Fleet) -> str:
 
 # The operation table.
 
-_Row = tuple[Rule, Question | None, str]
-"""A rule, and the question and the letter under which it refuses."""
+_Row = tuple[Rule, Mapping[str, Ambiguity] | None, str]
+"""A rule, and the question (by call) and the letter under which it refuses."""
 
 _SELECTION: tuple[_Row, ...] = (
     (the_request_is_malformed, None, ""),

@@ -11,23 +11,11 @@ from missionfsm.bear.status.describe import describe
 from missionfsm.bear.status.effects import failing, outcomes
 from missionfsm.bear.status.events import armed, moved, reported, restarted
 from missionfsm.bear.status.messages import BatteryMode, ConnectionState, Stuck
-from missionfsm.bear.status.readings import (
-    AMBIGUITIES,
-    AS_01,
-    AS_08,
-    AS_09_PART,
-    AS_12_EVENT,
-    AS_12_HYBRID,
-    AS_13_SKIP,
-    AS_17_OFFLINE,
-    AS_17_ZERO,
-    AS_21,
-    AS_22,
-    AS_25,
-    AS_26,
-    AS_29_EMPTY,
-    AS_34,
-)
+from missionfsm.bear.status.readings import AMBIGUITIES
+from missionfsm.bear.status.readings.selecting import AS_01, AS_34
+from missionfsm.bear.status.readings.streams import AS_08, AS_12_EVENT, AS_12_HYBRID, AS_13_SKIP, AS_25, AS_26
+from missionfsm.bear.status.readings.unknown import AS_09_PART
+from missionfsm.bear.status.readings.values import AS_17_OFFLINE, AS_17_ZERO, AS_21, AS_22, AS_29_EMPTY
 from missionfsm.bear.status.rules import OPERATIONS
 from missionfsm.bear.status.state import (
     CHARTS,
@@ -214,7 +202,7 @@ _ANSWERS_FOR: Mapping[str, tuple[str, ...]] = {
     **{
         one.id: (VALUES[call].id,)
         for question in (*AS_09_PART.values(), AS_17_OFFLINE, AS_17_ZERO, AS_21, AS_22, AS_29_EMPTY)
-        for call, one in question.parts.items()
+        for call, one in question.items()
     },
 }
 """By what is shown, the promise that a question is about; see `missionfsm.kernel.spec.Spec`."""

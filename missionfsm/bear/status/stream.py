@@ -13,13 +13,7 @@ from missionfsm.bear.status.messages import (
     RobotState,
 )
 from missionfsm.bear.status.parts import whole, whole_shown
-from missionfsm.bear.status.readings import (
-    AS_14,
-    AS_15_FULL,
-    AS_18,
-    AS_19,
-    AS_22,
-)
+from missionfsm.bear.status.readings.values import AS_14, AS_15_FULL, AS_18, AS_19, AS_22
 from missionfsm.bear.status.state import (
     GET,
     STATUS,

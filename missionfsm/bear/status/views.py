@@ -15,10 +15,7 @@ from missionfsm.bear.status.messages import (
     RobotState,
     StuckState,
 )
-from missionfsm.bear.status.readings import (
-    AS_27_OFFLINE,
-    AS_27_UNKNOWN,
-)
+from missionfsm.bear.status.readings.unknown import AS_27_OFFLINE, AS_27_UNKNOWN
 from missionfsm.bear.status.state import (
     GET,
     LOCALIZATION,

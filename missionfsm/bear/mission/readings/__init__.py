@@ -2,7 +2,7 @@
 
 A name is that of its entry, and letters are those of the entry. An entry with several independent questions has an
 ambiguity for each, with a word after its number, and a question that no sentence answers for several calls, situations
-or kinds of missions at once has one for each of those (`asked_of_each`, of what `parts` lists). The files import the
+or kinds of missions at once has one for each of those (`asked_of_each`; `scope` has those parts). The files import the
 kernel and what a state is. Begin with `codes`.
 """
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import WAITING
+from missionfsm.bear.mission.readings.scope import WAITING
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 
 AM_37_PAUSED = Ambiguity(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import HALTED, WAITING
+from missionfsm.bear.mission.readings.scope import HALTED, WAITING
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 
 AM_33 = asked_of_each(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import APPENDING, CREATING, FIELDLESS
+from missionfsm.bear.mission.readings.scope import APPENDING, CREATING, FIELDLESS
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 
 IDLE, BUSY = "idle", "busy"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import APPENDING, BATCHES, CREATING, missions_of
+from missionfsm.bear.mission.readings.scope import APPENDING, BATCHES, CREATING, missions_of
 from missionfsm.bear.mission.state import AUTOMATIC, Kind
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import ADDING, APPENDING
+from missionfsm.bear.mission.readings.scope import ADDING, APPENDING
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 
 _UNABLE = "{}: what is answered where the robot is unable to start a mission?"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import EVERY_CALL
+from missionfsm.bear.mission.readings.scope import EVERY_CALL
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 
 AM_58 = asked_of_each(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.readings.parts import WORKFLOWS, part_of
+from missionfsm.bear.mission.readings.scope import WORKFLOWS, part_of
 from missionfsm.bear.mission.state import Kind
 from missionfsm.kernel.readings import Ambiguity, asked_of_each
 

@@ -1,4 +1,4 @@
-"""What one question is asked of, part by part: calls, kinds of missions, and what keeps missions waiting."""
+"""What a question ranges over, part by part: calls, kinds of missions, and what keeps missions waiting."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_45_WHEN
 from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_12_HALTED, AM_13
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_25, AM_27
-from missionfsm.bear.mission.rules import waiting
+from missionfsm.bear.mission.rules.situations import waiting
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     NOT_CHOSEN,

@@ -14,8 +14,9 @@ from attrs import evolve
 
 from missionfsm.bear.mission.adding import append, charge, create, create_workflow
 from missionfsm.bear.mission.inputs import Call, Request, Target
-from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS, decisions
+from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
+from missionfsm.bear.mission.ranking import decisions
 from missionfsm.bear.mission.readings.clearing import AM_34
 from missionfsm.bear.mission.readings.goals import AM_45_NONE, AM_45_WHEN
 from missionfsm.bear.mission.readings.queue import AM_09, AM_09_SKIP, AM_10, AM_10_START
@@ -24,7 +25,9 @@ from missionfsm.bear.mission.readings.skipping import AM_17_LAST, AM_17_PATROL, 
 from missionfsm.bear.mission.readings.starting import AM_53
 from missionfsm.bear.mission.readings.unlisted import AM_61
 from missionfsm.bear.mission.readings.updating import AM_29, AM_30, AM_64, AM_64_AUTOMATIC
-from missionfsm.bear.mission.rules import ABILITY, CHARGING, LAST_GOAL, waiting
+from missionfsm.bear.mission.rules.aspects import ABILITY
+from missionfsm.bear.mission.rules.situations import waiting
+from missionfsm.bear.mission.rules.skipping import LAST_GOAL, WHILE_CHARGING
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     GOALLESS,
@@ -190,7 +193,7 @@ def _skip(robot: Situation, _: Call) -> Iterator[Outcome]:
     assert mission is not None, "without an active mission it is refused"  # noqa: S101 - as above
     if mission.kind in GOALLESS:
         how = AM_19 if mission.kind is Kind.CHARGE else AM_19_RETURN
-        yield from _skip_last(robot, mission, how, CHARGING, ())
+        yield from _skip_last(robot, mission, how, WHILE_CHARGING, ())
         if "g" in how.readings:  # one of several goals that nobody was told
             yield Outcome(OK, (), ACTIVE)
     elif mission.kind in AUTOMATIC:

@@ -320,3 +320,32 @@ def test_calls_that_wait_long_are_not_lost(tmp_path: Path, *, answered: bool) ->
     assert (found.outcome, found.events, found.readings) == (known.outcome, known.events, known.readings)
     # Nothing answers a skip with OK and without the name of a mission.
     assert found.conforms is not answered
+
+
+def test_that_a_robot_cannot_start_is_no_fault_of_a_workflow_s_format() -> None:
+    """A blocked robot may find a workflow invalid (AM-53) and, while a mission runs, look at that first or last.
+
+    Neither says whether the format of a request or the state of the missions is looked at first (AM-01).
+    """
+    blocked = {"drive": {"event": "world", "blocked": True}}
+
+    def workflow(table: str) -> JSON:
+        return {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": [{"destinationId": table}]}}}}
+
+    for first in ("FAILED_PRECONDITION", "INVALID_ARGUMENT"):
+        for format_first in ("FAILED_PRECONDITION", "INVALID_ARGUMENT"):
+            told = judged(
+                call(1, "CreateMission", delivery()),
+                created(1, "one"),
+                SETTLED,
+                call(2, "CreateMissionWorkflow", workflow("nowhere")),
+                refused(2, format_first),
+                blocked,
+                call(3, "CreateMissionWorkflow", workflow("table-1")),
+                refused(3, first),
+                {"drive": {"event": "missionSucceeded"}},
+                call(4, "CreateMissionWorkflow", workflow("table-1")),
+                refused(4, "INVALID_ARGUMENT"),
+            )
+            assert told.conforms, (first, format_first)
+            assert told.readings["AM-53.CreateMissionWorkflow"] == ("v",)

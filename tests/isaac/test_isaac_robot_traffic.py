@@ -101,3 +101,17 @@ def test_over_tcp_nobody_knows_what_a_robot_is_called() -> None:
     found = bridged(ROBOT, Sockets(None, 0, None, 0.5), None, None, 1)
     found.subject.close()
     assert found.system.alphabet({}, BOUNDS).worlds == ({"name": None},)
+
+
+def test_the_name_and_that_a_mission_runs_are_said_on_any_occasion() -> None:
+    """They are said periodically: no sentence says that a line or an end is no occasion, nor that time has to pass."""
+    little = {"drive": {"event": "advance", "seconds": 0.05}}
+    elsewhere = {"drive": {"event": "line", "line": _line(TextProto("hello"), "chat")["line"]}}
+    ends = {"drive": {"event": "behaviorSucceeded"}}
+    success = _line(MissionStatusProto(MISSION, WireStatus.SUCCESS), "mission_status")
+    spoken = (NAME, little, SETTLED, ARRIVES, NAME, SETTLED, RUNS, little, SETTLED)
+    assert _judged(*spoken).outcome is Outcome.CONFORMS
+    assert _judged(*spoken, elsewhere, RUNS, NAME, SETTLED, RUNS).outcome is Outcome.CONFORMS
+    assert _judged(*spoken, ends, success, NAME).outcome is Outcome.CONFORMS
+    assert _judged(*spoken, ends, success, RUNS).outcome is Outcome.VIOLATES
+    assert _judged(NAME, little, SETTLED, elsewhere, RUNS).outcome is Outcome.VIOLATES

@@ -46,7 +46,7 @@ def _rank_format_and_state(operation: str, holding: tuple[Rule, ...]) -> Ranked:
     taken may be looked at whenever an implementation likes.
     """
     forbidding = tuple(_forbidding(operation, holding))
-    looked_at = {one.looks_at for one in holding if one.code == INVALID_ARGUMENT}
+    looked_at = {one.looks_at for one in holding if one.code == INVALID_ARGUMENT} - {ABILITY}
     invalid = looked_at - {TAKEN}
     if not forbidding or not invalid:
         yield from ((code, ()) for code in _codes(holding))

@@ -161,9 +161,21 @@ def _unconnected(
 
 @functools.lru_cache(maxsize=20_000)
 def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
-    """A line arrives."""
+    """A line arrives, which may bring the codelet to say its name, or that its mission runs."""
     if not here.connected:
         return ()
+    return tuple(talk for step in _read(here, event, refs) for talk in _talks(here, step))
+
+
+def _talks(here: Codelet, step: Step) -> Iterator[Step]:
+    """What is said again and again may be said on any occasion, not only when time passes."""
+    reported = _reports(step, _old(here), 0) if step.after == here and here.quiet else (step,)
+    for one in reported:
+        yield from _introduces(one, 0) if here.nameless else (one,)
+
+
+def _read(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
+    """What comes of a line that arrives, by its channel and its content."""
     ignored = Step(here, rules=(rules.IGNORES.id,))
     if event.channel != here.world.channel:
         return (ignored,)
@@ -285,7 +297,8 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     if not here.running:
         return ()
     due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
-    return tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
+    ends = _concluded(here, here.moved(trigger), None, due, (FINAL[status],))
+    return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
 
 
 def ticks(here: Codelet) -> tuple[Step, ...]:

@@ -11,7 +11,7 @@ from busy import Habits, busy
 from traffic import MISSION, SUBSCRIBE, Recorder, hourly, navigate, readings_at_random
 
 from missionfsm.app.recorded import check_file
-from missionfsm.bear.mission.stream import GOALS
+from missionfsm.bear.mission.promises import GOALS
 
 ROUGH = Habits(lost=0.12, late=0.12, ends=0.05, slow=0.8)
 """Where much is lost or late, and little comes at once."""

@@ -13,8 +13,8 @@ from attrs import define, field
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.bear.mission import monitor as mission_monitor
 from missionfsm.bear.mission.monitor import MissionMonitor
+from missionfsm.bear.mission.promises import CURRENT, GOAL_INDEX
 from missionfsm.bear.mission.spec import SPEC as MISSION
-from missionfsm.bear.mission.stream import CURRENT, GOAL_INDEX
 from missionfsm.bear.status.monitor import CHECKED, StreamMonitor
 from missionfsm.bear.status.spec import SPEC as STATUS
 from missionfsm.bear.status.state import MAPS, SINGLES, Endpoint

@@ -23,8 +23,8 @@ from missionfsm.bear.mission.codec import EPOCH
 from missionfsm.bear.mission.describe import describe
 from missionfsm.bear.mission.render import rendered
 from missionfsm.bear.mission.state import Family, World
-from missionfsm.bear.mission.stream import Listing, listing
 from missionfsm.bear.mission.system import SYSTEM
+from missionfsm.bear.mission.views import Listing, listing
 from missionfsm.bear.wire.messages import (
     Command,
     EventMetadata,

@@ -18,7 +18,7 @@ from missionfsm.app import recorded
 from missionfsm.app.recorded import check_file
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.state import Robot
-from missionfsm.bear.mission.stream import Listing, listing
+from missionfsm.bear.mission.views import Listing, listing
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.kernel.rules import OK

@@ -9,7 +9,7 @@ import pytest
 from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Defect, Request, Wanted
 from missionfsm.bear.mission.state import Family, Fault, Kind, World
-from missionfsm.bear.mission.stream import MORE, Seen
+from missionfsm.bear.mission.views import MORE, Seen
 from missionfsm.bear.wire.messages import Command, Goal, Pose
 from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.codec import JSON, Malformed, UnreadableError

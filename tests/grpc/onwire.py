@@ -22,7 +22,7 @@ from missionfsm.adapters.grpc.server import Server
 from missionfsm.adapters.grpc.target import Target
 from missionfsm.app.live import Live
 from missionfsm.app.serve import serve
-from missionfsm.bear.wire.fields import METHODS, Method
+from missionfsm.bear.wire.methods import METHODS, Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import Ambiguity
 from missionfsm.kernel.subject import Exchange, GibberishError, Subject, SubjectError

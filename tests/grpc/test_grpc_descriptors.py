@@ -19,7 +19,9 @@ from missionfsm.adapters.grpc.descriptors import (
     unknown,
 )
 from missionfsm.bear.wire import messages as wire
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, METHODS, PACKAGE
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES, PACKAGE
+from missionfsm.bear.wire.methods import METHODS
 from missionfsm.bear.wire.protojson import MalformedError, read, write
 from missionfsm.systems import system
 from missionfsm.tools.conform.run import BOUNDS

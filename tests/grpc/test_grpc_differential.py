@@ -21,7 +21,9 @@ from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, enco
 from missionfsm.app.live import Live
 from missionfsm.bear.status import messages as status
 from missionfsm.bear.wire import messages as wire
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, Method
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES
+from missionfsm.bear.wire.methods import Method
 from missionfsm.bear.wire.protojson import MalformedError, camel, read, unknown_fields, write
 from missionfsm.kernel.codec import JSON
 from missionfsm.systems import system

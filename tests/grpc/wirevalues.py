@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, Field
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES, Field
 from missionfsm.bear.wire.protojson import LARGEST, camel
 from missionfsm.kernel.codec import JSON
 

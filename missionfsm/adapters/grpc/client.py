@@ -21,7 +21,7 @@ from missionfsm.adapters.grpc.begun import Begun
 from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, encode, methods, path, unknown
 from missionfsm.adapters.grpc.failures import as_json, in_words
 from missionfsm.adapters.grpc.target import Target
-from missionfsm.bear.wire.fields import Method
+from missionfsm.bear.wire.methods import Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, SubjectError
 from missionfsm.kernel.text import brief

@@ -15,7 +15,9 @@ from google.protobuf import any_pb2, descriptor_pb2, descriptor_pool, json_forma
 from google.protobuf.message import DecodeError, Message
 
 from missionfsm.adapters.grpc import usual
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, METHODS, PACKAGE, Field, Method
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES, PACKAGE, Field
+from missionfsm.bear.wire.methods import METHODS, Method
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.text import brief
 

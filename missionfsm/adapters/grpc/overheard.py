@@ -21,7 +21,7 @@ from missionfsm.adapters.grpc.descriptors import NotOnTheWireError, decode, meth
 from missionfsm.adapters.grpc.framing import Messages
 from missionfsm.adapters.grpc.http2 import Data, Direction, Event, Headers, Reset, TableSize, UnreadableHttp2Error
 from missionfsm.adapters.grpc.steering import PATHS, REFUSED, Line, Steered, Steering, Steers, struct
-from missionfsm.bear.wire.fields import Method
+from missionfsm.bear.wire.methods import Method
 from missionfsm.kernel.codec import JSON, UnreadableError
 
 STATUS_OF_RESET = {0x7: "UNAVAILABLE", 0x8: "CANCELLED", 0xB: "RESOURCE_EXHAUSTED", 0xC: "PERMISSION_DENIED"}

@@ -34,7 +34,8 @@ from missionfsm.adapters.grpc.descriptors import (
 )
 from missionfsm.adapters.grpc.faults import Dice, Faults
 from missionfsm.adapters.grpc.outgoing import Inbox, Outgoing
-from missionfsm.bear.wire.fields import PACKAGE, Method
+from missionfsm.bear.wire.fields import PACKAGE
+from missionfsm.bear.wire.methods import Method
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 

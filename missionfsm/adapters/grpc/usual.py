@@ -13,7 +13,8 @@ from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, Field
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES, Field
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.codec import JSON
 

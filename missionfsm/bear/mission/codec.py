@@ -12,7 +12,7 @@ from missionfsm.bear.mission.render import rendered, with_bare_feedback
 from missionfsm.bear.mission.request_codec import REQUESTS, read_request, split_request, write_request
 from missionfsm.bear.mission.skim import skim
 from missionfsm.bear.mission.state import Fault, World
-from missionfsm.bear.mission.stream import MORE, Listing, Seen, without_ids
+from missionfsm.bear.mission.views import MORE, Listing, Seen, without_ids
 from missionfsm.bear.wire import messages as wire
 from missionfsm.bear.wire.binary import carries
 from missionfsm.bear.wire.messages import MissionStates

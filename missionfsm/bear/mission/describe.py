@@ -5,7 +5,7 @@ from __future__ import annotations
 from missionfsm.bear.mission.events import Event
 from missionfsm.bear.mission.inputs import Request, Wanted
 from missionfsm.bear.mission.state import NOT_CHOSEN, Fault, Mission, Robot
-from missionfsm.bear.mission.stream import Listing, Seen
+from missionfsm.bear.mission.views import Listing, Seen
 from missionfsm.bear.wire.messages import Goal, MissionState, State
 
 

@@ -14,9 +14,10 @@ from collections.abc import Sequence
 from attrs import frozen
 
 from missionfsm.bear.mission.inputs import Request
+from missionfsm.bear.mission.matching import has_goals
 from missionfsm.bear.mission.readings.queue import AM_13
 from missionfsm.bear.mission.state import Kind, Mission, Robot
-from missionfsm.bear.mission.stream import Seen, has_goals
+from missionfsm.bear.mission.views import Seen
 from missionfsm.bear.wire.messages import MissionState, State
 from missionfsm.kernel.codec import Malformed
 

@@ -10,6 +10,7 @@ import functools
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
+from missionfsm.bear.mission.matching import FAMILY_TYPES, TYPES, same_mission
 from missionfsm.bear.mission.readings.workflows import AM_26
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
@@ -25,7 +26,7 @@ from missionfsm.bear.mission.state import (
     Robot,
     World,
 )
-from missionfsm.bear.mission.stream import FAMILY_TYPES, TOPIC, TYPES, Listing, Seen, listing, same_mission
+from missionfsm.bear.mission.views import TOPIC, Listing, Seen, listing
 from missionfsm.bear.wire.messages import Goal, MissionState, MissionType, State
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.readings import Assumption

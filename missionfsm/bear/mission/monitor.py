@@ -12,8 +12,7 @@ from itertools import pairwise
 from operator import itemgetter
 
 from missionfsm.bear.mission.codec import read_content, split_message
-from missionfsm.bear.mission.state import ENDED, LIFECYCLE
-from missionfsm.bear.mission.stream import (
+from missionfsm.bear.mission.promises import (
     ALL_LISTED,
     CURRENT,
     FEEDBACK,
@@ -23,8 +22,9 @@ from missionfsm.bear.mission.stream import (
     STATE,
     TYPE,
     WELL_FORMED,
-    Seen,
 )
+from missionfsm.bear.mission.state import ENDED, LIFECYCLE
+from missionfsm.bear.mission.views import Seen
 from missionfsm.bear.wire.messages import BaseType, CartiType, MissionState, MissionType, ServiType, State
 from missionfsm.bear.wire.problem import Problem
 from missionfsm.kernel.codec import JSON, Malformed

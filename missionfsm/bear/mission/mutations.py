@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 from attrs import evolve
 
-from missionfsm.bear.mission import stream as status
+from missionfsm.bear.mission import promises
 from missionfsm.bear.mission.spec import SPEC
 from missionfsm.bear.mission.state import Mission, Robot
+from missionfsm.bear.mission.views import listing
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.mutations import MessageMutation, StepMutation
@@ -71,48 +72,50 @@ def _twice(message: JSON) -> None:
 
 MESSAGE_MUTATIONS = (
     MessageMutation(
-        status.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))
+        promises.WELL_FORMED.id, "has an unknown state", _each(lambda one: one.update(state="STATE_DANCING"))
     ),
     MessageMutation(
-        status.WELL_FORMED.id,
+        promises.WELL_FORMED.id,
         "has a text for an index",
         _whole(lambda one: one["missionStates"].update(currentMissionIndex="first")),
     ),
-    MessageMutation(status.SEQUENCE.id, "never changes", _whole(lambda one: one["metadata"].update(sequenceNumber=7))),
     MessageMutation(
-        status.SEQUENCE.id,
+        promises.SEQUENCE.id, "never changes", _whole(lambda one: one["metadata"].update(sequenceNumber=7))
+    ),
+    MessageMutation(
+        promises.SEQUENCE.id,
         "goes down",
         _whole(lambda one: one["metadata"].update(sequenceNumber=10**6 - one["metadata"]["sequenceNumber"])),
     ),
-    MessageMutation(status.SEQUENCE.id, "is negative", _whole(lambda one: one["metadata"].update(sequenceNumber=-1))),
+    MessageMutation(promises.SEQUENCE.id, "is negative", _whole(lambda one: one["metadata"].update(sequenceNumber=-1))),
     MessageMutation(
-        status.ALL_LISTED.id,
+        promises.ALL_LISTED.id,
         "leaves out the last",
         _whole(lambda one: one["missionStates"].update(missions=one["missionStates"]["missions"][:-1])),
     ),
     MessageMutation(
-        status.ALL_LISTED.id, "lists in reverse", _whole(lambda one: one["missionStates"]["missions"].reverse())
+        promises.ALL_LISTED.id, "lists in reverse", _whole(lambda one: one["missionStates"]["missions"].reverse())
     ),
-    MessageMutation(status.ALL_LISTED.id, "lists twice", _whole(_twice)),
+    MessageMutation(promises.ALL_LISTED.id, "lists twice", _whole(_twice)),
     MessageMutation(
-        status.CURRENT.id,
+        promises.CURRENT.id,
         "is one too high",
         _whole(
             lambda one: one["missionStates"].update(currentMissionIndex=one["missionStates"]["currentMissionIndex"] + 1)
         ),
     ),
     MessageMutation(
-        status.CURRENT.id, "is always 0", _whole(lambda one: one["missionStates"].update(currentMissionIndex=0))
+        promises.CURRENT.id, "is always 0", _whole(lambda one: one["missionStates"].update(currentMissionIndex=0))
     ),
-    MessageMutation(status.STATE.id, "shows running as paused", _each(_running_as_paused)),
-    MessageMutation(status.STATE.id, "shows failed as succeeded", _each(_failed_as_succeeded)),
-    MessageMutation(status.STATE.id, "shows waiting as running", _each(_waiting_as_running)),
-    MessageMutation(status.GOALS.id, "drops the last goal", _each(lambda one: one.update(goals=one["goals"][:-1]))),
-    MessageMutation(status.GOALS.id, "reverses the goals", _each(lambda one: one["goals"].reverse())),
-    MessageMutation(status.GOAL_INDEX.id, "is one too high", _each(_next_index)),
-    MessageMutation(status.GOAL_INDEX.id, "never moves", _each(lambda one: one.update(currentGoalIndex=0))),
-    MessageMutation(status.FEEDBACK.id, "has two members", _each(_wrong_feedback)),
-    MessageMutation(status.TYPE.id, "has another type", _each(_another_type)),
+    MessageMutation(promises.STATE.id, "shows running as paused", _each(_running_as_paused)),
+    MessageMutation(promises.STATE.id, "shows failed as succeeded", _each(_failed_as_succeeded)),
+    MessageMutation(promises.STATE.id, "shows waiting as running", _each(_waiting_as_running)),
+    MessageMutation(promises.GOALS.id, "drops the last goal", _each(lambda one: one.update(goals=one["goals"][:-1]))),
+    MessageMutation(promises.GOALS.id, "reverses the goals", _each(lambda one: one["goals"].reverse())),
+    MessageMutation(promises.GOAL_INDEX.id, "is one too high", _each(_next_index)),
+    MessageMutation(promises.GOAL_INDEX.id, "never moves", _each(lambda one: one.update(currentGoalIndex=0))),
+    MessageMutation(promises.FEEDBACK.id, "has two members", _each(_wrong_feedback)),
+    MessageMutation(promises.TYPE.id, "has another type", _each(_another_type)),
 )
 
 
@@ -193,7 +196,7 @@ def _showing_it(mutate_step: Callable[[Robot, Step], Step]) -> Callable[[Robot, 
         twisted = mutate_step(before, step)
         if twisted is step or not step.emits:
             return twisted
-        view = status.listing(twisted.after)
+        view = listing(twisted.after)
         return evolve(
             twisted, emits=(evolve(step.emits[-1], view=view, refs=twisted.after.listed(twisted.names or ())),)
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
+from missionfsm.bear.mission.matching import FAMILY_TYPES, MEMBERS, TYPES, waiting_as
 from missionfsm.bear.mission.readings.messages import AM_08, AM_35, AM_36, AM_50_MEMBER, AM_50_SHAPE, AM_51
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_26
@@ -16,7 +17,8 @@ from missionfsm.bear.mission.state import (
     RETURN_POINT,
     Mission,
 )
-from missionfsm.bear.mission.stream import FAMILY_TYPES, MEMBERS, TYPES, Listing, current_index, waiting_as
+from missionfsm.bear.mission.stream import current_index
+from missionfsm.bear.mission.views import Listing
 from missionfsm.bear.wire.messages import (
     BaseFeedback,
     BaseStatus,

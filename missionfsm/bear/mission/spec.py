@@ -16,6 +16,8 @@ from missionfsm.bear.mission.glimpse import MIDDLE
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.operations import OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, ADDED, GONE, STREAM, Outcome
+from missionfsm.bear.mission.promises import ALL_LISTED, ANSWERS_FOR, GOALS, OWED, SEQUENCE, TYPE, WELL_FORMED
+from missionfsm.bear.mission.promises import RULES as STATUS_RULES
 from missionfsm.bear.mission.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.bear.mission.readings import AMBIGUITIES
 from missionfsm.bear.mission.readings.messages import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54
@@ -35,24 +37,9 @@ from missionfsm.bear.mission.state import (
     situation,
     without_place,
 )
-from missionfsm.bear.mission.stream import (
-    ALL_LISTED,
-    ANSWERS_FOR,
-    GOALS,
-    GOALS_CHANGED,
-    MORE,
-    OWED,
-    SEQUENCE,
-    TOPIC,
-    TYPE,
-    TYPE_CHANGED,
-    WELL_FORMED,
-    lasting,
-    listing,
-    matches,
-)
-from missionfsm.bear.mission.stream import RULES as STATUS_RULES
+from missionfsm.bear.mission.stream import GOALS_CHANGED, TYPE_CHANGED, lasting, matches
 from missionfsm.bear.mission.unwatched import UNWATCHED
+from missionfsm.bear.mission.views import MORE, TOPIC, listing
 from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Answer

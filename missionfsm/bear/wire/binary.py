@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from missionfsm.bear.wire.fields import ENUMS, MESSAGES, METHODS, Field
+from missionfsm.bear.wire.enums import ENUMS
+from missionfsm.bear.wire.fields import MESSAGES, Field
+from missionfsm.bear.wire.methods import METHODS
 from missionfsm.bear.wire.protojson import camel
 from missionfsm.kernel.codec import JSON
 

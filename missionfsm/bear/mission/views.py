@@ -1,0 +1,82 @@
+"""What a status message shows of a robot, and what one says, as values."""
+
+from __future__ import annotations
+
+import functools
+
+from attrs import evolve
+
+from missionfsm.bear.mission.state import NOT_CHOSEN, Family, Mission, Robot
+from missionfsm.bear.wire.messages import MissionState, MissionStates
+from missionfsm.kernel.values import value
+
+TOPIC = "mission status"
+MORE = "with fields that are not documented"
+"""The shape of an answer that has more than it should (AM-58)."""
+
+
+@value(cache_hash=True)
+class Listing:
+    """What a status message shows: the listed missions in order, which of them is active, and on what robot.
+
+    `fresh`: no mission was ever assigned. `held`: none of those that wait is going to start, which nobody sees.
+    `created`: the call that has just made the first mission that waits, which has nothing to wait for.
+    """
+
+    missions: tuple[Mission, ...]
+    active: int | None
+    family: Family
+    fresh: bool = False
+    held: bool = False
+    created: str = ""
+
+    def looks_like(self, other: Listing) -> bool:
+        """Whether a subscriber could not tell it from the other."""
+        return (self.missions, self.active, self.fresh) == (other.missions, other.active, other.fresh)
+
+    def may_look_like(self, other: Listing) -> bool:
+        """Whether a subscriber need not be able to tell: a goal that is not selected may be shown as the first."""
+        if self.active != other.active or self.fresh != other.fresh or len(self.missions) != len(other.missions):
+            return False
+        return _selected(self.missions) == _selected(other.missions)
+
+
+def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
+    return tuple([evolve(one, goal=0) if one.goal == NOT_CHOSEN else one for one in missions])
+
+
+@functools.lru_cache(maxsize=64)
+def listing(robot: Robot) -> Listing:
+    """What a subscriber of the robot is shown."""
+    return Listing(
+        robot.listed(tuple([mission.visible for mission in robot.turns])),
+        (robot.assigned[len(robot.done)] if robot.assigned else len(robot.done)) if robot.active else None,
+        robot.world.family,
+        robot.fresh,
+        robot.active is None and bool(robot.pending) and (robot.halted or robot.pending[0].held),
+    )
+
+
+@value(cache_hash=True)
+class Seen:
+    """A status message without its mission ids and metadata; `named` tells which missions have an id.
+
+    `bare` tells of each mission whether its feedback came as a bare enum instead of a message; `timed` whether the
+    message says when it was recorded; `more` whether it has fields that are not documented.
+    """
+
+    states: MissionStates
+    named: tuple[bool, ...]
+    bare: tuple[bool, ...]
+    timed: bool = True
+    more: bool = False
+
+
+def without_ids(states: MissionStates) -> MissionStates:
+    """The message with its mission ids taken out."""
+    return evolve(states, missions=tuple(map(_without_id, states.missions)))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _without_id(mission: MissionState) -> MissionState:
+    return evolve(mission, mission_id="")

@@ -68,6 +68,7 @@ class Step:
         closes: topics whose channels are gone, with what was still owed to them.
         drains: topics whose channels are gone; what they owed may be seen until things settle, and need not be.
         clears: topics whose channels owe nothing any more, and offer nothing: what was on its way is lost.
+        lingers: topics whose channels owe nothing any more; what they owed or offered may be seen until things settle.
         withdraws: topics whose channels offer nothing any more; what they owe stays.
         rules: ids of the rules that justify it.
         assumes: the readings without which it does not happen.
@@ -87,6 +88,7 @@ class Step:
     closes: tuple[Hashable, ...] = ()
     drains: tuple[Hashable, ...] = ()
     clears: tuple[Hashable, ...] = ()
+    lingers: tuple[Hashable, ...] = ()
     withdraws: tuple[Hashable, ...] = ()
     rules: tuple[str, ...] = ()
     assumes: tuple[Assumption, ...] = ()

@@ -36,6 +36,8 @@ def _relieved(channel: Channel, step: Step) -> Channel:
     """The channel without what a step makes void."""
     if channel.topic in step.clears:
         return channel.owing() if channel.owed else channel
+    if channel.topic in step.lingers and channel.owed:
+        return channel.owing(tuple(evolve(one, passing=True, optional=False) for one in channel.owed))
     if channel.topic in step.withdraws and channel.owed:
         return channel.owing(tuple(one for one in channel.owed if not one.optional))
     return channel
@@ -119,7 +121,7 @@ def _channels_after(
     """The channels that were there, after a step, with what it shows."""
     if step.closes:
         channels = tuple(one for one in channels if one.topic not in step.closes)
-    if step.clears or step.withdraws:
+    if step.clears or step.lingers or step.withdraws:
         channels = tuple(_relieved(channel, step) for channel in channels)
     if step.emits and channels:
         shown = [(emission.topic, owing(emission)) for emission in step.emits]
@@ -139,4 +141,6 @@ def changes(state: State, step: Step) -> bool:
     """Whether anybody could ever tell that the step was taken from the state."""
     moved = step.after is not state and step.after != state
     renamed = step.names is not None and step.names != tuple(range(len(step.names)))  # another in the place of one
-    return moved or renamed or bool(step.emits or step.opens or step.ends or step.clears or step.withdraws)
+    return (
+        moved or renamed or bool(step.emits or step.opens or step.ends or step.clears or step.lingers or step.withdraws)
+    )

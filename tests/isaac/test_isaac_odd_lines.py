@@ -24,7 +24,7 @@ from missionfsm.tools.check.verdict import Outcome, Verdict
 ONE, TWO = Uuid(1, 1 << 61 | 1), Uuid(2, 1 << 61 | 2)
 
 
-def _written(payload: Any, channel: str, header: Any = None, **changes: Any) -> str:
+def _written(payload: Any, channel: str, /, header: Any = None, **changes: Any) -> str:
     """A message whose header and payload are changed so; what is None is left out."""
     raw = json.loads(encode(Message(Header(channel, 1, 1), payload)))
     for part, change in (("header", header or {}), ("payload", changes)):
@@ -89,7 +89,7 @@ def _says(uuid: Uuid, status: WireStatus) -> Any:
     }
 
 
-def _arrives(uuid: Uuid, config: str = "{}", **changes: Any) -> Any:
+def _arrives(uuid: Uuid, config: str = "{}", /, **changes: Any) -> Any:
     return {"drive": {"event": "line", "line": _written(MissionProto(uuid, config), "mission", **changes)}}
 
 
@@ -123,6 +123,76 @@ def test_a_mission_that_is_written_otherwise_runs_or_is_no_message(changes: Any,
     assert _judged(_arrives(ONE, **changes), *then, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
+NUMBERS = {"uuid": {"lower": 1, "upper": 1 << 61 | 1}}
+
+
+@pytest.mark.parametrize(
+    "changes", [NUMBERS, {"header": {"proto": None}}, {"header": {"proto": "9410896613310777529"}}], ids=str
+)
+def test_a_mission_that_is_written_otherwise_may_fail(changes: Any) -> None:
+    assert _judged(_arrives(ONE, **changes), *FAILS, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+GARBLED: tuple[dict[str, Any], ...] = (
+    {"priority": 3},
+    {"header": {"seq": "5"}},
+    {"config": {"serialized": "{}", "version": 2}},
+    {"uuid": {"lower": "01", "upper": str(1 << 61 | 1)}},
+    {"uuid": {"lower": "+1", "upper": str(1 << 61 | 1)}},
+    {"uuid": {"lower": "1.0", "upper": "1"}},
+    {"uuid": "1"},
+    {"uuid": {"lower": "18446744073709551616"}},
+    {"config": 5},
+    {"config": ["{}"]},
+    {"header": {"pubtime": "0x1"}},
+)
+"""Missions in which something is not written as documented."""
+
+
+@pytest.mark.parametrize("then", [RUNS, FAILS, ()], ids=["runs", "fails", "is ignored"])
+@pytest.mark.parametrize("changes", GARBLED, ids=str)
+def test_nothing_is_said_of_a_mission_in_which_something_is_of_another_form(changes: Any, then: Any) -> None:
+    assert _judged(_arrives(ONE, **changes), *then, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+@pytest.mark.parametrize("fails", [FAILS, ()])
+@pytest.mark.parametrize("old", [RUNS[:1], (_says(TWO, WireStatus.FAILURE),)], ids=["goes on", "preempted"])
+def test_such_a_mission_preempts_another_or_does_not(old: Any, fails: Any) -> None:
+    preempted = old != RUNS[:1]
+    shown = (*old, *fails) if preempted else (*fails, _says(TWO, WireStatus.RUNNING))
+    lines = (_arrives(TWO), _says(TWO, WireStatus.RUNNING), SETTLED, _arrives(ONE, uuid="1"), *shown)
+    assert _judged(*lines, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+def test_a_mission_in_a_line_of_another_form_does_not_end_by_itself() -> None:
+    succeeds = (_says(ONE, WireStatus.SUCCESS),)
+    assert _judged(_arrives(ONE, priority=3), *RUNS[:2], *succeeds).outcome is Outcome.VIOLATES
+    assert _judged(_arrives(ONE, priority=3), *FAILS, *FAILS).outcome is Outcome.VIOLATES
+    noise = {"drive": {"event": "line", "line": "no json"}}
+    assert _judged(noise, *FAILS).outcome is Outcome.VIOLATES
+
+
+UNUSABLE = {"no json": "AI-33.unusable", "null": "AI-33.null", "[]": "AI-33.value", '{"a":1}': "AI-33.node"}
+
+
+@pytest.mark.parametrize("first", UNUSABLE)
+@pytest.mark.parametrize("second", [*UNUSABLE, json.dumps(CONFIG)])
+def test_what_becomes_of_one_kind_of_configuration_is_not_tied_to_another(first: str, second: str) -> None:
+    """Some are passed over, some fail, some end the mission that runs, and some do not."""
+    if first == second:
+        return
+    running = (_arrives(TWO), _says(TWO, WireStatus.RUNNING), SETTLED)
+    preempted = (_says(TWO, WireStatus.FAILURE), *FAILS, SETTLED)
+    goes_on = (*FAILS, _says(TWO, WireStatus.RUNNING), SETTLED)
+    passes_over = (_arrives(Uuid(3, 3), second), SETTLED)
+    verdict = _judged(_arrives(ONE, first), *FAILS, SETTLED, *passes_over, *NEXT)
+    assert verdict.outcome is Outcome.CONFORMS
+    verdict = _judged(*running, _arrives(ONE, first), *preempted, *running, _arrives(ONE, second), *goes_on)
+    assert verdict.outcome is Outcome.CONFORMS
+    again = _judged(*running, _arrives(ONE, first), *preempted, *running, _arrives(ONE, first), *goes_on)
+    assert again.outcome is Outcome.VIOLATES
+
+
 def test_a_mission_that_is_written_well_is_not_ignored() -> None:
     assert _judged(_arrives(ONE), *NEXT).outcome is Outcome.VIOLATES
 
@@ -130,6 +200,11 @@ def test_a_mission_that_is_written_well_is_not_ignored() -> None:
 @pytest.mark.parametrize("config", [{"serialized": CONFIG}, CONFIG])
 def test_a_configuration_that_is_no_text_may_be_unusable(config: Any) -> None:
     assert _judged(_arrives(ONE, config=config), *FAILS, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
+
+
+def test_a_configuration_of_unknown_nodes_may_be_passed_over_which_is_flagged() -> None:
+    verdict = _judged(_arrives(ONE, json.dumps(CONFIG)), *NEXT)
+    assert [one.reading for one in verdict.flagged] == ["AI-33.unknown=c"]
 
 
 def test_a_configuration_of_unknown_nodes_may_be_unusable_which_is_flagged() -> None:

@@ -115,3 +115,40 @@ def test_the_name_and_that_a_mission_runs_are_said_on_any_occasion() -> None:
     assert _judged(*spoken, ends, success, NAME).outcome is Outcome.CONFORMS
     assert _judged(*spoken, ends, success, RUNS).outcome is Outcome.VIOLATES
     assert _judged(NAME, little, SETTLED, elsewhere, RUNS).outcome is Outcome.VIOLATES
+
+
+SUCCEEDED = {"drive": {"event": "behaviorSucceeded"}}
+DROPS, CONNECTS = {"drive": {"event": "disconnect"}}, {"drive": {"event": "connect"}}
+WAITS = {"drive": {"event": "advance", "seconds": 1}}
+SUCCESS = _line(MissionStatusProto(MISSION, WireStatus.SUCCESS), "mission_status")
+
+
+@pytest.mark.parametrize("late", [(RUNS,), (RUNS, RUNS, NAME), (NAME,), (_of_type("123456"),)])
+def test_what_was_on_its_way_when_the_connection_dropped_may_still_come(late: Any) -> None:
+    runs = (NAME, ARRIVES, SETTLED, RUNS, SETTLED, DROPS)
+    assert _judged(*runs, *late, SETTLED, CONNECTS, NAME).outcome is Outcome.CONFORMS
+    for later in (SETTLED, WAITS, CONNECTS):
+        wrong = SUCCESS if later is CONNECTS else late[-1]
+        assert _judged(*runs, later, wrong).outcome is Outcome.VIOLATES
+
+
+def test_a_final_status_that_was_on_its_way_may_still_come_once() -> None:
+    ends = (NAME, ARRIVES, RUNS, SETTLED, SUCCEEDED, DROPS)
+    assert _judged(*ends, SUCCESS).outcome is Outcome.CONFORMS
+    assert _judged(*ends, SUCCESS, SUCCESS).outcome is Outcome.VIOLATES
+    assert _judged(NAME, ARRIVES, RUNS, SETTLED, DROPS, SUCCESS).outcome is Outcome.VIOLATES
+
+
+def test_a_tree_that_stops_while_no_mission_runs_is_nothing_to_the_codelet() -> None:
+    verdict = _judged(NAME, SETTLED, SUCCEEDED, SETTLED, ARRIVES, RUNS, SETTLED, SUCCEEDED, SUCCESS)
+    assert [one.reading for one in verdict.flagged] == ["AI-31.idle=b"]
+    assert _judged(NAME, SETTLED, SUCCEEDED, SUCCESS).outcome is Outcome.VIOLATES
+
+
+def test_a_status_is_a_name_or_a_number_which_is_flagged() -> None:
+    line = json.loads(RUNS["line"])
+    for written, flagged in (("RUNNING", []), (0, ["AI-28.status=e"])):
+        line["payload"]["missionStatus"] = written
+        verdict = _judged(NAME, ARRIVES, {"connection": 1, "line": json.dumps(line)}, SETTLED)
+        assert verdict.conforms
+        assert [one.reading for one in verdict.flagged] == flagged

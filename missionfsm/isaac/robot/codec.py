@@ -8,10 +8,11 @@ from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, 
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
-from missionfsm.isaac.shared.line import from_json, is_untyped, new_uuid, part_of, see, see_other, uuid_name
+from missionfsm.isaac.shared.line import from_json, is_garbled, is_untyped, new_uuid, part_of, see, see_other, uuid_name
 from missionfsm.isaac.wire import strictjson
 from missionfsm.isaac.wire.framing import decode_line, encode
 from missionfsm.isaac.wire.messages import (
+    TYPE_IDS,
     Header,
     Message,
     MissionProto,
@@ -19,6 +20,8 @@ from missionfsm.isaac.wire.messages import (
     TextProto,
     Uuid,
     WireStatus,
+    signed,
+    unsigned,
 )
 from missionfsm.kernel.language import JSON, Codec, DriveForm, Name, WorldForm, meet
 from missionfsm.kernel.shapes import TEXT
@@ -37,7 +40,7 @@ def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
     found = decode_line(line.encode(errors="surrogatepass")) if line.strip() else []
     message = found[0] if found else None
     if not isinstance(message, Message):
-        return Arrives(), ()
+        return _garbled(line)
     channel = message.header.channel
     if not isinstance(message.payload, MissionProto):
         return Arrives(foreign=True, channel=channel), ()
@@ -54,10 +57,27 @@ def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
         numeric,
         channel=channel,
         untyped=is_untyped(raw),
+        garbled=is_garbled(raw),
         misplaced=given is not None and not (isinstance(given, dict) and _is_text(given.get("serialized", ""), given)),
         nodes=kind == USABLE and bool(strictjson.parse(message.payload.config)),
     )
     return arrives, names
+
+
+def _garbled(line: str) -> tuple[Arrives, tuple[Name, ...]]:
+    """A line that cannot be read, which may still be taken for a mission, or is none."""
+    raw = strictjson.parse(line)
+    if not isinstance(raw, dict):
+        return Arrives(), ()
+    header, payload = raw.get("header"), raw.get("payload")
+    if not (isinstance(header, dict) and isinstance(payload, dict) and isinstance(header.get("channel"), str)):
+        return Arrives(), ()
+    if str(header.get("proto")) not in _MISSION_TYPES and "config" not in payload:
+        return Arrives(), ()
+    return Arrives(USABLE, channel=header["channel"], garbled=True), ()
+
+
+_MISSION_TYPES = tuple(str(turned(TYPE_IDS[MissionProto])) for turned in (signed, unsigned))
 
 
 def _is_text(serialized: JSON, config: JSON) -> bool:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, USABLE, Arrives
+from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, Arrives
 from missionfsm.isaac.robot.state import (
     NAME_BOUND,
     RUNNING_BOUND,
@@ -187,63 +187,87 @@ def _read(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
     if event.mission is None:
         return (ignored,)
     found = tuple(_mission(here, event, refs))
-    for odd, taken, not_taken in (
-        (event.numeric, (readings.AI_25_TAKEN["a"],), readings.AI_25_TAKEN["b"]),
-        (event.untyped, (readings.AI_27_TAKEN["a"],), readings.AI_27_TAKEN["b"]),
-        (event.misplaced, (), readings.AI_28_TAKEN["c"]),
-    ):
+    for odd, question in ((event.numeric, readings.AI_25_TAKEN), (event.untyped, readings.AI_27_TAKEN)):
         if odd:
-            found = (*_all(found, taken), evolve(ignored, assumes=(not_taken,)))
+            fails = _all(_fails(here, _unread(event), readings.AI_33_PREEMPTS_WRITTEN), (question["c"],))
+            found = (*_all(found, (question["a"],)), evolve(ignored, assumes=(question["b"],)), *fails)
+    if event.garbled:
+        # What is not written as documented need not be treated alike twice: no sentence is about it.
+        found = (*found, ignored, *_fails(here, _unread(event), None))
     return found
+
+
+def _unread(event: Arrives) -> Arrives:
+    """The mission of which the identifier may not have been understood."""
+    return evolve(event, named=False)
 
 
 def _all(steps: Iterator[Step] | tuple[Step, ...], assumes: tuple[Assumption, ...]) -> tuple[Step, ...]:
     return tuple(evolve(step, assumes=(*assumes, *step.assumes)) for step in steps)
 
 
-_USES: dict[str, tuple[tuple[bool, tuple[Assumption, ...]], ...]] = {
-    USABLE: ((True, ()),),
-    NULL: ((True, (readings.AI_33_NULL["a"],)), (False, (readings.AI_33_NULL["b"],))),
-    SHALLOW: ((True, (readings.AI_33_NODE["a"],)), (False, (readings.AI_33_NODE["b"],))),
-    ODD: ((False, (readings.AI_33_VALUE["a"],)), (True, (readings.AI_33_VALUE["b"],))),
+@frozen
+class Doubt:
+    """Something about a mission for which a robot may not run it.
+
+    Attributes:
+        question: what becomes of it.
+        preempts: what becomes of the mission that runs, where that one does not.
+        runs, fails, passed: the letters of the question under which it runs, fails, and is passed over.
+        no_message: whether what is passed over is no message, so that nothing becomes of the mission that runs.
+    """
+
+    question: Ambiguity
+    preempts: Ambiguity
+    runs: str = "a"
+    fails: str = "b"
+    passed: str = "c"
+    no_message: bool = False
+
+
+_CONFIGURED: dict[str, Doubt] = {
+    NULL: Doubt(readings.AI_33_NULL, readings.AI_33_PREEMPTS_NULL),
+    SHALLOW: Doubt(readings.AI_33_NODE, readings.AI_33_PREEMPTS_NODE),
+    ODD: Doubt(readings.AI_33_VALUE, readings.AI_33_PREEMPTS_VALUE, "b", "a"),
+    UNUSABLE: Doubt(readings.AI_33_UNUSABLE, readings.AI_33_PREEMPTS, "b", "a"),
 }
-"""Whether a configuration can be used, with what is assumed; one that is not here cannot."""
+"""What may be wrong with a configuration."""
+
+_MISPLACED = Doubt(readings.AI_28_TAKEN, readings.AI_33_PREEMPTS_WRITTEN, no_message=True)
+_UNKNOWN = Doubt(readings.AI_33_UNKNOWN, readings.AI_33_PREEMPTS_UNKNOWN)
+
+
+def _doubts(event: Arrives) -> tuple[Doubt, ...]:
+    """Why a mission may not run, each asked about once those before it are no reason."""
+    written = (_MISPLACED,) if event.misplaced else ()
+    unknown = (_UNKNOWN,) if event.nodes else ()
+    configured = (_CONFIGURED[event.mission],) if event.mission in _CONFIGURED else ()
+    return (*written, *unknown, *configured)
 
 
 def _mission(here: Codelet, event: Arrives, refs: Refs) -> Iterator[Step]:
     """A MissionProto arrives."""
-    same: tuple[Assumption, ...] = ()
+    taken: tuple[Assumption, ...] = ()
     if event.named and here.mission and refs[:1] == here.mission:
-        same = (readings.AI_32_SAME["a"],)
+        taken = (readings.AI_32_SAME["a"],)
         yield Step(here, rules=(rules.IGNORES.id,), assumes=(readings.AI_32_SAME["b"],))
-    as_written: tuple[Assumption, ...] = ()
-    for doubtful, taken, not_usable in (
-        (event.misplaced, readings.AI_28_TAKEN["a"], readings.AI_28_TAKEN["b"]),
-        (event.nodes, readings.AI_33_UNKNOWN["a"], readings.AI_33_UNKNOWN["b"]),
-    ):
-        if doubtful:
-            yield from _all(_fails(here, event), (*same, *as_written, not_usable))
-            as_written = (*as_written, taken)
-    same = (*same, *as_written)
-    for usable, assumes in _USES.get(event.mission or "", ((False, ()),)):
-        if usable:
-            yield from _all(_starts(here, event), (*same, *assumes))
-            continue
-        yield from _all(_fails(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["a"]))
-        yield from _all(_starts(here, event), (*same, *assumes, readings.AI_33_UNUSABLE["b"]))
-        yield from _all(_passed_over(here), (*same, *assumes, readings.AI_33_UNUSABLE["c"]))
+    for doubt in _doubts(event):
+        yield from _all(_fails(here, event, doubt.preempts), (*taken, doubt.question[doubt.fails]))
+        yield from _all(_passed_over(here, doubt), (*taken, doubt.question[doubt.passed]))
+        taken = (*taken, doubt.question[doubt.runs])
+    yield from _all(_starts(here, event), taken)
 
 
-def _passed_over(here: Codelet) -> Iterator[Step]:
-    """A mission arrives whose configuration cannot be used, and nothing is said of it."""
+def _passed_over(here: Codelet, doubt: Doubt) -> Iterator[Step]:
+    """A mission arrives that is not run, and nothing is said of it."""
     ignored = Step(here, rules=(rules.IGNORES.id,))
-    if not here.running:
+    if doubt.no_message or not here.running:
         yield ignored
         return
     due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True),)
     preempts = _concluded(here, here.moved("an unusable mission arrives"), None, due, (rules.PREEMPTS,))
-    yield from _all(preempts, (readings.AI_33_PREEMPTS["a"],))
-    yield evolve(ignored, assumes=(readings.AI_33_PREEMPTS["b"],))
+    yield from _all(preempts, (doubt.preempts["a"],))
+    yield evolve(ignored, assumes=(doubt.preempts["b"],))
 
 
 def _old(here: Codelet) -> int | None:
@@ -264,8 +288,13 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     yield from _concluded(here, after, new, due, because)
 
 
-def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
-    """A mission arrives whose configuration cannot be used."""
+def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[Step]:
+    """A mission arrives that cannot be run, and is said to have failed.
+
+    Args:
+        asked: the question what becomes of the mission that runs then; None where that may be this or that each time.
+    """
+    preempted, kept = ((asked["a"],), (asked["b"],)) if asked else ((), ())
     new = NEW if event.named else None
     for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
         failure = Due("failure", new, readings.AI_31_UNUSABLE, offered)
@@ -277,9 +306,9 @@ def _fails(here: Codelet, event: Arrives) -> Iterator[Step]:
         ended = here.moved("an unusable mission arrives")
         due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True), failure)
         preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
-        yield from _all(preempts, (said, readings.AI_33_PREEMPTS["a"]))
+        yield from _all(preempts, (said, *preempted))
         goes_on = _concluded(here, here, _old(here), (failure,), (rules.UNUSABLE,))
-        yield from _all(goes_on, (said, readings.AI_33_PREEMPTS["b"]))
+        yield from _all(goes_on, (said, *kept))
 
 
 # The behavior tree.
@@ -295,7 +324,7 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
     if not here.running:
-        return ()
+        return (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
     due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
     ends = _concluded(here, here.moved(trigger), None, due, (FINAL[status],))
     return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
@@ -318,7 +347,8 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
 def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
     """Time passes: what has to be said within a bound was said by now, or may have been."""
     if not here.connected:
-        return tuple(_awaits(here, event.time))
+        # What was on its way when the connection dropped has come by now.
+        return tuple(evolve(step, clears=(STATUSES, NAMES, OTHERS)) for step in _awaits(here, event.time))
     starts: tuple[Step, ...] = (Step(here),)
     if here.waiting:
         # What waits is sent in this time, or waits on.
@@ -375,12 +405,12 @@ def _introduces(step: Step, time: int) -> Iterator[Step]:
 
 @functools.lru_cache(maxsize=20_000)
 def connection(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
-    """The connection drops, with all that was on its way, or is there again."""
+    """The connection drops, with all that was on its way or behind that, or is there again."""
     if event.name == "connect":
         return () if here.connected else (_connected(here),)
     if not here.connected:
         return ()
-    gone = Step(evolve(here, connected=False), clears=(STATUSES, NAMES, OTHERS), rules=(rules.LINKED.id,))
+    gone = Step(evolve(here, connected=False), lingers=(STATUSES, NAMES, OTHERS), rules=(rules.LINKED.id,))
     ways = (gone, _forgetful(gone)) if here.waiting else (gone,)
     if not here.running:
         return ways
@@ -419,7 +449,7 @@ def _connected(here: Codelet) -> Step:
     emits = [introduction(here.world, offer=True), _anything(here.world)]
     if here.running and not here.waiting:
         emits.append(_offer(here, _old(here)))
-    return Step(after, emits=tuple(emits), rules=(rules.NAMED.id,))
+    return Step(after, emits=tuple(emits), clears=(STATUSES, NAMES, OTHERS), rules=(rules.NAMED.id,))
 
 
 def begins(here: Codelet) -> tuple[Step, ...]:

@@ -21,6 +21,8 @@ class Arrives:
         foreign: whether it is a message of another type.
         untyped: whether its header has no type id, or an unsigned one.
         misplaced: whether its configuration is no text that holds JSON, but the JSON itself.
+        garbled: whether something else in it is not written as documented: a field that nobody knows, a number with
+            leading zeros, a value of another type or out of range. It is a mission, or nothing.
         nodes: whether its configuration says something of nodes, of which nobody knows whether the robot has them.
     """
 
@@ -31,6 +33,7 @@ class Arrives:
     channel: str = ""
     untyped: bool = False
     misplaced: bool = False
+    garbled: bool = False
     nodes: bool = False
     name: str = "line"
 

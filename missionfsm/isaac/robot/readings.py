@@ -34,7 +34,7 @@ AI_15_STATUS = Ambiguity(
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a mission understood whose 64-bit integers are numbers instead of strings?",
-    {"a": "yes, both are", "b": "no, strings only"},
+    {"a": "yes, both are", "b": "no, strings only: it is no message", "c": "no: it is a mission that fails"},
     default="a",
     rule="a-mission-starts-the-behavior-tree",
 )
@@ -65,7 +65,7 @@ AI_27_UUID = Ambiguity(
 AI_27_TAKEN = Ambiguity(
     "AI-27.taken",
     "Is a mission understood whose header has no type id, or an unsigned one?",
-    {"a": "yes", "b": "no, it is no message"},
+    {"a": "yes", "b": "no, it is no message", "c": "no: it is a mission that fails"},
     default="a",
     rule="a-mission-starts-the-behavior-tree",
 )
@@ -81,6 +81,7 @@ AI_28_STATUS = Ambiguity(
     "How is a status written?",
     {"c": "by its name in capitals", "d": "by its name in lower case", "e": "by its number"},
     default="d",
+    flagged=frozenset("e"),
     rule="a-line-is-one-message",
 )
 _TICK = {"a": "at once", "b": "on the codelet's own tick"}
@@ -103,6 +104,14 @@ AI_31_UNUSABLE = Ambiguity(
     alike="AI-31",
     rule="an-unusable-configuration-fails-the-mission",
 )
+AI_31_IDLE = Ambiguity(
+    "AI-31.idle",
+    "What is it where the behavior tree stops while no mission runs?",
+    {"a": "it does not happen: a mission starts the tree", "b": "nothing to the codelet"},
+    default="a",
+    flagged=frozenset("b"),
+    rule="a-mission-starts-the-behavior-tree",
+)
 AI_32_SAME = Ambiguity(
     "AI-32.same",
     "What is a MissionProto with the uuid of the mission that runs?",
@@ -113,35 +122,50 @@ AI_32_SAME = Ambiguity(
 AI_33_NULL = Ambiguity(
     "AI-33.null",
     "What is a configuration that is null?",
-    {"a": "an empty one", "b": "one that cannot be used"},
+    {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
     default="a",
+    flagged=frozenset("c"),
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_VALUE = Ambiguity(
     "AI-33.value",
     "What is a configuration that is JSON, but no object?",
-    {"a": "one that cannot be used", "b": "one with nothing to set"},
+    {
+        "a": "one that cannot be used: the mission fails",
+        "b": "one with nothing to set",
+        "c": "a reason to pass over the mission",
+    },
     default="a",
+    flagged=frozenset("c"),
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_NODE = Ambiguity(
     "AI-33.node",
     "What is a configuration in which something is no node with components?",
-    {"a": "one that can be used", "b": "one that cannot be used, as in the shipped software"},
+    {
+        "a": "one that can be used",
+        "b": "one that cannot be used, as in the shipped software: the mission fails",
+        "c": "a reason to pass over the mission",
+    },
     default="a",
+    flagged=frozenset("c"),
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNKNOWN = Ambiguity(
     "AI-33.unknown",
     "What is a configuration of nodes of which nobody says whether the robot has them?",
-    {"a": "one that can be used", "b": "one that cannot be used"},
+    {
+        "a": "one that can be used",
+        "b": "one that cannot be used: the mission fails",
+        "c": "a reason to pass over the mission",
+    },
     default="a",
-    flagged=frozenset("b"),
+    flagged=frozenset("bc"),
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNUSABLE = Ambiguity(
     "AI-33.unusable",
-    "What becomes of a mission whose configuration cannot be used?",
+    "What becomes of a mission whose configuration is no JSON?",
     {
         "a": "it fails at once",
         "b": "it runs with the configuration as it is",
@@ -158,11 +182,53 @@ AI_33_RUNNING = Ambiguity(
     default="a",
     rule="an-unusable-configuration-fails-the-mission",
 )
+_PREEMPTS = {"a": "it is preempted all the same", "b": "it goes on"}
 AI_33_PREEMPTS = Ambiguity(
     "AI-33.preempts",
-    "What becomes of a mission that runs when another one comes whose configuration cannot be used?",
-    {"a": "it is preempted all the same", "b": "it goes on"},
+    "What becomes of a mission that runs when one comes whose configuration is no JSON?",
+    _PREEMPTS,
     default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_NULL = Ambiguity(
+    "AI-33.preempts-null",
+    "What becomes of a mission that runs when one comes that does not run since its configuration is null?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_VALUE = Ambiguity(
+    "AI-33.preempts-value",
+    "What becomes of a mission that runs when one comes that does not run since its configuration is no object?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_NODE = Ambiguity(
+    "AI-33.preempts-node",
+    "What becomes of a mission that runs when one comes that does not run since something in it is no node?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_UNKNOWN = Ambiguity(
+    "AI-33.preempts-unknown",
+    "What becomes of a mission that runs when one comes that does not run since its nodes are unknown?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_WRITTEN = Ambiguity(
+    "AI-33.preempts-written",
+    "What becomes of a mission that runs when one comes that fails since it is written otherwise?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
 

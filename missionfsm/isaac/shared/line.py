@@ -25,6 +25,12 @@ MICROSECONDS = 1_000_000
 
 _HEADER_INTEGERS = ("pubtime", "acqtime", "proto")
 
+_LINE = frozenset({"header", "payload"})
+_HEADER = frozenset({"channel", "uuid", *_HEADER_INTEGERS})
+_PAYLOAD = frozenset({"uuid", "config", "missionStatus", "text"})
+_HALVES = frozenset({"lower", "upper"})
+"""The members of a message that are documented."""
+
 
 @frozen(cache_hash=True)
 class LineContent:
@@ -201,6 +207,22 @@ def is_untyped(raw: JSON) -> bool:
     """Whether the header of a line has no type id, or one that is too large to be a signed one."""
     proto = raw["header"].get("proto")
     return proto is None or is_unsigned(proto)
+
+
+def is_garbled(raw: JSON) -> bool:
+    """Whether a message that can be read has a field that nobody knows, or a number in no usual form."""
+    header, payload = raw["header"], raw["payload"]
+    config = payload.get("config")
+    members = ((raw, _LINE), (header, _HEADER), (payload, _PAYLOAD))
+    if any(not member.keys() <= known for member, known in members):
+        return True
+    if isinstance(config, dict) and "serialized" in config and len(config) > 1:
+        return True
+    uuids = [one for one in (header.get("uuid"), payload.get("uuid")) if isinstance(one, dict)]
+    if any(not uuid.keys() <= _HALVES for uuid in uuids):
+        return True
+    numbers = [header.get(key) for key in _HEADER_INTEGERS] + [half for uuid in uuids for half in uuid.values()]
+    return any(isinstance(one, str) and str(int(one)) != one for one in numbers)
 
 
 def _bare(raw: JSON) -> tuple[str, ...]:

@@ -51,6 +51,8 @@ SHIPPED_ROBOT: Mapping[str, str] = {
     "AI-33.null": "a",
     "AI-33.node": "b",
     "AI-33.preempts": "a",
+    "AI-33.preempts-value": "a",
+    "AI-33.preempts-node": "a",
     "AI-33.unusable": "a",
 }
 """The mission codelet: FAILURE of the old mission first; `null` runs, a node without a component object fails."""

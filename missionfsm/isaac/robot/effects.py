@@ -323,10 +323,11 @@ _STOPS = {
 def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
-    if not here.running:
-        return (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
-    due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
-    ends = _concluded(here, here.moved(trigger), None, due, (FINAL[status],))
+    if here.running:
+        due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
+        ends = tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
+    else:
+        ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
     return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
 
 

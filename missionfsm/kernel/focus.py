@@ -1,7 +1,7 @@
-"""What an observation can tell of what happened silently before it: a partial-order reduction by the specification.
+"""Which silent steps an observation can tell of: a partial-order reduction that the specification provides.
 
-What a system does by itself may fall into parts that do not touch one another. All orders of all of them are very many;
-an observation tells only of the part that it is about. What happens elsewhere happens as well, and is thought of when
+What a system does by itself may fall into parts that do not touch one another, and steps of all parts in all orders are
+too many to consider. An observation tells only of the part that it is about. Steps of other parts are considered when
 something is observed there.
 """
 
@@ -26,17 +26,17 @@ SETTLED: Final = "settled"
 
 @value(cache_hash=True)
 class Focus:
-    """What is observed.
+    """An observation.
 
     Attributes:
-        kind: what it is.
+        kind: which kind of event it is.
         what: the request that was answered, or the event that was driven.
         refs: the positions of its names among those of the state, as for outcomes.
-        answer: the answer, where a request was answered.
-        topics: of the channels that may be those of a message or of an end; where everything has settled, of those that
-            owe what has to be seen: nothing settles that does not rid them of it.
+        answer: the answer, if a request was answered.
+        topics: for a message or an end: the topics of the channels that it may be on. For `SETTLED`: the topics of the
+            channels that owe a message, since only steps that withdraw it let things settle.
         calls: the requests in flight, which may take effect before it, each with the positions of its names.
-        aside: whether it leaves the state as it is, and is about no channel that a call in flight may have opened.
+        aside: whether it leaves the state as it is, and is on no channel that a call in flight may have opened.
     """
 
     kind: Kind

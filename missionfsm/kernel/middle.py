@@ -1,8 +1,8 @@
 """Logs that begin while a system is in use, and systems that others use as well.
 
-Of such a system nothing is known until a message shows its state; later somebody whose calls are not in the log may
-have brought it somewhere else. `in_the_middle` makes of a system one that may be in a state of which nothing is known.
-What others did is an ambiguity of its own, read as "yes" only where nothing else explains an event, and flagged.
+Nothing is known of such a system until a message shows its state. Later, somebody whose calls are not in the log may
+bring it into another state. `in_the_middle` turns a system into one whose state may be `Unknown`. Whether others did
+something is an ambiguity of its own: "yes" is flagged, and assumed only if nothing else explains an event.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ MIDDLE = (LOG_01, LOG_02)
 
 @value(cache_hash=True)
 class Unknown:
-    """A state of which nothing is known but the world, and what there was: that may be gone, but is nothing else now.
+    """A state of which only the world is known, and what there was once: those things may be gone, but not changed.
 
     Attributes:
         world: the world that it is in.
-        past: what there was, one after the other as it came to be known; each in the order in which it is shown. The
-            names are those of the things, in this order.
+        past: the things that there were, in the order in which they became known, and as each message shows them. The
+            names of the state are those of the things, in this order.
     """
 
     world: Hashable
@@ -68,7 +68,7 @@ T = TypeVar("T")
 
 
 def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
-    """The same system in a log that has not all there was.
+    """The same system, of which a log does not hold everything that happened.
 
     Args:
         anywhere: whether the log begins while the system is in use.
@@ -107,7 +107,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
 
 
 def _read(*, anywhere: bool, others: bool) -> Iterator[Ambiguity]:
-    """What is to be found out about such a log."""
+    """The questions that such a log leaves open."""
     if anywhere:
         yield LOG_01
     if others:
@@ -115,7 +115,7 @@ def _read(*, anywhere: bool, others: bool) -> Iterator[Ambiguity]:
 
 
 def _of_known(function: Callable[Concatenate[State, P], T], unknown: T) -> Callable[Concatenate[State, P], T]:
-    """A function of a state, with what it gives for one of which nothing is known."""
+    """The same function of a state, which gives `unknown` for an unknown state."""
 
     def asked(state: State, /, *more: P.args, **named: P.kwargs) -> T:
         return unknown if isinstance(state, Unknown) else function(state, *more, **named)
@@ -148,13 +148,13 @@ def _describe(spec: Spec, what: Request | View | State) -> str:
 
 
 def _restarted(spec: Spec, state: State) -> Step:
-    """What is restarted is in a state that is known, whatever was known before."""
+    """After a restart the state is known, whatever was known before."""
     assert spec.restarted, "asked only of systems that can be restarted"  # noqa: S101
     return spec.restarted(spec.initial(state.world) if isinstance(state, Unknown) else state)
 
 
 def _known_only(drive: Drive) -> Drive:
-    """The same drive, of which nobody can tell what it does to a state of which nothing is known."""
+    """The same drive, which leaves an unknown state unknown."""
     return evolve(
         drive,
         steps=lambda state, event, refs: (
@@ -168,9 +168,9 @@ class Imagined:
     """An answer that some state allows.
 
     Attributes:
-        step: how it comes about; its names are left out.
-        known: of each name that the answer mentions whether its thing was there before.
-        made: what the others are names of, in their order.
+        step: the step that gives it, without names.
+        known: for each name that the answer mentions, whether its thing was there before.
+        made: the things that the other names belong to, in their order.
     """
 
     step: Step
@@ -180,7 +180,7 @@ class Imagined:
 
 @functools.lru_cache(maxsize=1_000)
 def imaginable(spec: Spec, world: Hashable, request: Hashable, names: int) -> tuple[Imagined, ...]:
-    """Every answer to a request with so many names that some state in that world allows."""
+    """Every answer that some state in a world allows to a request with so many names."""
     found: dict[Hashable, Imagined] = {}
     glimpses = spec.middle and spec.middle.glimpses
     assert glimpses, "asked only of systems that can be judged so"  # noqa: S101

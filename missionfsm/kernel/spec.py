@@ -12,6 +12,8 @@ The laws that every `Spec` obeys (``tests/test_laws.py`` holds the shipped ones 
 6. *Invariants* hold in every reachable state, every *possibility* is met in some.
 7. *What is shown is recognised.* A message made from a view under some choice of readings is accepted for that view,
    with assumptions that agree with the choice.
+
+Attributes that are functions are described by what they take and what they give: ``(state, event) → steps``.
 """
 
 from __future__ import annotations
@@ -33,12 +35,12 @@ from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, Sta
 
 @frozen
 class Failure:
-    """That a call may fail with a code whatever the state is, without anybody's doing.
+    """That a call may fail with a code in any state, although no rule refuses it.
 
     Attributes:
         assumes: the readings under which it may.
-        open_ended: whether the call may all the same take effect, at once or later (a deadline that passed).
-        drive: the name of the drive that brings it about; where a tester has that drive it comes no other way.
+        open_ended: whether the call may take effect all the same, at once or later (a deadline that passed).
+        drive: the name of the drive that brings it about; a tester who has that drive sees it for no other reason.
     """
 
     assumes: tuple[Assumption, ...] = ()
@@ -54,16 +56,16 @@ class Delivery:
         skips: the assumption under which only the latest of several owed messages needs to be sent; None: never.
         repeats: the assumption under which the last message may come again; None: never.
         echoes: the assumption under which the last message may come again with its old number; None: never.
-        ends: status name to the readings under which the channel may end with it; one that is missing may not end it.
-        unowed: ids of the rules that are broken by a message that nothing owes, and by one that is owed and does not
-            come; the nearest first.
-        named: ids of the rules that are broken by a message that names other things than it is about.
-        first: ids of the rules that are broken where the first message does not come; those in `unowed` if none.
-        unending: ids of the rules that are broken where the channel ends though it may not; if none, what goes
-            without saying of the operation.
-        malformed: ids of the rules that are broken by a message that cannot be read.
-        every_time: whether a message has to come even where the one before it says the same, as lines do.
-        stands: whether what a channel owes stays owed until it is shown or passed over: no step takes it back.
+        ends: each status that may end the channel, with the readings under which it may.
+        unowed: ids of the rules that a message breaks which is not owed, and a message which is owed and does not come;
+            the nearest first.
+        named: ids of the rules that a message breaks which names other things than it is about.
+        first: ids of the rules that are broken if the first message does not come; those in `unowed` if there are none.
+        unending: ids of the rules that are broken if the channel ends although it may not; the operation's implied
+            rule if there are none.
+        malformed: ids of the rules that a message breaks which cannot be read.
+        every_time: whether an owed message has to come even if it says the same as the one before, as lines do.
+        stands: whether a message stays owed until it is shown or passed over: no step takes it back.
         operation: name of the operation that opens the channel, for rules that stand in the section of each.
     """
 
@@ -83,11 +85,11 @@ class Delivery:
 
 @frozen
 class Unwatched:
-    """What of a drive may happen with no line that says so, where a log need not hold all there was.
+    """A drive may happen without a line that says so, in a log that need not hold every event.
 
     Attributes:
-        reading: the question whether it did; "a" is no, and "b", which is flagged, is what such steps assume.
-        world: a world to the one in which it may.
+        reading: the question whether it happened: "a" is no; "b", which is flagged, is yes.
+        world: world → the same world, in which the drive may happen by itself.
     """
 
     reading: Ambiguity
@@ -100,22 +102,20 @@ class Drive:
 
     Attributes:
         name: what adapters and histories call it.
-        steps: (state, event, refs) to the ways in which it happens; none where it does not apply. `refs` are the
-            positions of the event's names among those of the state, as for outcomes.
-        by_itself: the events that the environment may produce unseen where nobody drives them.
+        steps: (state, event, refs) → the ways in which it happens; none if it does not apply. `refs` are the positions
+            of the event's names among those of the state, as for outcomes.
+        by_itself: the events that the environment may produce unseen if no tester commands the drive.
         cite: where the documents speak of it, if they do.
-        renumbers: the event to the tracks whose numbers start over with it, on every channel.
-        shows_again: the event to the tracks of which what came last may come again with its number, on every channel.
-        ends: it ends a channel: what arrived on that while it was being done arrived before it.
-        impossible: ids of the rules that are broken where it is said to have happened though it could not.
-        waits: whether one that was driven before still waits in a state; the tester drives none while one does.
-        later: for a drive that only lets time pass: its words before what comes next ("2 s later"); None for others.
-        unwatched: what of it may happen unseen in recorded logs of those who do not command it; None for nothing but
-            what is `by_itself`.
-        undriven: a world to the one in which what it does may happen unseen at any time; for a drive that nobody
-            commands.
-        elapses: for a drive that lets time pass: how many seconds have passed between two lines of a log, None where
-            the log does not say, to the event of that much time that nobody let pass; None for other drives.
+        renumbers: event → the tracks whose numbers start over with it, on every channel.
+        shows_again: event → the tracks whose last message may come again with its number, on every channel.
+        ends: whether it ends a channel. Messages that arrive on the channel while it is being done came before the end.
+        impossible: ids of the rules that are broken if it is said to have happened although it could not.
+        waits: state → whether an earlier drive of this kind still waits there; the tester does not drive another then.
+        later: for a drive that only lets time pass: event → the words before what comes next ("2 s later").
+        unwatched: how it may happen unseen in logs of somebody who does not command it; None: only as `by_itself` says.
+        undriven: for a drive that nobody commands: world → the same world, in which it may happen unseen at any time.
+        elapses: for a drive that lets time pass: seconds between two lines of a log (None if the log does not say) →
+            the event that this much time passed although nobody let it pass.
     """
 
     name: str
@@ -144,12 +144,12 @@ class Invariant:
 
 @frozen
 class Parting:
-    """How a system falls into parts that do not touch one another, but for the readings that all of them follow.
+    """How a system falls into parts that share nothing but the readings that they follow.
 
     Attributes:
-        parts: (world, names of the drives that a tester commands) to the parts; none where it does not fall apart.
-        part: (the system, one of its parts) to the system as far as that part sees of it.
-        whose: an event to the part that it is about; None where it is about all of them.
+        parts: (world, names of the drives that a tester commands) → the parts; none if the system does not fall apart.
+        part: (system, part) → the system as that part sees it.
+        whose: event → the part that it is about; None if it is about all of them.
     """
 
     parts: Callable[[World, frozenset[str]], tuple[Hashable, ...]]
@@ -158,24 +158,23 @@ class Parting:
 
 
 Things = tuple[tuple[int, Hashable], ...]
-"""Each name with what is known of the thing that has it."""
+"""Names, each with what is known of the thing that it names."""
 
 
 @frozen
 class Glimpses:
-    """What messages tell of a system of which nothing else is known.
+    """What messages tell of a system whose state is not known.
 
     Attributes:
-        world: state to the world that it is in, as `Spec.initial` takes it.
-        states: (world, content) to those that a message may show, each with the view of it, as long as it is well
-            formed. The names of each are those of the content, as `Spec.matches` pairs them.
-        samples: world to states that stand for all there are as far as answers differ.
-        topic: content to the topic of a channel that shows it.
-        things: (state, its names) to what there is of each, in the order in which it is shown: what nobody changes as
-            long as it is there.
-        shown: (view, its names) to the same of what was shown on a channel, which tells more of it.
-        follows: (world, things that were there in their order, content, its names) to what is assumed where a message
-            shows what these may have become by whatever calls; None where they cannot.
+        world: state → the world that it is in, as `Spec.initial` takes it.
+        states: (world, content) → the states that a well-formed message may show, each with its view. The names of each
+            state are those of the content, as `Spec.matches` pairs them.
+        samples: world → states that stand for all others: in any state, a request is answered as in one of them.
+        topic: content → the topic of a channel that shows it.
+        things: (state, its names) → what every thing in it keeps as long as it is there, in the order of a message.
+        shown: (view, its names) → the same, of what was shown on a channel; a view tells more than a state.
+        follows: (world, things that were there, content, its names) → what is assumed if the message shows what calls
+            may have made of those things; None if no calls can.
     """
 
     world: Callable[[State], Hashable]
@@ -189,13 +188,12 @@ class Glimpses:
 
 @frozen
 class Middle:
-    """What lets a system be judged without its beginning.
+    """How a system is judged by a log that does not hold its beginning.
 
     Attributes:
-        glimpses: how its state becomes known from messages; None where nothing that it can be asked changes it, so
-            that what it did unseen is all that is not known.
-        undriven: names of the drives whose events before the log are not known, so that what they do may have happened
-            unseen.
+        glimpses: how its state becomes known from messages; None if no call changes the state, so
+            that only what happened unseen is not known.
+        undriven: names of the drives that may have happened before the log, so that what they do may happen unseen.
     """
 
     glimpses: Glimpses | None = None
@@ -219,76 +217,73 @@ class Spec:
     Attributes:
         system: its name on the command line.
         title: what it is, in a few words.
-        initial: the state in a world (the parameters that `reset` is given, as a value of the system).
-        operations: what callers may ask, by name; made from the operations alone, if those are given.
-        outcomes: (state, request, refs) to every answer that the documents allow, each with the state after it. `refs`
-            are the positions of the request's names among those of the state, None for one that the state has not, or
-            `ONCE_HAD` for one that it had once, if the spec `recalls` names. Where nothing is given, those of the
-            operations, by their refusals and effects.
-        placed: (request, refs) to the request as those see it; itself, unless they have to know where its names stand.
-        drives: what a tester may make happen, by name; made from the drives alone, if those are given.
-        urgent: what must have happened once things have settled.
-        matches: (view, content) to the ways in which the message shows the view, or why it does not; where nothing is
-            said, nothing is shown.
-        delivery: topic to how its messages travel.
+        initial: world → the state that it begins in. A world is the parameters of `reset`, as a value of the system.
+        operations: what callers may ask, by name; an iterable of operations will do.
+        outcomes: (state, request, refs) → every answer that the documents allow, each with the state after it. `refs`
+            are the positions of the request's names among those of the state: None for a name that the state does not
+            have, `ONCE_HAD` for one that it had once, if the spec `recalls` names. By default the refusals and effects
+            of the operations say it.
+        placed: (request, refs) → the request as the operations see it. By default that is the request itself; a system
+            whose rules have to know where the names stand puts that in.
+        drives: what a tester may make happen, by name; an iterable of drives will do.
+        urgent: state → the steps that must have happened once things have settled.
+        matches: (view, content) → the ways in which the message shows the view, or why it does not. By default nothing
+            is shown.
+        delivery: topic → how its messages travel.
         sequence: how a number on a track compares with the one before (one of the `RELATIONS` of
-            `missionfsm.kernel.sequence`) to the readings under which that is right, or why it is wrong.
-        names: how many names a state has.
-        request_operation: request to the name of its operation: its attribute ``operation``, or itself.
+            `missionfsm.kernel.sequence`) → the readings under which that is right, or why it is wrong.
+        names: state → how many names it has.
+        request_operation: request → the name of its operation: its attribute ``operation``, or itself.
         ambiguities: the questions that its documents leave open; an assumption is a set of their readings.
-        failing: (request, code) to the failure that may come in any state, or None. What it says is not repeated among
-            the outcomes.
-        remembered: (view, content) to what is remembered of a message that came, so that an owed one which looks the
-            same is not due: nobody could tell it from the one before. It is the content itself, or None where only an
-            equal view looks the same, as in systems whose messages have names.
-        spontaneous: what the system may do at any time although nobody can drive it; usually nothing.
-        silent_for: (state, what is observed) to those among its urgent and spontaneous steps that are enough to be
-            thought of before that, since the others can as well come after it; None: all are.
-        calmed: state to the one in which nothing that a step has left open happened before things settled.
-        closing: (state, topic) to the ways in which the system may at any time close the channel of that topic, and an
-            end may be seen of one that a step has closed; None where only `Delivery.ends` allows an end.
-        concerns: (topic of a channel, topic of an emission) to whether the channel is owed the emission.
-        describe: a request, an event, a state, a view or what a message says, in a few words for people.
+        failing: (request, code) → the failure that may come in any state, or None. Outcomes do not repeat it.
+        remembered: (view, content) → what is remembered of a message that came. An owed message that looks the same
+            need not come: nobody could tell it from the one before. It is the content itself, or None if only an equal
+            view looks the same, as in systems whose messages have names.
+        spontaneous: state → what the system may do at any time although nobody can drive it; usually nothing.
+        silent_for: (state, focus) → those of its urgent and spontaneous steps that have to be considered before the
+            observation, since all others can as well come after it; None if all have to be.
+        calmed: state → the same state, in which nothing that a step left open happened before things settled.
+        closing: (state, topic) → the ways in which the system may close the channel of that topic at any time, and in
+            which the end of a channel is seen that a step has closed; None if only `Delivery.ends` allows an end.
+        concerns: (topic of a channel, topic of an emission) → whether the channel is owed the emission.
+        describe: a request, an event, a state, a view or the content of a message → a few words for people.
         rules: all rules of the system that belong to no operation.
         charts: the state machines of its documents, each a table: what they are drawn from.
         invariants: what holds in every state that can be reached.
         possibilities: what holds in some state that can be reached.
-        answers: (shape of an answer that is allowed, shape of the one that came) to the ways in which they agree, or
-            why they do not; None where they have to be equal.
-        lasting: the content of a message to what of the thing with each of its names may never change as long as it is
-            there: pairs of a relation, such as ``goals changed``, which `sequence` is asked about once it changes, and
-            of a value. None where nothing is known to last.
-        recalls: whether it matters to its outcomes that a name was something's once.
-        decided: assumptions to the same system with no outcomes that contradict them, which is quicker; None where it
-            is not. It speaks for `outcomes`: whoever replaces those drops it.
-        rebuilt: operations to the same system with those instead of its own, for trying what a broken rule does.
-        foresees: (state, its names, content, names of the content, operations) to whether the state may come to be
-            shown as the content, by calls of those operations and whatever steps else; None where nothing is known of
-            that. Names are numbers; one below -1 was not seen yet and may be any. It has to be true wherever it is
-            possible: it only saves a search the trouble.
-        succeeds: (state, its names, request, its names, names of the answer) to whether the state may come to one in
-            which the request is answered OK so; None where nothing is known of that. As for `foresees`.
+        answers: (shape of an allowed answer, shape of the answer that came) → the ways in which they agree, or why they
+            do not; None if they have to be equal.
+        lasting: content → of each thing that it names, what may not change as long as the thing is there: pairs of a
+            relation, such as ``goals changed``, and a value. `sequence` is asked about the relation when the value
+            changes. None if nothing is known to last.
+        recalls: whether outcomes depend on a name having belonged to something once.
+        decided: assumptions → the same system without outcomes that contradict them, which is quicker; None if it is
+            not. It stands for `outcomes`: whoever replaces those drops it.
+        rebuilt: operations → the same system with those instead of its own, to see what a broken rule does.
+        foresees: (state, its names, content, names of the content, operations) → whether the state may come to be shown
+            as the content, by calls of those operations and any other steps; None if nothing is known of that. Names
+            are numbers; a number below -1 was not seen yet and may be any name. It has to be true wherever that is
+            possible: it only saves a search some work.
+        succeeds: (state, its names, request, its names, names of the answer) → whether a state may follow in which the
+            request is answered OK with those names; None if nothing is known of that. As for `foresees`.
         abstraction: how a search and an exploration look at its states.
-        parting: how it falls into parts that do not touch one another; None where it is one.
-        answers_for: the id of an ambiguity, or how those of several begin up to a dot, to the ids of the promises that
-            it is a question about: who follows none of its readings breaks those. Of the others it is what was
-            exercised.
+        parting: how it falls into parts that share nothing; None if it does not.
+        answers_for: the id of an ambiguity, or the beginning of several ids up to a dot → the ids of the promises that
+            it is about. Whoever follows none of its readings breaks those; without an entry, what was exercised.
         waived: what its documents say and no rule checks.
-        unopened: ids of the rules that are broken by what comes on a channel that was never opened, or has ended.
-        unowed: (state, topic, content, positions of its names among those of the state) to the ids of the rules that
-            are broken by a message that nothing owes, or what is wrong with one; None where those of the topic's
-            `Delivery` say it.
-        undelivered: view to the ids of the rules that are broken where it is owed and does not come; None where those
-            of the topic's `Delivery` say it.
+        unopened: ids of the rules that a message breaks on a channel that was never opened, or has ended.
+        unowed: (state, topic, content, positions of its names among those of the state) → the ids of the rules that the
+            message breaks if it is not owed, or what is wrong with it; None if the topic's `Delivery` says it.
+        undelivered: view → the ids of the rules that are broken if it is owed and does not come; None if the topic's
+            `Delivery` says it.
         transport: whether what is observed came over a transport that is not perfect (`missionfsm.kernel.transport`).
-        restarted: state to the step in which everything that it remembers is forgotten; None where that is a drive's.
-        added: the operations that came with the latest version of the interface, all at once: older software refuses
-            them.
-        middle: what lets it be judged without its beginning, or None where that cannot be.
-        anywhere: whether what is observed began while it was in use (`missionfsm.kernel.middle`).
-        others: whether others, whose calls are not observed, use it as well.
-        used: world to the state after a soft reset, in which ids that were given before stay used; None where that is
-            the initial one.
+        restarted: state → the step in which the system forgets everything; None if a drive does that.
+        added: the operations that came with the latest version of the interface: older software refuses all of them.
+        middle: how it is judged by a log that does not hold its beginning; None if it cannot be.
+        anywhere: whether the log began while the system was in use (`missionfsm.kernel.middle`).
+        others: whether others use the system as well, whose calls are not observed.
+        used: world → the state after a soft reset, in which ids that were given before stay used; None if that is the
+            initial state.
     """
 
     system: str
@@ -360,7 +355,7 @@ class Spec:
         return evolve(self, operations=operations) if self.rebuilt is None else self.rebuilt(operations)
 
     def with_steps(self, change: Callable[[State, Iterable[Step]], tuple[Step, ...]]) -> Spec:
-        """The same system where the steps from a state that no request brings about are changed."""
+        """The same system, in which every step is changed that no request brings about."""
 
         def driven(drive: Drive) -> Drive:
             return evolve(drive, steps=lambda state, event, refs: change(state, drive.steps(state, event, refs)))
@@ -384,13 +379,16 @@ class Spec:
         return (self.abstraction.explore_size or self.names)(state)
 
     def promised_about(self, ambiguity: Ambiguity) -> tuple[str, ...]:
-        """Ids of the promises that an ambiguity is a question about, by the longest of the names that begin its id."""
+        """Ids of the promises that an ambiguity is about: the entry of `answers_for` with most of its id."""
         names = (name for name in self.answers_for if f"{ambiguity.id}.".startswith(f"{name}."))
         return self.answers_for.get(max(names, key=len, default=""), ())
 
     @property
     def implied(self) -> Mapping[str, Rule]:
-        """What goes without saying of each operation and each drive, by its id: named where no other rule is broken."""
+        """Rules that go without saying, by id: each call is answered as documented, each drive happens where it can.
+
+        A violation names one of them if it breaks no other rule.
+        """
         answered = (
             promise("it-answers-as-documented", f"{one.name} is answered as its page says.", cite=one.cite)
             for one in self.operations.values()

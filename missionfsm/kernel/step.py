@@ -12,10 +12,9 @@ from missionfsm.kernel.terms import State, View
 from missionfsm.kernel.values import value
 
 ONCE_HAD = -1
-"""In the place of the position of a name, for outcomes: the state has it no more.
+"""What outcomes are given for a name that the state no longer has, instead of its position.
 
-References in a `Step` count otherwise: there -1 is the first name that the event brought along. The oracle numbers
-observed names; its `GONE` is neither.
+In the references of a `Step`, -1 means something else: the first name that the event brought along.
 """
 
 
@@ -23,12 +22,16 @@ observed names; its `GONE` is neither.
 class Emission:
     """A message that a step owes to every channel that its topic concerns.
 
-    `refs` are the names that the view mentions, in its order, referred to as in `Step`; None stands for all names of
-    the state after the step.
-    `only` is the assumption without which the message is not sent at all; such a message may always be left out.
-    `optional` is a message that may be left out whatever is assumed, and that may come at any time, settled or not,
-    until something later is shown. One that `stays` is optional as well, and may come more than once.
-    `certain` is a message that comes even where the state after the step does not last.
+    Attributes:
+        topic: what the message is about.
+        view: what it shows.
+        refs: the names that the view mentions, in its order, referred to as in `Step`; None: all names of the state
+            after the step.
+        only: the assumption without which the message is not sent; such a message may always be left out.
+        optional: the message may be left out whatever is assumed. Until something later is shown it may come at any
+            time, also after things have settled.
+        stays: the message is optional, and may come more than once.
+        certain: the message comes even if the state after the step does not last.
     """
 
     topic: Hashable
@@ -42,9 +45,13 @@ class Emission:
 
 @value
 class Opening:
-    """A channel that a step opens: its topic, and its name as a reference like those in `Step.names`.
+    """A channel that a step opens.
 
-    `owed` are the messages that it starts with. `kind` is what its name is one of: ``stream`` or ``connection``.
+    Attributes:
+        topic: what it is about.
+        ref: its name, as a reference like those in `Step.names`.
+        owed: the messages that it starts with.
+        kind: ``stream`` or ``connection``: the kind of its name.
     """
 
     topic: Hashable
@@ -61,24 +68,24 @@ class Step:
     -2… are the first, second… that the event itself brought along (a connection's).
 
     Attributes:
-        after: the state after it; the very same object where nothing changes.
+        after: the state after it; the very same object if nothing changes.
         names: the names of `after`, in order; None keeps those before.
         emits: what subscribers come to see, in order.
         opens: channels that come into being.
         closes: topics whose channels are gone, with what was still owed to them.
-        drains: topics whose channels are gone; what they owed may be seen until things settle, and need not be.
-        clears: topics whose channels owe nothing any more, and offer nothing: what was on its way is lost.
-        lingers: topics whose channels owe nothing any more; what they owed or offered may be seen until things settle.
-        withdraws: topics whose channels offer nothing any more; what they owe stays.
+        drains: topics whose channels are gone; what was owed to them may still be seen until things settle.
+        clears: topics whose channels lose everything that was on its way, owed or optional.
+        lingers: topics whose channels owe nothing any more; what was on its way may still be seen until things settle.
+        withdraws: topics whose channels lose their optional messages; what is owed stays.
         rules: ids of the rules that justify it.
         assumes: the readings without which it does not happen.
         answer: for the outcome of a call, what is answered.
         refs: the names that the answer mentions, in order.
         label: what happened, for people.
         applied: False for an outcome that may still take effect after its answer (a deadline that passed).
-        kinds: what the names that it adds are names of, in order, for a model that makes them up.
-        alone: for one that happens unseen: it is imagined only where somebody has been shown all there was before it,
-            or nobody watches. It is for what could go on and on, one such step after the other.
+        kinds: the kinds of the names that it adds, in order, for a reference that makes names up.
+        alone: for a step that happens unseen, and could be repeated for ever: it is considered only if a channel has
+            shown all that there was before it, or if nobody watches.
     """
 
     after: State
@@ -100,7 +107,7 @@ class Step:
     alone: bool = False
 
     def adds(self, names: int) -> int:
-        """How many names it adds to so many that the state before it has."""
+        """How many names it adds to a state that has so many."""
         referred = (*(self.names or ()), *self.refs, *[opening.ref for opening in self.opens])
         return max(0, max(referred, default=-1) + 1 - names)
 
@@ -112,9 +119,12 @@ class Step:
 
 @value
 class Match:
-    """One way in which a message can be the showing of a view.
+    """One way in which a message shows a view.
 
-    `names` pairs each position among the names of the view with a position among those of the message.
+    Attributes:
+        assumes: the readings without which it does not.
+        names: each position among the names of the view, paired with a position among those of the message.
+        rules: ids of the rules that it exercises.
     """
 
     assumes: tuple[Assumption, ...] = ()
@@ -132,9 +142,9 @@ class Unowed:
 
 @frozen
 class Mismatch:
-    """Why a message cannot be the showing of a view: the rule that it breaks, and what is wrong.
+    """Why a message does not show a view: the rule that it breaks, and what is wrong.
 
-    A `near` one is what is owed but for that, so that it is likelier meant than a message that nothing owes.
+    It is `near` if the message would show the view but for that: then it is likelier meant than one that is not owed.
     """
 
     rule: str

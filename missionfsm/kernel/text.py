@@ -1,4 +1,4 @@
-"""Texts that come from elsewhere, as people are shown them."""
+"""Texts that come from elsewhere, in a form that can be shown to people."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ def brief(value: object) -> str:
 
 
 def printable(text: str) -> str:
-    """The text without what a terminal would obey: names come from the network."""
+    """The text without control characters, which a terminal would obey: names come from the network."""
     if text.isprintable():
         return text
     return "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
 
 
 def shortened(text: str, most: int) -> str:
-    """A text of at most about so many characters: of a longer one the beginning and the end."""
+    """The text, or the beginning and the end of one that has more than about so many characters."""
     half = most // 2
     return text if len(text) <= most else f"{text[:half]} … {text[-half:]}"
 
 
 def differing(one: str, other: str) -> tuple[str, str]:
-    """Two texts that are shown side by side: of long ones only where they differ, with a little before and after."""
+    """Two texts to be shown side by side: of long ones, the part that differs with a little before and after it."""
     if max(len(one), len(other)) <= 2 * MAX_BRIEF:
         return one, other
     least = min(len(one), len(other))
@@ -46,12 +46,12 @@ def differing(one: str, other: str) -> tuple[str, str]:
 
 
 def clipped(text: str) -> str:
-    """A line of moderate length that no terminal obeys; of a long one the beginning and the end."""
+    """The text as one line of moderate length without control characters."""
     return printable(shortened(text, MAX_CHARACTERS))
 
 
 def printable_lines(text: str) -> str:
-    """A text without what a terminal would obey; its lines stay apart."""
+    """The text without control characters other than line feeds."""
     return "\n".join(map(printable, text.split("\n")))
 
 

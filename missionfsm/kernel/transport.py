@@ -1,9 +1,9 @@
 """What lies between an implementation and a log of it: a transport that loses, repeats and ends things by itself.
 
 A page says what a robot does; a log holds what came through. Each way in which the two differ is an ambiguity of its
-own: it did not happen (a), or it did (b), which is flagged. The oracle reads "b" only where nothing else explains an
-event, and a verdict says where that was. Whoever judges without a transport in between, as over stdin and stdout,
-judges by the plain specification, which has none of this.
+own: it did not happen (a), or it did (b), which is flagged. The oracle assumes "b" only if nothing else explains an
+event, and a verdict says where that was. If there is no transport in between, as over stdin and stdout, the plain
+specification judges, which has none of this.
 """
 
 from __future__ import annotations
@@ -63,13 +63,13 @@ MADE_BY_CLIENTS = frozenset(
         UNKNOWN,
     }
 )
-"""The statuses that any gRPC client or gateway makes by itself, on every call."""
+"""The statuses that any gRPC client or gateway may make by itself, on every call."""
 MADE_UP = Failure((TR_04["b"],), open_ended=True)
 """An answer with such a status, which leaves open what becomes of the call."""
 TOO_OLD = Failure((TR_06["b"],))
 """A refusal of a call that the robot's software does not know yet."""
 REDELIVERED = "redelivered"
-"""The relation of a message to the one before that it is, number, timestamp and content."""
+"""The relation of a message to the one before if number, timestamp and content are the same."""
 ENDS = frozenset({OK, DEADLINE_EXCEEDED})
 """How a transport ends a stream that has lasted long enough."""
 

@@ -16,10 +16,10 @@ TOPIC = "state"
 
 
 def shown_whole(spec: Spec, rule: Rule) -> Spec:
-    """The same system, each streaming operation of which opens a stream that shows its states, names and all.
+    """The same system, whose streaming operations each open a stream that shows the whole state and its names.
 
-    Every step that changes the state, whatever brings it about, owes it to all who listen. The rule promises that: it
-    becomes one of the system, at the operation that streams, and whoever shows anything else, or nothing, breaks it.
+    Every step that changes the state owes it to all subscribers. The rule promises that: it is added to the system, at
+    the operation that streams. A subject that shows something else, or nothing, breaks it.
     """
     streaming = next((name for name, one in spec.operations.items() if one.streaming), TOPIC)
     rule = rule if rule.id else rule.registered(spec.system, streaming)

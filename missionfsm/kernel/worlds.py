@@ -19,16 +19,16 @@ _TEXTS = {"type": "array", "items": TEXT}
 
 @frozen
 class WorldForm:
-    """The JSON of worlds: each attribute of a class is the parameter of its name in camel case, and has a default.
+    """The JSON of worlds: each attribute of a class is a parameter, with its name in camel case, and has a default.
 
-    Attributes may be texts with something in them, truth values, members of an enum, and tuples of texts. What is None
-    is not told, or null where it has another default.
+    Attributes may be non-empty texts, truth values, members of an enum, and tuples of texts. An attribute that is None
+    is left out; it is written as null if its default is something else.
 
     Attributes:
         kind: the class.
         without: names of attributes that are no parameters.
-        parameters: each parameter with its attribute, and what that may be.
-        untold: the parameters that may be null, since their attributes may be None and are not by default.
+        parameters: each parameter with its attribute, and the type of that.
+        untold: the parameters that may be null, since their attributes may be None but have another default.
     """
 
     kind: type
@@ -56,7 +56,7 @@ class WorldForm:
         return found | {name: {"anyOf": [dict(found[name]), {"type": "null"}]} for name in self.untold}
 
     def attributes(self, given: JSON) -> dict[str, object]:
-        """The attributes that some parameters give. Raises UnreadableError for what is none, or not what it may be."""
+        """The attributes that some parameters set. Raises UnreadableError for an unknown parameter or a wrong value."""
         given = {} if given is None else given
         if not isinstance(given, dict):
             raise UnreadableError(f"world: {brief(given)} is not an object")
@@ -85,7 +85,7 @@ def _camel(name: str) -> str:
 
 
 def _told(hint: type) -> type:
-    """What an attribute is where it is told: of a text or None, a text; of a tuple of texts, a tuple."""
+    """The type of an attribute that is not None: a text for a text or None, a tuple for a tuple of texts."""
     if type(None) in get_args(hint):
         hint = next(one for one in get_args(hint) if one is not type(None))
     return get_origin(hint) or hint

@@ -71,8 +71,8 @@ def test_every_reading_that_is_gone_has_an_event(name: str) -> None:
             for one, letters in again.belief.readings.items():
                 ambiguity = next(each for each in judged.spec.ambiguities if each.id == one)
                 for letter in set(ambiguity.possible(judge.automaton.assumed)) - set(letters):
-                    gone.setdefault((one, letter), str(again.rulings.found[one, letter]))
-        assert {one: str(ruling) for one, ruling in judge.rulings.found.items()} == gone
+                    gone.setdefault((one, letter), str(again.eliminations.found[one, letter]))
+        assert {one: str(elimination) for one, elimination in judge.eliminations.found.items()} == gone
 
 
 def test_a_run_names_events_for_what_all_its_conversations_ruled_out() -> None:

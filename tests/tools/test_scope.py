@@ -69,12 +69,12 @@ DOOR: Spec = evolve(
 def judged(*answers: tuple[str, str]) -> tuple[str, ...]:
     """What is flagged where calls were answered so."""
     belief = Belief(Automaton(DOOR), "")
-    rulings = Eliminations(belief)
+    eliminations = Eliminations(belief)
     for number, (call, code) in enumerate(answers):
         for event in (Called(("call", number), (call,)), Returned(("call", number), Answer(code))):
             assert belief.observe(event)
-            rulings.notice(event, (call,))
-    return flagged(DOOR, belief.readings, rulings.found, (one.assumed for one in belief.node.explanations))
+            eliminations.notice(event, (call,))
+    return flagged(DOOR, belief.readings, eliminations.found, (one.assumed for one in belief.node.explanations))
 
 
 def test_what_keeps_to_the_text_is_not_flagged() -> None:

@@ -1,4 +1,4 @@
-"""What could nearly have been in the place of an event, as values: candidates, and the problems that each has."""
+"""What could have come instead of an event, as values: candidates, and the problems that each has."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 READING, LEFT_OUT, NAME, FAILED, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4, 5, 6, 10, 30, 40, 50, 60
-"""How much it takes to forgive a reading that was ruled out, a name, and so on; what is likeliest meant takes least.
+"""The weights of problems: a reading that was ruled out, a wrong name, and so on. The likeliest mistake weighs least.
 
-FAILED is what a call would have done that failed.
-LEFT_OUT is a message that comes before one that is due earlier, UNOWED one after all that were owed, UNBEGUN one before
-any is. To SHAPE and VALUE is added, from 0 to 9, how far what came is from what was due; to UNOWED, of a message that
-shows something else than the last one, what that takes to be forgiven.
+FAILED: the message shows what a call would have done that failed. UNDRIVEN: it shows what a drive would have done that
+nobody commanded. LEFT_OUT: it comes before a message that is due earlier. UNOWED: nothing is owed any more, UNBEGUN:
+nothing is owed yet. SHAPE and VALUE grow by 0 to 9 with the distance between what came and what was due; UNOWED grows
+by the weight of what is wrong with a message that shows something else than the last one.
 """
 
 PASSING = 1
-"""How much more it takes to be meant by a message that need not come."""
+"""The additional weight of a message that need not come."""
 
 
 @frozen
 class AnsweredCall:
-    """A call that was answered: what was asked about which names, and the answer."""
+    """A call that was answered: the request and the names in it, the answer and the names in that."""
 
     request: Request
     about: tuple[Name, ...]
@@ -46,24 +46,24 @@ class Circumstances:
 
     Attributes:
         request: what was asked, if the event is an answer.
-        rulings: ambiguity id and letter to the event that ruled it out.
-        recent: the calls that were answered last, the latest last.
+        eliminations: for each ambiguity id and letter that was ruled out, the event that did it.
+        recent: the last calls that were answered, the latest last.
     """
 
     request: Request = None
-    rulings: Mapping[tuple[str, str], Elimination] = {}
+    eliminations: Mapping[tuple[str, str], Elimination] = {}
     recent: tuple[AnsweredCall, ...] = ()
 
 
 @frozen
 class Problem:
-    """Something that an explanation would have to be forgiven to explain the event.
+    """A reason why an explanation does not explain the event.
 
     Attributes:
         says: what it is, in words.
-        rules: ids of the rules that are broken by it, the nearest first.
-        weight: how much it takes to forgive it.
-        since: ids of the rules that an event before speaks about, which this one contradicts.
+        rules: ids of the rules that it breaks, the nearest first.
+        weight: how bad it is.
+        since: ids of the rules of an earlier event that this one contradicts.
         by_itself: whether it is wrong whatever happened before.
     """
 
@@ -76,20 +76,20 @@ class Problem:
 
 @frozen(kw_only=True)
 class Candidate:
-    """A way in which the event could nearly be explained.
+    """What could have come instead of the event, and the problems that keep the event from being that.
 
     Attributes:
-        what: what would have been right in the place of the event, in words.
-        rules: ids of the rules by which it would have been.
-        assumes: the readings under which it would have been.
-        problems: what it would have to be forgiven.
-        allowed: whether it could have come.
+        what: what would have been right, in words.
+        rules: ids of the rules that justify it.
+        assumes: the readings under which it is right.
+        problems: what keeps the event from being it.
+        allowed: whether it could have come; False if only its problems are of interest.
         passing: whether it is a message that need not come.
-        unseen: ids of the rules of what has happened unseen before it would have come.
-        owed: the channel and what it owes, where it is a message that is due.
-        early: whether something that happens at once has still to happen where it would have come.
-        unusual: how many readings it assumes that are not those of the reference, though those could be followed.
-        code: of an answer, its code.
+        unseen: ids of the rules of the steps that happened unseen before it.
+        owed: for a message that is due, the channel and what it owes.
+        early: whether an urgent step has still to happen at that point.
+        unusual: how many readings it assumes that are not those of the reference, although those could be followed.
+        code: the code, if it is an answer.
     """
 
     what: str = ""
@@ -106,5 +106,5 @@ class Candidate:
 
     @property
     def weight(self) -> int:
-        """How much it takes to forgive all of it; where that is equal, what assumes least is nearest."""
+        """How bad all of its problems are; of equals, the one that assumes least is nearest."""
         return sum(problem.weight for problem in self.problems) + PASSING * self.passing + len(self.assumes)

@@ -1,4 +1,4 @@
-"""Time that passes in a log though nobody lets it pass: as much as its lines tell, or any where they tell none."""
+"""Time that passes in a log by itself: as much as the times of its lines say, or any amount if they say nothing."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from missionfsm.kernel.history import Driven, Ended, Event, Received, Returned
 from missionfsm.kernel.spec import Drive
 
 _SEEN = (Received, Returned, Ended)
-"""What shows something that time may have brought about."""
+"""Events that may show an effect of time."""
 
 
 class Elapsing:
-    """Puts the time that has passed before what the lines of one conversation tell.
+    """Inserts the time that has passed before the events of a conversation's lines.
 
-    Once a line says itself that time passes, the log is taken to tell of all that does.
+    Once a line lets time pass itself, the log is taken to say all of it, and nothing is inserted any more.
 
     Args:
-        drive: what lets time pass.
+        drive: the drive that lets time pass.
 
     Attributes:
-        at: when the line was that comes next, in seconds; None if it does not say.
+        at: the time of the next line, in seconds; None if it does not say.
     """
 
     def __init__(self, drive: Drive) -> None:
@@ -28,7 +28,7 @@ class Elapsing:
         self.at: float | None = None
 
     def before(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
-        """The time that has passed before the events of a line, as an event; nothing where it makes no difference."""
+        """The time that has passed before the events of a line, as an event; nothing if it makes no difference."""
         at, self.at = self.at, None
         self._told = self._told or any(type(one) is Driven and self._lets_pass(one) for one in events)
         if self._told:
@@ -49,7 +49,7 @@ class Elapsing:
 
 
 def elapsing(drives: tuple[Drive, ...]) -> Elapsing | None:
-    """What puts in the time that passes by itself, where one of the drives that nobody commands lets time pass."""
+    """What inserts the time that passes by itself; None if none of these drives, which nobody commands, does that."""
     found = [one for one in drives if one.elapses is not None]
     return Elapsing(found[0]) if found else None
 

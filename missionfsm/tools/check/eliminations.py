@@ -1,7 +1,7 @@
 """Which event ruled a reading out: noted while a conversation is judged, at next to no cost.
 
-What the explanations of a conversation assume only ever grows, so a node of the belief automaton that was seen before
-in the same conversation can have ruled nothing out; only nodes that are new to it are looked at.
+What explanations assume only ever grows. So a node of the belief automaton that the conversation has met before rules
+nothing out, and only nodes that are new to it are looked at.
 """
 
 from __future__ import annotations
@@ -22,14 +22,19 @@ from missionfsm.oracle.parted import Parted
 from missionfsm.tools.check.phrases import described, event_words
 
 MAX_LOOKED_AT = 50
-"""In how many explanations it is looked up what an answer could have been."""
+"""How many explanations are searched for what an answer could have been."""
 
 
 @frozen(eq=False)
 class Elimination:
-    """The event that ruled a reading out, and the request that it answers where it is an answer.
+    """The event that ruled a reading out.
 
-    `at` is how many events that ruled something out came before it in its conversation, `before` where that stood.
+    Attributes:
+        spec: the system.
+        event: the event.
+        request: the request, if the event is an answer.
+        at: how many readings its conversation had ruled out before.
+        before: the node before the event.
     """
 
     spec: Spec
@@ -47,15 +52,15 @@ class Elimination:
 
     @property
     def situation(self) -> str:
-        """The state in which the call was made, in words; empty where several are possible, or it is no answer."""
+        """The state in which the call was made, in words; empty if several are possible, or if it is no answer."""
         states = {here.state for here, _ in self._made()}
         return described(self.spec, states.pop()) if len(states) == 1 else ""
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """Ids of the rules that the event speaks against, by which it would have been another, and of those it is for.
+        """Ids of the rules of other answers that the call could have had, then those of the answer that it had.
 
-        They are known of answers.
+        They are known only for answers.
         """
         if self.request is None or not isinstance(self.event, Returned):
             return ()
@@ -69,7 +74,7 @@ class Elimination:
         return (*against, *(rule for rule in given if rule not in against))
 
     def _made(self) -> Iterator[tuple[Explanation, InFlight]]:
-        """The call that is answered, in each explanation of what was before."""
+        """The call that is answered, in each explanation before the event."""
         for here in self.before.explanations[:MAX_LOOKED_AT] if self.before and self.request is not None else ():
             yield from ((here, call) for call in here.calls if call.request == self.request)
 
@@ -89,7 +94,7 @@ class Eliminations:
 
     Attributes:
         seen: the nodes that were looked at; whoever meets another one calls `notice`.
-        found: ambiguity id and letter to what ruled it out.
+        found: for each ambiguity id and letter that was ruled out, the event that did it.
     """
 
     def __init__(self, belief: Belief | Parted) -> None:
@@ -100,11 +105,12 @@ class Eliminations:
         self._left = _left(belief.node)
 
     def notice(self, event: Event, asked: Request | None, before: Node | None = None) -> None:
-        """An event has led to a node that was not seen before: note what it rules out, if anything.
+        """Note what an event rules out that has led to a node which was not seen before.
 
         Args:
-            asked: the request that is answered, if the event is an answer.
-            before: the node that it has led from.
+            event: the event.
+            asked: the request, if the event is an answer.
+            before: the node before the event.
         """
         node = self._belief.node
         self._bytes += node.bytes
@@ -119,14 +125,14 @@ class Eliminations:
         self._left &= left
         spec = self._belief.spec
         request = asked if isinstance(event, Returned) else None
-        ruling = Elimination(spec, event, request, len(self.found), before)
+        elimination = Elimination(spec, event, request, len(self.found), before)
         for ambiguity in spec.ambiguities:
             if gone & ambiguity.group:  # of hundreds, few
                 for letter in ambiguity.possible(gone):
-                    self.found[ambiguity.id, letter] = ruling
+                    self.found[ambiguity.id, letter] = elimination
 
     def skip(self) -> None:
-        """Many events together have ruled out what is gone since: none of them is held to have done it."""
+        """Attribute what was ruled out since to no event: many events were explained together."""
         self._left = self._belief.left
         self.seen.add(self._belief.node)
 
@@ -141,7 +147,7 @@ def _left(node: Node) -> int:
 def by_ambiguity(
     ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Elimination]
 ) -> dict[str, dict[str, str]]:
-    """Ambiguity id to letter to the event that ruled it out, in words, in the order of the ambiguities."""
+    """For each ambiguity id and letter that was ruled out, the event in words, in the order of the ambiguities."""
     open_letters = {
         one.id: {letter: str(found[one.id, letter]) for letter in one.readings if (one.id, letter) in found}
         for one in ambiguities

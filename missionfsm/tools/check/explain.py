@@ -37,7 +37,7 @@ MAX_RULES = 3
 """How many rules a violation names at most, the nearest first."""
 
 NOT_HAPPENED = 'that it does not happen: an adapter answers {"happened": false}'
-"""What is right in the place of a drive that cannot happen."""
+"""What is right instead of a drive that cannot happen."""
 
 MAX_NOTES = 4
 """How many reasons a person is told."""
@@ -76,7 +76,7 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
 
 
 def _implied(spec: Spec, event: Event, operation: str) -> list[str]:
-    """The rule that goes without saying: of the operation that was answered or that opens streams, or of the drive."""
+    """The implied rule of the drive, or of the operation that was answered or that opens streams (`Spec.implied`)."""
     if isinstance(event, Driven):
         place = [event.event.name]  # type: ignore[attr-defined]
     elif isinstance(event, Returned) or operation:
@@ -87,7 +87,7 @@ def _implied(spec: Spec, event: Event, operation: str) -> list[str]:
 
 
 Accusation = tuple[Sequence[Candidate], Iterable[str], Iterable[str]]
-"""What could have come, the rules that are broken, and why, in words."""
+"""What could have come, the rules that are broken, and the reasons in words."""
 
 
 def _operation(nearest: Nearest, event: Event, expected: Iterable[Candidate]) -> str:
@@ -117,18 +117,18 @@ def _allowed(spec: Spec, candidates: Iterable[Candidate], operation: str) -> tup
 
 
 def _lightest(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Those that need least forgiven."""
+    """Those with the least problems."""
     least = min((one.weight for one in candidates), default=0)
     return [one for one in candidates if one.weight == least]
 
 
 def _problems(candidates: Iterable[Candidate]) -> list[Problem]:
-    """What has to be forgiven."""
+    """The problems of all of them."""
     return [problem for one in candidates for problem in one.problems]
 
 
 def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
-    """The rules of what has to be forgiven."""
+    """The rules that their problems break."""
     return (rule for problem in _problems(candidates) for rule in problem.rules)
 
 
@@ -146,7 +146,7 @@ def _against_answer(nearest: Nearest, event: Returned) -> Accusation:
 def _wrong_in_it(
     nearest: Nearest, event: Returned, candidates: Sequence[Candidate], lightest: Sequence[Candidate]
 ) -> tuple[Iterable[str], Iterable[str]]:
-    """An answer with a code that may come, and with something wrong in what else it says."""
+    """The rules and reasons against an answer whose code is allowed, while something else in it is wrong."""
     rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
     due = any(problem.weight >= SHAPE and not problem.by_itself for problem in _problems(lightest))
     if due and not _malformed(event):
@@ -161,7 +161,7 @@ def _wrong_in_it(
 
 
 def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
-    """The rules of answers with another code that are allowed, those that need least to have happened unseen."""
+    """The rules of allowed answers with another code, of those before which least has happened unseen."""
     due = [one for one in candidates if one.allowed and one.weight >= CODE]
     nearest = min(((one.early, len(one.unseen), one.unusual) for one in due), default=None)
     near = (one for one in due if (one.early, len(one.unseen), one.unusual) == nearest)
@@ -169,7 +169,7 @@ def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
 
 
 def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:
-    """Whether the last answer was to the same question, and what would be right now as well."""
+    """Whether the same request was answered last, and that answer would be right now as well."""
     last = nearest.about.recent[-1] if nearest.about.recent else None
     if last is None or last.request != nearest.about.request:
         return False
@@ -187,12 +187,12 @@ def _malformed(event: Returned) -> bool:
 
 
 def _alternately(*lists: Sequence[str]) -> list[str]:
-    """The first of each list, then the second of each, and so on: what is nearest in each comes first."""
+    """The first of each list, then the second of each, and so on: the nearest of each list come first."""
     return list(dict.fromkeys(one for row in itertools.zip_longest(*lists) for one in row if one is not None))
 
 
 def _accused(problem: Problem, candidate: Candidate) -> list[str]:
-    """The rules of an answer that contradicts one before: those of this one, and that of the other: either is wrong."""
+    """The rules that a problem of an answer breaks; if it contradicts an earlier event, a rule of that as well."""
     if problem.since:
         return _alternately(candidate.rules or problem.rules, problem.since[:1])
     about = [rule for rule in problem.rules if rule in candidate.rules]
@@ -213,14 +213,14 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     rules = list(dict.fromkeys(_broken(lightest)))
     weights = [problem.weight for problem in lightest[0].problems]
     if UNDRIVEN in weights:
-        # What has happened last has led to something else; or it has not, and something happened that nobody did.
+        # The last thing that happened has another effect; or the message shows something that did not happen.
         rules = _alternately(causes.latest(nearest.belief), rules)
     elif (
         FAILED not in weights
         and max(weights, default=0) >= LEFT_OUT
         and not any(SHAPE <= weight < UNOWED for weight in weights)
     ):
-        # What is shown of something that has happened may be wrong in how it is shown, or in what has happened.
+        # Either the message shows wrongly what happened, or something else happened than should have.
         rules = _alternately(rules, _before(nearest, lightest[0]))
     notes = [problem.says for problem in _problems(lightest)]
     if isinstance(event.content, Malformed):
@@ -268,7 +268,7 @@ def _never_answered(nearest: Nearest, event: Received) -> list[Name]:
 
 
 def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
-    """The rules of what has made a message due; where nothing has, those of what has happened last."""
+    """The rules of the steps that made a message due; if none did, those of the last steps."""
     owing: tuple[str, ...] | None = None
     if candidate is not None and candidate.owed is not None:
         channel, owed = candidate.owed
@@ -278,13 +278,13 @@ def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
 
 
 def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
-    """What has still to be shown: of each channel what it owes last."""
+    """The last message that each channel still owes."""
     owed = ((channel, [one for one in channel.owed if not one.passing]) for channel in here.channels)
     return [(channel, due[-1]) for channel, due in owed if due]
 
 
 def _still_due(nearest: Nearest) -> Accusation:
-    """Things have settled, and something that is due has not come: in the explanations in which least is due."""
+    """Things have settled although messages are owed: what is owed in the explanations that owe least."""
     ways = [(one, _due(one.explanation)) for one in nearest.ways()]
     ways = [(one, due) for one, due in ways if due]
     ways = [way for way in ways if nearest.at_rest(way[0].explanation)] or ways
@@ -315,7 +315,7 @@ def _called(nearest: Nearest, channel: Channel) -> str:
 
 
 def _against_end(nearest: Nearest, event: Ended) -> Accusation:
-    """The rules that are broken by the end of a channel: those of its topic, or of a channel that is not open."""
+    """The rules that the end of a channel breaks: those of its topic, or those about a channel that is not open."""
     spec = nearest.spec
     (_, _, number), _ = nearest.belief.symbol(event)
     topics = dict.fromkeys(

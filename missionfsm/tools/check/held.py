@@ -1,4 +1,4 @@
-"""Events of a recorded history that wait for those that follow, since these show how they have to be explained."""
+"""Events of a recorded history that wait for the events after them, which show how they have to be explained."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.window import Window
 
 FIRST, TIMES = 64, 4
-"""How many events wait before they are looked at for the first time; then so many times as many, and so on."""
+"""How many events wait before they are first looked at, and the factor by which that grows each time."""
 
 
 @frozen
@@ -20,10 +20,11 @@ class HeldEvent:
     """An event that waits.
 
     Attributes:
-        asked: the request that it answers, if it is an answer.
-        read: how many lines were read with it.
+        event: the event.
+        asked: the request, if the event is an answer.
+        read: how many lines were read, its own included.
         place: where its line stands.
-        open_calls: whether calls had no answer then.
+        open_calls: whether calls had no answer before it.
     """
 
     event: Event
@@ -35,12 +36,12 @@ class HeldEvent:
 
 @frozen
 class Presumed:
-    """An answer that nothing but a restart explains which nobody has seen yet.
+    """An answer that only a restart explains, while no message has shown that there was one.
 
     Attributes:
-        belief: what was believed before it; it presumes no restart.
+        belief: the belief before it, which presumes no restart.
         line: the answer.
-        events: how many events there were with it.
+        events: how many events there were, the answer included.
     """
 
     belief: Belief
@@ -54,7 +55,7 @@ class Explained:
 
     Attributes:
         whole: whether all of them are explained.
-        exact: whether all of their explanations are known, or it is known that one has none.
+        exact: whether the search found all of their explanations, or an event that has none.
     """
 
     whole: bool
@@ -66,8 +67,8 @@ class Held:
 
     Attributes:
         lines: the events, each with where it stands.
-        unexplained: the position of the first one that nothing explains, once that is known.
-        reached: how many of them were explained before it became too much.
+        unexplained: the position of the first event that nothing explains, once that is known.
+        reached: how many of them were explained before the budget ran out.
     """
 
     def __init__(self, belief: Belief) -> None:
@@ -79,7 +80,7 @@ class Held:
         self.reached = 0
 
     def add(self, line: HeldEvent) -> None:
-        """One event more waits."""
+        """Let one more event wait."""
         self._window.add(line.event)
         self.lines.append(line)
 
@@ -89,17 +90,17 @@ class Held:
         return len(self.lines) >= self._size
 
     def wait(self) -> None:
-        """Let so many more events come that looking at all of them anew costs little beside looking at the last."""
+        """Let more events come before all of them are explained anew: few enough searches to cost little in sum."""
         self._size = TIMES * len(self.lines)
 
     def explain(self, *, whole: bool) -> Explained:
-        """Explain the events. The belief goes on behind them, or before the first one that nothing explains.
+        """Explain the events, and move the belief after them, or before the first one that nothing explains.
 
         Args:
             whole: whether no further events come.
 
         Raises:
-            ExhaustedError: it costs too much, and no further events come that tell more.
+            ExhaustedError: it costs too much, and no further events come that could help.
         """
         try:
             return self._explain(whole=whole)

@@ -1,4 +1,4 @@
-"""A recorded history to a verdict: which event cannot be explained, what was allowed instead, by which rule."""
+"""Judges a history line by line: the verdict, and what is wrong with the first event that nothing explains."""
 
 from __future__ import annotations
 
@@ -30,14 +30,13 @@ from missionfsm.tools.check.scope import assumed, flagged, held_to_the_text, unc
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 MAX_LINES = 200
-"""How many lines before a violation a verdict shows of a long history."""
+"""How many of the last lines before a violation a verdict shows."""
 
 PATIENCE = 300
-"""How many explanations an event of a recorded history may cost before it waits for those that follow."""
-
+"""How many explanations an event of a recorded history may cost before it waits for the events after it."""
 
 RECENT = 6
-"""How many calls that were answered are remembered, to be told with a violation."""
+"""How many of the last answered calls are remembered, for the words of a violation."""
 
 
 class Judge:
@@ -46,25 +45,26 @@ class Judge:
     Args:
         system: the system.
         head: the first line of the history.
-        automaton: a belief automaton to walk; its own is made where none is given. Sharing one makes many judges fast.
-        readings: the readings to assume, in an automaton of its own.
+        automaton: the belief automaton to walk; None makes one for this judge. Judges that share one are faster.
+        readings: the readings to assume, if the judge makes its automaton.
         no_flagged: whether nothing may depart from the letter of the text.
         fingerprint, lost: see `missionfsm.oracle.transcript.Transcript`.
         keep: how many lines are kept to be shown.
-        apart: whether what is exercised is counted apart from what other judges see who share the automaton.
-        waits: whether an event that is too dear to explain at once may wait for those that follow; nobody who drives
-            an implementation can wait.
-        settled_after: how many seconds (of `at`) after its cause something is late; None: never.
-        past: the names of what was there before, where a reset does not make a fresh instance; None where it does.
+        apart: whether exercised rules are counted apart from those of other judges that share the automaton.
+        waits: whether an event that costs too much to explain at once may wait for the events after it. Whoever drives
+            an implementation cannot wait.
+        settled_after: how many seconds (of `at`) after its cause a message is late; None: never.
+        past: the names of what was there before, if a reset does not make a fresh instance; None if it does.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
-        exhausted: whether it was not within the budget.
-        held_back: whether events waited for those after them: readings that they rule out may be thought left.
-        place: where the line is that nothing explains, if it was not the last one that came.
-        read, events, succeeded: how many lines and events were taken into account, and answers were OK.
-        recent: the calls that were answered last.
-        answers: operation to status name to how often it was answered so.
+        exhausted: whether the budget ran out.
+        held_back: whether events have waited for those after them. Readings that such events rule out may still be
+            reported as possible.
+        place: where the line stands that nothing explains, if it was not the last line.
+        read, events, succeeded: how many lines and events were taken into account, and how many answers were OK.
+        recent: the last calls that were answered.
+        answers: for each operation, how often it was answered with each status.
     """
 
     def __init__(  # noqa: PLR0913 - all but the first two have a default
@@ -100,8 +100,8 @@ class Judge:
         if waits and parting and len(parting.parts(world, frozenset(head.drives))) > 1:
             self.belief = Parted(self.automaton.spec, world, head.drives, self.automaton.assumed, EVENT_BUDGET)
         self._standing = self.belief
-        self.rulings = Eliminations(self.belief)
-        self._seen = self.rulings.seen
+        self.eliminations = Eliminations(self.belief)
+        self._seen = self.eliminations.seen
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
         self.quiet = None if settled_after is None else Quiet(settled_after)
         undriven = (one for name, one in system.spec.drives.items() if name not in self.automaton.successors.driven)
@@ -127,7 +127,7 @@ class Judge:
         self.place: int | None = None
 
     def feed(self, line: JSON, place: int = 0) -> bool:
-        """Take a line into account; False once the verdict cannot get better.
+        """Take a line into account. False once the verdict is known, so that further lines do not matter.
 
         Args:
             place: where the line stands, kept in `place` if nothing explains it.
@@ -135,7 +135,7 @@ class Judge:
         Raises:
             UnreadableError: the line is not of the format.
         """
-        open_calls = len(self.transcript.pending) > 0  # what settles before a line knows nothing of the line
+        open_calls = len(self.transcript.pending) > 0  # before the line is read: things may settle before it
         events = self.transcript.read(line)
         if self.quiet is not None:
             events = self.quiet.settling(line.get("at"), events)
@@ -147,14 +147,14 @@ class Judge:
 
     @property
     def awaits(self) -> bool:
-        """Whether a message has yet to come, as far as can be told, unless it was lost on the way."""
+        """Whether a message has yet to come, as far as can be told."""
         try:
             return self.right and self.belief.awaits
         except ExhaustedError:
             return False
 
     def take(self, events: tuple[Event, ...], place: int = 0, *, open_calls: bool | None = None) -> bool:
-        """Take the events of a line into account that was read already and need not be shown; see `feed`.
+        """Take the events of a line into account that was read elsewhere; see `feed`. The line will not be shown.
 
         Args:
             place: where the line stands, kept in `place` if nothing explains it.
@@ -185,14 +185,14 @@ class Judge:
                 self._blame_what_was_presumed()
                 return False
             if belief.node not in self._seen:
-                self.rulings.notice(event, self.transcript.answered, before)
+                self.eliminations.notice(event, self.transcript.answered, before)
             kind = type(event)
             if kind is Returned or kind is Settled or kind is Called:
                 self._count(event, self.transcript.answered, open_calls=open_calls)
         return True
 
     def _with_what_passes(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
-        """The events of a line behind the time that passes before it; one on a stream that was cancelled is noticed."""
+        """The events of a line, after the time that passes before it. Messages on a cancelled stream are noted."""
         silenced = self.transcript.silenced
         if silenced and not self._speaks_on:
             self._speaks_on = any(type(one) is Received and one.channel in silenced for one in events)
@@ -203,7 +203,7 @@ class Judge:
         return (*passed, *events)
 
     def _put_off(self, events: tuple[Event, ...], place: int, *, open_calls: bool) -> bool:
-        """The first of these events is too dear to explain at once: it waits, or nothing more is judged."""
+        """The first of these events costs too much to explain at once: it waits, or nothing more is judged."""
         if self._patient and isinstance(self.belief, Belief):
             self.events -= 1
             self._held = Held(self.belief)
@@ -213,12 +213,12 @@ class Judge:
         return False
 
     def _presume(self, event: Event, before: Belief, place: int, *, seen: bool) -> None:
-        """Nothing but a restart explains an answer; a message shows whether there was one.
+        """Remember an answer that only a restart explains, until a message shows that there was one.
 
         Args:
-            event: the answer, or what came after it.
+            event: the answer, or an event after it.
             before: the belief before the answer.
-            seen: whether it is a message, and explained.
+            seen: whether the event is such a message.
         """
         if seen:
             self.belief.presumed = self._presumed = None
@@ -227,7 +227,7 @@ class Judge:
             self._presumed = Presumed(before, line, self.events)
 
     def _blame_what_was_presumed(self) -> None:
-        """What went wrong is the answer that only a restart explains, where that was not seen."""
+        """Blame the answer that only a restart explains, if no message has shown the restart."""
         presumed, self._presumed = self._presumed, None
         if presumed is None or presumed.belief.observe(presumed.line.event):
             return
@@ -235,14 +235,20 @@ class Judge:
         self._standing, self.events = presumed.belief, presumed.events
 
     def _blame(self, line: HeldEvent) -> None:
-        """Nothing explains an event that came some lines before."""
+        """Report an event of an earlier line as the one that nothing explains."""
         for _ in range(min(self.read - line.read, len(self.lines))):
             self.lines.pop()
         self._unexplained, self._asked, self.read, self.place = line.event, line.asked, line.read, line.place
         self.right = False
 
     def _count(self, event: Event, asked: Request | None, *, open_calls: bool) -> None:
-        """Count an event that is explained: what was asked if it is an answer, and whether calls had none then."""
+        """Count an event that is explained.
+
+        Args:
+            event: the event.
+            asked: the request, if the event is an answer.
+            open_calls: whether calls had no answer before it.
+        """
         if type(event) is Returned:
             self.succeeded += event.answer.code == OK
             self.answers[self.system.spec.request_operation(asked)][event.answer.code] += 1
@@ -255,7 +261,7 @@ class Judge:
             self._lost_a_call = self._lost_a_call or event.lost
 
     def _hold(self, events: tuple[Event, ...], place: int, *, open_calls: bool) -> bool:
-        """Events wait for those that follow."""
+        """Hold events back until those after them have come."""
         held = self._held
         assert held is not None, "somebody has begun to hold events back"  # noqa: S101
         self.held_back = True
@@ -264,7 +270,7 @@ class Judge:
         return self._decide(held, whole=False) if held.due else True
 
     def _decide(self, held: Held, *, whole: bool) -> bool:
-        """Explain the events that wait; those of a search that was not exhaustive go on waiting if more may come."""
+        """Explain the events that wait. If the search was not exhaustive and more may come, they go on waiting."""
         try:
             explained = held.explain(whole=whole)
         except ExhaustedError:
@@ -280,7 +286,7 @@ class Judge:
         self.events += len(known)
         for line in known:
             self._count(line.event, line.asked, open_calls=line.open_calls)
-        self.rulings.skip()
+        self.eliminations.skip()
         if not explained.whole:
             self.events += 1
             self._blame(held.lines[held.unexplained])
@@ -289,9 +295,9 @@ class Judge:
 
     @property
     def violation(self) -> Violation | None:
-        """What is wrong with the event that nothing explains; put into words when it is asked for."""
+        """What is wrong with the event that nothing explains. It is computed when it is first asked for."""
         if self._unexplained is not None and self._violation is None:
-            about = Circumstances(self._asked, self.rulings.found, tuple(self.recent))
+            about = Circumstances(self._asked, self.eliminations.found, tuple(self.recent))
             found = violation(self._standing.of_last_event, self._unexplained, about)
             if self.quiet is not None and type(self._unexplained) is Settled:
                 seen = f"nothing had come of it after {self.quiet.seconds:g} s, or by {found.observed}"
@@ -300,7 +306,7 @@ class Judge:
         return self._violation
 
     def _broke_down(self) -> bool:
-        """Whether a subscription was answered with a failure that its table lists: it may be whatever the state is."""
+        """Whether a subscription was answered with a failure that its table allows in any state."""
         operations = self.system.spec.operations
         return any(
             operations[name].streaming and code in operations[name].failures
@@ -311,7 +317,7 @@ class Judge:
 
     @property
     def history(self) -> tuple[JSON, ...]:
-        """The lines that were read, the first line before them; of a long history only the last ones."""
+        """The first line, and the last lines that were read."""
         return (self.head.line, *self.lines)
 
     def verdict(self) -> Verdict:
@@ -342,16 +348,16 @@ class Judge:
             uncovered=left_out,
             violation=self.violation,
             because=because,
-            flagged=(*flagged(spec, readings, self.rulings.found, ways), *self.oddities),
+            flagged=(*flagged(spec, readings, self.eliminations.found, ways), *self.oddities),
             unchecked=unchecked(spec, (*used, *self.head.drives)),
             untested=untested(spec, self.answers, self.head.drives, left_out),
-            ruled_out=by_ambiguity(spec.ambiguities, self.rulings.found),
+            ruled_out=by_ambiguity(spec.ambiguities, self.eliminations.found),
         )
         return held_to_the_text(verdict) if self._no_flagged else verdict
 
     @property
     def oddities(self) -> tuple[Flagged, ...]:
-        """What is explained, and yet belongs to no reading: a line each."""
+        """What is explained and belongs to no reading, but is worth a line of the verdict."""
         said = {
             "a call was not answered, or only after everything had settled": self._unanswered,
             "a stream showed more after its cancel was answered": self._speaks_on,

@@ -1,8 +1,8 @@
-"""What nearly explains an event: the explanations that need least forgiven, and what would have to be forgiven them.
+"""Which explanations come nearest to explaining an event that none explains, and what keeps each from it.
 
-An event is a violation when no explanation allows it. Each explanation that died with it died of something: another
-code, another name, a value that is wrong, a reading that was ruled out before, something that nobody made happen. The
-one that died of least says best what is wrong.
+An event is a violation when no explanation allows it. Something keeps each of them from it: another code, another name,
+a wrong value, a reading that was ruled out before, something that nobody made happen. The explanation with the least of
+these problems says best what is wrong.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from missionfsm.tools.check.causes import delivering
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 SOME_STATE = "any state that what was shown before can have become"
-"""What may come where nothing is known of what happened before."""
+"""What may come if nothing is known of what happened before, in words."""
 
 MAX_LOOKED_AT = 200
 """How many explanations are looked at, the nearest first."""
@@ -68,7 +68,7 @@ def _distance(one: str, other: str) -> int:
 
 
 def rules_about(spec: Spec, assumption: Assumption) -> tuple[str, ...]:
-    """The rules that are broken by whoever reads a question now so and now otherwise."""
+    """The rules that an implementation breaks if it does not read a question the same way each time."""
     ambiguity = assumption.ambiguity
     under = [rule.id for rule in spec.all_rules if rule.assumes is not None and rule.assumes.ambiguity is ambiguity]
     named = [rule.id for rule in spec.all_rules if ambiguity.rule and rule.id.endswith(ambiguity.rule)]
@@ -87,11 +87,11 @@ class Nearest:
         self.successors.reset()
 
     def reachable(self, besides: int | None = None) -> Iterator[Explanation]:
-        """What the explanations can silently become, the nearest first."""
+        """What the explanations can become by silent steps, the nearest first."""
         return (successor.explanation for successor in self.ways(besides))
 
     def ways(self, besides: int | None = None) -> Iterator[Successor]:
-        """What the explanations can silently become, the nearest first, with the rules of what happened on the way."""
+        """What the explanations can become by silent steps, the nearest first, with the rules of those steps."""
         found = self.successors.closure(self.belief.node.explanations, besides)
         try:
             yield from itertools.islice(found, MAX_LOOKED_AT)
@@ -105,7 +105,7 @@ class Nearest:
     # Answers.
 
     def answers(self, event: Returned) -> Iterator[Candidate]:
-        """Every answer that the call could have had, or could have had under readings that were ruled out."""
+        """Every answer that the call could have had, also under readings that were ruled out."""
         symbol, _ = self.belief.symbol(event)
         number, given = call_of(symbol), names_of(symbol)
         for successor in self.ways(besides=number):
@@ -189,7 +189,7 @@ class Nearest:
     # Messages.
 
     def messages(self, event: Received) -> Iterator[Candidate]:
-        """Every message that could have come, and what would have to be so for this one to be one of them."""
+        """Every message that could have come, and what keeps the one that came from being it."""
         (_, content, given, relations, number), _ = self.belief.symbol(event)
         message = _Message(event, content, given, number)
         for successor in self.ways():
@@ -205,7 +205,7 @@ class Nearest:
                 yield evolve(one, unseen=successor.rules)
 
     def _sequence(self, here: Explanation, relations: Iterable[str]) -> Iterator[Problem]:
-        """The readings that the numbers of a message need; where they are wrong, nothing else matters."""
+        """The problems of the readings that a message's numbers need. Wrong numbers are judged elsewhere."""
         for relation in relations:
             right = self.spec.sequence(relation)
             if not isinstance(right, Mismatch):
@@ -242,7 +242,7 @@ class Nearest:
     def _unlike_any_state(
         self, here: Explanation, delivery: Delivery, owed: Owed, message: _Message
     ) -> Iterator[Problem]:
-        """Why a message shows no state, where it may show any since nothing is known of what was before."""
+        """Why a message shows no state at all, where any state may be shown since nothing was known before."""
         glimpses = self.spec.middle.glimpses if self.spec.middle else None
         if owed.view is not ANY or glimpses is None:
             return
@@ -255,15 +255,18 @@ class Nearest:
             yield Problem("what was shown before cannot have become this", delivery.unowed, VALUE)
 
     def missing(self, delivery: Delivery, view: View, *, at_first: bool = False) -> tuple[str, ...]:
-        """The rules that are broken where a view is owed and does not come, perhaps as the first message of a channel.
+        """The rules that are broken if a view is owed and does not come: its own if it has any, or else its topic's.
 
-        Those of the view itself, if the system says any; else those of the topic.
+        Args:
+            delivery: how messages of the topic travel.
+            view: the view.
+            at_first: whether it would have been the first message of its channel.
         """
         own = self.spec.undelivered(view) if self.spec.undelivered else ()
         return own or (at_first and delivery.first) or delivery.unowed
 
     def _again(self, here: Explanation, channel: Channel, delivery: Delivery, message: _Message) -> Iterator[Problem]:
-        """Nothing is owed: the message is the last one again, or shows what was never reached."""
+        """Nothing is owed: the message repeats the last one, or shows a state that was never reached."""
         own: tuple[str, ...] = ()
         unbegun = "nothing is owed to it yet"
         if self.spec.unowed is not None:
@@ -285,7 +288,7 @@ class Nearest:
     def _unchanged(
         self, here: Explanation, channel: Channel, shown: Owed, message: _Message, own: tuple[str, ...]
     ) -> Iterator[Problem]:
-        """Nothing changed since a channel showed something: the message is another one, or the same again."""
+        """Nothing changed since a channel showed a view: the message shows something else, or the same again."""
         delivery = self.spec.delivery(channel.topic)
         wrong = self._matched(here, channel, shown, message)
         if wrong:
@@ -300,7 +303,7 @@ class Nearest:
             yield Problem(says, own or delivery.unowed, UNOWED)
 
     def _matched(self, here: Explanation, channel: Channel, owed: Owed, message: _Message) -> list[Problem]:
-        """What keeps a message from being the showing of what is owed."""
+        """What keeps a message from showing what is owed."""
         ways = self.successors.matches(owed, message.content)
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
@@ -317,7 +320,7 @@ class Nearest:
         return min(found, key=lambda problems: sum(one.weight for one in problems))
 
     def _undriven(self, here: Explanation, message: _Message) -> Iterator[Candidate]:
-        """The message shows what something would lead to that nobody made happen, or a call that failed."""
+        """The message shows the effect of a drive that nobody commanded, or of a call that failed."""
         for step, says, rules, weight in self._unseen(here):
             taken = self.successors.advance(here, step)
             if taken is None:
@@ -334,7 +337,7 @@ class Nearest:
                     yield Candidate(problems=(Problem(says, broken, weight),), allowed=False)
 
     def _unseen(self, here: Explanation) -> Iterator[tuple[Step, str, tuple[str, ...], int]]:
-        """Steps that were not taken, with what they are, the rules that are broken if they were, and the weight."""
+        """Steps that were not taken, each in words, with the rules that it would break, and the weight of that."""
         for drive in self.spec.drives.values():
             for event in drive.by_itself if drive.name in self.successors.driven else ():
                 says = f"{described(self.spec, event)} would have to happen first, and nobody made it happen"
@@ -348,7 +351,7 @@ class Nearest:
                     (step, says, step.rules, FAILED) for step in effects if step.answer and step.answer.code == OK
                 )
 
-    # What has to be forgiven.
+    # Problems.
 
     def _clash(self, here: Explanation, assumes: Iterable[Assumption]) -> list[Assumption]:
         """Those assumptions that contradict what an explanation assumes."""
@@ -358,11 +361,15 @@ class Nearest:
         for one in self._clash(here, assumes):
             left = one.ambiguity.possible(here.assumed)
             # What ruled the needed readings out, in this explanation; others may have been left by other events.
-            rulings = [self.about.rulings.get((one.ambiguity.id, letter)) for letter in one.letters]
-            events = dict.fromkeys(str(ruling) for ruling in rulings if ruling is not None)
+            eliminations = [self.about.eliminations.get((one.ambiguity.id, letter)) for letter in one.letters]
+            events = dict.fromkeys(str(elimination) for elimination in eliminations if elimination is not None)
             since = f", since {'; '.join(events)}" if events else ""
             followed = f"{one.ambiguity.id}={'|'.join(left)} is followed{since}"
-            since_then = tuple(dict.fromkeys(rule for ruling in rulings if ruling is not None for rule in ruling.rules))
+            since_then = tuple(
+                dict.fromkeys(
+                    rule for elimination in eliminations if elimination is not None for rule in elimination.rules
+                )
+            )
             yield Problem(f"it needs {one}, but {followed}", rules_about(self.spec, one), READING, since_then)
 
     def _names(

@@ -1,4 +1,4 @@
-"""Which of the rules that are accused have a part in a violation: it would not have come about without them."""
+"""Which of the accused rules have a part in a violation: without them it would not have come about."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Broken = tuple[tuple[str, StepMutator], ...]
 
 
 def needed(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> tuple[CitedRule, ...]:
-    """The rules of a violation but for those behind the first that have no part in it.
+    """The first rule of a violation, and those of the others that have a part in it.
 
-    A rule has one if everything is explained wherever it may be broken. Of a rule that is about what is sent, and not
-    about what is done, that is not asked, nor of a row of an Errors table.
+    A rule has a part in it if everything would be explained by a system that may break the rule. Refusals and rules
+    about messages are not put to that test, and stay.
     """
     others = (one for one in violation.rules[1:] if _has_a_part(system, violation, one.id, readings))
     return *violation.rules[:1], *others
@@ -40,7 +40,7 @@ def _has_a_part(system: System, violation: Violation, rule: str, readings: Mappi
 
 
 def _ways_to_break(system: System, rule: str) -> Broken:
-    """How a rule may be broken in what is done; not at all where nobody says how and it is one about messages."""
+    """How steps may break a rule; empty for refusals, and for rules about messages that no step mutation breaks."""
     own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
     found = system.spec.rules_by_id.get(rule)
     in_messages = any(one.rule == rule for one in system.message_mutations)
@@ -50,7 +50,7 @@ def _ways_to_break(system: System, rule: str) -> Broken:
 
 
 def disregarding(spec: Spec, ways: Broken) -> Spec:
-    """The same system where a rule may be broken in any of these ways, in every step anew."""
+    """The same system, in which each step may break a rule in any of these ways."""
 
     def both(state: State, steps: Iterable[Step]) -> tuple[Step, ...]:
         right = tuple(steps)
@@ -67,6 +67,6 @@ def disregarding(spec: Spec, ways: Broken) -> Spec:
 
 
 def _fits(spec: Spec, before: State, step: Step) -> bool:
-    """Whether a step names as many things as there are after it, and mentions none that there is not."""
+    """Whether a step names as many things as the state after it has, and mentions no others."""
     there = {*range(spec.names(before)), *(step.names or ()), *(one.ref for one in step.opens)}
     return there.issuperset(step.refs) and (step.names is None or len(step.names) == spec.names(step.after))

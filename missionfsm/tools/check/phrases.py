@@ -1,4 +1,4 @@
-"""Events, answers, names and rules in words, each on one line whatever an implementation put into them."""
+"""Events, answers, names and rules in words. Each is one line, whatever an implementation put into it."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ from missionfsm.tools.check.verdict import CitedRule
 
 
 def rules_in_words(spec: Spec, rule_ids: Iterable[str], operation: str = "") -> tuple[CitedRule, ...]:
-    """Rules as a person is told them, each once.
+    """Rules in words, each once.
 
     Args:
-        operation: the operation that they are about; a rule that stands in several sections is cited in that of it.
+        spec: the system.
+        rule_ids: their ids.
+        operation: the operation at hand: a rule that stands in several sections is cited from that operation's.
     """
     named = list(dict.fromkeys(rule_ids))
     known = spec.rules_by_id

@@ -14,7 +14,7 @@ from missionfsm.tools.check.basis import NEVER_SUCCEEDED, NOT_THERE, NOT_TRIED, 
 from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
-Rulings = Mapping[tuple[str, str], Elimination]
+Eliminated = Mapping[tuple[str, str], Elimination]
 """Ambiguity id and letter to the event that ruled the letter out."""
 
 Answers = Mapping[str, Mapping[str, int]]
@@ -58,7 +58,7 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 
 
 def flagged(
-    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, ways: Iterable[int] = ()
+    spec: Spec, readings: Mapping[str, tuple[str, ...]], eliminations: Eliminated, ways: Iterable[int] = ()
 ) -> tuple[Flagged, ...]:
     """What is explained, and yet departs from the letter of the text or from itself, a line each.
 
@@ -79,25 +79,28 @@ def flagged(
         apart += [pair for pair in least.apart if pair not in apart]
         left = least.left
     return (
-        *(_departure(one, left[one.id], rulings) for one in departing),
-        *_incoherences(apart, left, rulings),
+        *(_departure(one, left[one.id], eliminations) for one in departing),
+        *_incoherences(apart, left, eliminations),
     )
 
 
 def flagged_in_all(
-    spec: Spec, readings: Mapping[str, tuple[str, ...]], rulings: Rulings, several: Iterable[Iterable[int]]
+    spec: Spec,
+    readings: Mapping[str, tuple[str, ...]],
+    eliminations: Eliminated,
+    several: Iterable[Iterable[int]],
 ) -> tuple[Flagged, ...]:
     """What `flagged` says of several conversations that follow the same readings, an ambiguity once.
 
     Args:
         several: of each conversation that has one, what its explanations assume.
     """
-    lines = flagged(spec, readings, rulings)
+    lines = flagged(spec, readings, eliminations)
     followed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
     for ways in several:
         named = {line.about for line in lines}
         left = [way & followed for way in sorted(ways) if meet(way, _decided(spec, followed))]
-        lines += tuple(line for line in flagged(spec, readings, rulings, left) if line.about not in named)
+        lines += tuple(line for line in flagged(spec, readings, eliminations, left) if line.about not in named)
     return lines
 
 
@@ -129,16 +132,18 @@ def _departing(spec: Spec, left: Mapping[str, tuple[str, ...]]) -> list[Ambiguit
     return [one for one in spec.ambiguities if left[one.id] and one.flagged.issuperset(left[one.id])]
 
 
-def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], rulings: Rulings) -> Flagged:
+def _departure(ambiguity: Ambiguity, letters: tuple[str, ...], eliminations: Eliminated) -> Flagged:
     says = "; or: ".join(ambiguity.readings[letter] for letter in letters)
-    event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), rulings)
+    event = _event(ambiguity, tuple(one for one in ambiguity.readings if one not in ambiguity.flagged), eliminations)
     where = f" (seen where {event})" if event else ""
     reading = f"{ambiguity.id}={'|'.join(letters)}"
     return Flagged(f"{reading} departs from the text: {ambiguity.question} {says}{where}", reading)
 
 
 def _incoherences(
-    apart: Iterable[tuple[Ambiguity, Ambiguity]], left: Mapping[str, tuple[str, ...]], rulings: Rulings
+    apart: Iterable[tuple[Ambiguity, Ambiguity]],
+    left: Mapping[str, tuple[str, ...]],
+    eliminations: Eliminated,
 ) -> Iterable[Flagged]:
     """A line for every question that is read differently where it is asked alike, with an event for each side."""
     said: set[str | None] = set()
@@ -148,16 +153,16 @@ def _incoherences(
         said.add(one.alike)
         sides = []
         for side, against in ((one, other), (other, one)):
-            event = _event(side, left[against.id], rulings)
+            event = _event(side, left[against.id], eliminations)
             sides.append(f"{side.id}={'|'.join(left[side.id])}" + (f" (seen where {event})" if event else ""))
         says = f"incoherent, calls that look alike are read differently: {sides[0]}, but {sides[1]}"
         yield Flagged(says, about=f"incoherent: {one.id}")
 
 
-def _event(ambiguity: Ambiguity, letters: Iterable[str], rulings: Rulings) -> str:
+def _event(ambiguity: Ambiguity, letters: Iterable[str], eliminations: Eliminated) -> str:
     """The event that ruled out the last of some letters, as far as that is known."""
-    found = [rulings[ambiguity.id, letter] for letter in letters if (ambiguity.id, letter) in rulings]
-    return str(max(found, key=lambda ruling: ruling.at)) if found else ""
+    found = [eliminations[ambiguity.id, letter] for letter in letters if (ambiguity.id, letter) in eliminations]
+    return str(max(found, key=lambda elimination: elimination.at)) if found else ""
 
 
 def unchecked(spec: Spec, used: Iterable[str]) -> tuple[str, ...]:

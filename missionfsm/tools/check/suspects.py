@@ -1,4 +1,4 @@
-"""What came before a violation and may be what is wrong: the event that nothing explains only shows it."""
+"""Earlier events that may be what is wrong, so that the event which nothing explains only shows it."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from missionfsm.tools.check.phrases import described, event_words, rules_in_word
 from missionfsm.tools.check.verdict import Violation
 
 MAX_SUSPECTS = 2
-"""Of how many lines it is told that everything would be explained without one of them; more of them say nothing."""
+"""How many suspects are worth telling; more of them say nothing."""
 
 MAX_DRIVES = 12
-"""How many lines of drives are looked at, the last ones."""
+"""How many of the last drives are looked at."""
 
 
 @frozen
 class Suspect:
-    """An answer, or something that was made happen, without which everything is explained.
+    """An answer or a drive without which everything is explained.
 
     Attributes:
-        says: the call and its answer, or what happened, in words.
-        code: the status name of the answer; empty for what happened.
-        rules: ids of the rules by which it was allowed, or by which it has an effect.
+        says: the call and its answer, or the drive, in words.
+        code: the status of the answer; empty for a drive.
+        rules: ids of the rules that allowed the answer, or by which the drive has an effect.
     """
 
     says: str
@@ -45,8 +45,8 @@ def suspects(
 ) -> tuple[Suspect, ...]:
     """Answers before the last event without which everything can be explained: perhaps one of those was wrong.
 
-    A violation shows where the last explanation died. Where an earlier answer was explained by an assumption that only
-    the last event refuted, that answer is the one to look at.
+    A violation shows the event that ended the last explanation. If an earlier answer was explained by an assumption
+    that only this event refuted, the earlier answer is the one to look at.
     """
     lines = history[1:]
     methods = system.codec.methods
@@ -61,7 +61,7 @@ def suspects(
 def without_effect(
     system: System, history: tuple[JSON, ...], readings: Mapping[str, str] | None = None
 ) -> tuple[Suspect, ...]:
-    """What was made happen before the last event, if everything can be explained had it not: it had no effect."""
+    """Drives before the last event without which everything can be explained: perhaps one of those had no effect."""
     drives = [at for at, line in enumerate(history[1:-1]) if "drive" in line and not _lets_time_pass(system, line)]
     return tuple(
         _of_drive(system, history, at, readings)
@@ -76,7 +76,7 @@ def _lets_time_pass(system: System, line: JSON) -> bool:
 
 
 def _explained_without(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> bool:
-    """Whether all lines but one can be explained; an answer is lost on the way."""
+    """Whether all lines but one can be explained. An answer that is left out counts as lost on the way."""
     lines = history[1:]
     lost = frozenset({lines[at]["return"]}) if "return" in lines[at] else frozenset[int]()
     judge = Judge(system, head(history[0]), readings=readings, lost=lost)
@@ -84,7 +84,7 @@ def _explained_without(system: System, history: tuple[JSON, ...], at: int, readi
 
 
 def _of_answer(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Suspect:
-    """The answer on a line, with the rules by which it was allowed."""
+    """The answer on a line, with the rules that allowed it."""
     line = history[1:][at]
     call = next(one for one in history[1:] if one.get("call") == line["return"])
     code = OK if answered_with(line) == "result" else line["error"]["status"]
@@ -99,7 +99,7 @@ def _of_answer(system: System, history: tuple[JSON, ...], at: int, readings: Map
 
 
 def _of_drive(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Suspect:
-    """What was made happen on a line, with the rules by which it has an effect."""
+    """The drive on a line, with the rules by which it has an effect."""
     judge = _led_to(system, history, at, readings)
     events = judge.transcript.read(history[1:][at])
     judge.take(events)
@@ -108,7 +108,7 @@ def _of_drive(system: System, history: tuple[JSON, ...], at: int, readings: Mapp
 
 
 def _led_to(system: System, history: tuple[JSON, ...], at: int, readings: Mapping[str, str] | None) -> Judge:
-    """A judge of the lines before one of them."""
+    """A judge that was fed all lines before one."""
     judge = Judge(system, head(history[0]), readings=readings, apart=True)
     for one in history[1:][:at]:
         judge.feed(one)
@@ -116,9 +116,9 @@ def _led_to(system: System, history: tuple[JSON, ...], at: int, readings: Mappin
 
 
 def _shows_what_happened(violation: Violation) -> bool:
-    """Whether what is wrong shows what has happened, as an answer does that is right but for what it says.
+    """Whether the last event shows an effect of what happened before, so that this may be what is wrong.
 
-    Another code is wrong by itself.
+    An answer with a code that is not allowed is wrong by itself.
     """
     last = violation.history[-1]
     if "return" not in last:
@@ -127,13 +127,16 @@ def _shows_what_happened(violation: Violation) -> bool:
 
 
 def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:
-    """The violation with a note on what came before it and may be what is wrong.
+    """The violation with a note on earlier events that may be what is wrong.
 
-    Where it is an answer that is wrong, an earlier one that was OK is no suspect: without what it made there would be
-    nothing to be wrong about. Nor is it where something is missing: without what it made nothing would be due. Where it
-    is what is shown, the rules of the only suspect, and of the only thing that may have had no effect, come second:
-    what is wrong in what came is nearer.
-    `readings` are those that the implementation has to follow.
+    An earlier OK is no suspect if the last event is an answer, or if something is missing: without what it made there
+    would be nothing to answer wrongly, or nothing due. The rules of a single suspect, and of a single drive that may
+    have had no effect, come after the first rule of the violation, which is nearer.
+
+    Args:
+        system: the system.
+        violation: the violation, with its history.
+        readings: those that the implementation has to follow.
     """
     history = violation.history
     if not history:

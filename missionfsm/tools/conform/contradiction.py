@@ -41,16 +41,16 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
     promised = spec.promised_about(ambiguity)
     for letter, answer in ambiguity.readings.items():
         judge = evidence.get(letter)
-        ruling = judge.rulings.found.get((ambiguity.id, letter)) if judge else None
+        elimination = judge.eliminations.found.get((ambiguity.id, letter)) if judge else None
         expected.append(Allowed(f"{ambiguity.id}={letter}: {answer}"))
-        if judge is None or ruling is None:
+        if judge is None or elimination is None:
             others.append(f"{letter} is ruled out: another reading had to be followed")
         else:
-            rules += ruling.rules or promised or _exercised(judge, ruling)
-            notes.append(f"{letter} is ruled out: {ruling}")
+            rules += elimination.rules or promised or _exercised(judge, elimination)
+            notes.append(f"{letter} is ruled out: {elimination}")
             last = judge
         if judge is not None:
-            ruled_out.append((judge, letter, str(ruling or "")))
+            ruled_out.append((judge, letter, str(elimination or "")))
     sides = _sides(ruled_out)
     return Violation(
         rules_in_words(spec, list(dict.fromkeys(rules))[:MAX_RULES]),
@@ -77,11 +77,11 @@ def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
     )
 
 
-def _exercised(judge: Judge, ruling: Elimination) -> tuple[str, ...]:
+def _exercised(judge: Judge, elimination: Elimination) -> tuple[str, ...]:
     """Ids of the rules that a message or a drive exercised which rules something out."""
-    event = ruling.event
+    event = elimination.event
     content = event.content if isinstance(event, Received) else event.event if isinstance(event, Driven) else None
-    for symbol, edge in ruling.before.next.items() if ruling.before and content is not None else ():
+    for symbol, edge in elimination.before.next.items() if elimination.before and content is not None else ():
         if symbol[:2] == (type(event), content):
             return judge.automaton.numbers[edge.exercises]
     return ()
@@ -165,8 +165,8 @@ def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence
     ruled_out: list[tuple[Judge, str, str]] = []
     for (name, letter), judge in evidence.items():
         if name in needed and letter not in needed[name]:
-            ruling = judge.rulings.found.get((name, letter))
-            ruled_out.append((judge, f"{name}={letter}", str(ruling or "")))
+            elimination = judge.eliminations.found.get((name, letter))
+            ruled_out.append((judge, f"{name}={letter}", str(elimination or "")))
     sides = _sides(ruled_out)
     if not sides:
         return violation

@@ -25,7 +25,7 @@ class Ledger:
         oddities: what is explained, and yet belongs to no reading: a line each.
         readings: the readings that every conversation so far can be explained by.
         ruled_out_by: ambiguity and letter to the first conversation that ruled it out.
-        rulings: ambiguity and letter to the event in that conversation.
+        eliminations: ambiguity and letter to the event in that conversation.
         contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
         aside: ambiguities of which it is known that no single reading is followed.
         departing: of each conversation whose every explanation departs from the text somewhere, what these assume.
@@ -41,7 +41,7 @@ class Ledger:
     oddities: dict[Flagged, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
     ruled_out_by: dict[tuple[str, str], Conversation] = field(factory=dict)
-    rulings: dict[tuple[str, str], Elimination] = field(factory=dict)
+    eliminations: dict[tuple[str, str], Elimination] = field(factory=dict)
     contradiction: str | None = None
     aside: set[str] = field(factory=set)
     departing: dict[frozenset[int], None] = field(factory=dict)
@@ -83,8 +83,8 @@ class Ledger:
 
     def _rule_out(self, name: str, letter: str, done: Conversation) -> None:
         self.ruled_out_by.setdefault((name, letter), done)
-        if (name, letter) in done.judge.rulings.found:
-            self.rulings.setdefault((name, letter), done.judge.rulings.found[name, letter])
+        if (name, letter) in done.judge.eliminations.found:
+            self.eliminations.setdefault((name, letter), done.judge.eliminations.found[name, letter])
 
     def set_aside(self, name: str) -> None:
         """An ambiguity is known to be answered now in one way and now in another."""

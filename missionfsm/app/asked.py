@@ -1,4 +1,4 @@
-"""How a log is to be judged: what its reader says of it, besides what its own first line says."""
+"""How a log is to be judged: what the reader asks for, besides what its first line says."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Asked:
         profile: the name of a choice of readings of the system (`System.profiles`); None for none.
         no_flagged: whether nothing may depart from the letter of the text.
         strict: whether nothing was lost, doubled or made up on the way, whatever the first line says.
-        anywhere: whether it begins while the system is in use, whatever the first line says.
-        others: whether others, whose calls are not in it, use the system as well, whatever the first line says.
-        settled_after: how many seconds (of `at`) after its cause something is late; None: never.
-        eager: whether everything that a transport does is thought of at every event, not only where it is needed.
+        anywhere: whether the log begins while the system is in use, whatever the first line says.
+        others: whether others use the system as well, whose calls are not in the log, whatever the first line says.
+        settled_after: how many seconds (of `at`) after its cause a message is late; None: never.
+        eager: whether faults of the transport are considered at every event, not only where nothing else explains it.
         only: the robots that are to be judged; all if there are none.
     """
 
@@ -44,9 +44,9 @@ class Asked:
 
 @functools.cache
 def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bool = False) -> System:
-    """The system with a name as a log of it is judged: seen through the transport, unless that is strict.
+    """The system as a log of it is judged: seen through its transport, unless that is strict.
 
-    What has no streams has none that could lose anything: Isaac's lines travel over one TCP connection.
+    A system without streams has no such transport: Isaac's lines travel over one TCP connection.
 
     Args:
         anywhere: whether the log begins while the system is in use.
@@ -62,13 +62,13 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
         message = f"{name}: {says}"
         raise UnreadableError(message)
     spec = in_the_middle(found.spec, anywhere=anywhere, others=others)
-    if spec.anywhere or spec.others:  # of what is not known, no situation can be told
+    if spec.anywhere or spec.others:  # the situations of an unknown state are unknown
         found = evolve(found, matrix=None)
     return evolve(found, spec=spec if strict or not found.codec.streams else over_transport(spec))
 
 
 def refuse_json_only(of: System, readings: Mapping[str, str]) -> None:
-    """Refuse readings that nothing over gRPC can follow. Raises ValueError; the text names them."""
+    """Raise ValueError for readings that nothing over gRPC can follow; its text names them."""
     bits = constrain(of.spec.ambiguities, readings)
     left = {one: one.possible(bits) for one in of.spec.ambiguities}
     only = [f"{one.id}={','.join(letters)}" for one, letters in left.items() if one.json_only.issuperset(letters)]

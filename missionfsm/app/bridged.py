@@ -1,4 +1,4 @@
-"""Real sockets on the command line of `conform`: which bridge is meant, and what is tried over it."""
+"""The bridges of `conform` to real sockets: which one the options mean, and what is tried over it."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ if TYPE_CHECKING:
     from missionfsm.tools.check.verdict import Verdict
 
 CONVERSATIONS = 5
-"""How many are had in real time where nothing else is asked for."""
+"""How many conversations are had in real time by default."""
 
 
 @frozen
 class Sockets:
-    """What was said on the command line.
+    """The options about sockets.
 
     Attributes:
-        tcp: where a mission server listens; `missions` the file that it was given.
-        listen: the port that a robot connects to.
+        tcp: the address of the mission server that is judged.
+        listen: the port that the robot connects to that is judged.
+        missions: the mission file that the server was given.
+        tolerance: by how many seconds times may be off.
     """
 
     tcp: str | None
@@ -38,7 +40,14 @@ class Sockets:
 
 @frozen
 class Bridged:
-    """A system as it is tried over a bridge, the bridge, how many conversations are had, and what is said of it."""
+    """How a system is tried over a bridge.
+
+    Attributes:
+        system: the system, as it is tried in real time.
+        subject: the bridge.
+        conversations: how many conversations are had.
+        note: what the verdict says of it.
+    """
 
     system: System
     subject: RobotBridge | ServerBridge
@@ -55,7 +64,7 @@ class Bridged:
 def bridged(
     system: System, sockets: Sockets, command: list[str] | None, conversations: int | None, timeout: float
 ) -> Bridged:
-    """The bridge that is meant.
+    """The bridge that the options mean.
 
     Raises:
         ValueError: the options do not go together, or a file cannot be used.

@@ -1,4 +1,4 @@
-"""Several conversations in one file: each is explained or not, and then all of them by one choice of readings."""
+"""Several conversations in one file: each has to be explained, and all of them by one choice of readings."""
 
 from __future__ import annotations
 
@@ -22,16 +22,13 @@ Judgement = tuple[System, str | None, Judge, Verdict]
 
 
 class Conversations:
-    """Judges one conversation after the other as their lines come: a first line begins another.
+    """Judges one conversation after the other as their lines come: a first line begins the next one.
 
-    Of the first one, which may last for days, not all lines are kept: where others follow, it is judged with them only
-    if it was short.
+    The first conversation may last for days, so not all of its lines are kept. If others follow, it is judged together
+    with them only if it was short.
 
     Args:
         readings: the readings to assume.
-
-    Attributes:
-        read: how many lines were taken into account.
     """
 
     def __init__(self, readings: Mapping[str, str]) -> None:
@@ -45,7 +42,7 @@ class Conversations:
         return self._before + (self._judges[-1][1].read if self._judges else 0)
 
     def feed(self, line: JSON) -> bool:
-        """Take a line into account; False once the verdict cannot get better. Raises UnreadableError."""
+        """Take a line into account. False once the verdict is known. Raises UnreadableError."""
         if not isinstance(line, dict) or "missionfsm" not in line:
             return self._judges[-1][1].feed(line)
         first = head(line)
@@ -68,7 +65,7 @@ class Conversations:
 
     @property
     def violation(self) -> Violation | None:
-        """What is wrong with the conversation that came last."""
+        """What is wrong with the last conversation."""
         return self._judges[-1][1].violation
 
     def verdict(self) -> Verdict:
@@ -88,7 +85,7 @@ def joined(judgements: Iterable[Judgement]) -> list[tuple[str | None, Verdict]]:
 
 
 def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
-    """One verdict on several conversations: the first that is bad, or what they come to together."""
+    """One verdict on several conversations: that on the first one with a violation, or on all of them together."""
     verdicts = [verdict for _, _, verdict in found]
     bad = next((one for one in verdicts if one.outcome is Outcome.VIOLATES), None)
     if bad is not None:
@@ -105,7 +102,7 @@ def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
 
 
 def _added_up(verdicts: Sequence[Verdict], undecided: Verdict | None) -> Verdict:
-    """What conversations come to of which none is bad; where one is undecided, no more than that."""
+    """The sum of verdicts without violations; if one is undecided, so is the sum."""
     exercised: Counter[str] = Counter()
     for one in verdicts:
         exercised.update(one.exercised)
@@ -132,7 +129,7 @@ def _added_up(verdicts: Sequence[Verdict], undecided: Verdict | None) -> Verdict
 
 
 def _readings_of_all(verdicts: Sequence[Verdict]) -> dict[str, tuple[str, ...]]:
-    """Of each ambiguity that mattered the readings that every conversation follows in which it did."""
+    """For each ambiguity that mattered somewhere, the readings that all conversations follow in which it did."""
     readings: dict[str, tuple[str, ...]] = {}
     for one in verdicts:
         for name, letters in one.readings.items():
@@ -141,7 +138,7 @@ def _readings_of_all(verdicts: Sequence[Verdict]) -> dict[str, tuple[str, ...]]:
 
 
 def _in_all(found: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """What every conversation leaves out, with the reason that says most: that something was not tried says least."""
+    """What every conversation leaves out, with the reason that says most; that it was not tried says least."""
     common = [name for name in found[0] if all(name in one for one in found)]
     reasons = {name: [one[name] for one in found] for name in common}
     return {name: next((why for why in some if NOT_TRIED not in why), some[0]) for name, some in reasons.items()}

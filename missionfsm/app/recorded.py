@@ -167,7 +167,7 @@ def _is_bare_message(line: JSON) -> bool:
     """Whether a line is a message of a subscription, or the body of a webhook."""
     if isinstance(line, dict) and "missionfsm" in line:
         return False
-    from missionfsm.app.watched import subscription  # noqa: PLC0415 - it loads all that has subscriptions
+    from missionfsm.app.webhooks import subscription  # noqa: PLC0415 - it loads all that has subscriptions
 
     return subscription(line) is not None
 

@@ -1,10 +1,12 @@
-"""What a later status message tells of a robot before it: where a search through a recording need not look.
+"""Which robots a later status message excludes, so that a search through a recording need not consider them.
 
-Whatever happens to a robot, the missions that it lists keep their order. Those that have ended are forgotten together,
-before those that wait, and only by a call that clears the list or makes missions; those that wait vanish together,
-after all others, and only where a mission has failed or was cancelled, or a workflow takes their place. What is new is
-made by a call and comes last; only a charge may come before missions that wait, and nothing before one that has
-started. No call makes a mission that is there already or moves one that has ended.
+Whatever happens to a robot:
+
+- Missions keep their order in the list.
+- Ended missions are forgotten together, by a call that clears the list or makes missions.
+- Waiting missions vanish together, where a mission has failed or was cancelled, or where a workflow takes their place.
+- A new mission is made by a call and comes last; a charge may come before waiting missions, never before a started one.
+- No call makes a mission that is there already, or moves one that has ended.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from attrs import frozen
 from missionfsm.bear.mission.inputs import Request
 from missionfsm.bear.mission.matching import has_goals
 from missionfsm.bear.mission.readings.queue import AM_13
+from missionfsm.bear.mission.readings.scope import ADDING
 from missionfsm.bear.mission.state import Kind, Mission, Robot
 from missionfsm.bear.mission.views import Seen
 from missionfsm.bear.wire.messages import MissionState, State
@@ -29,7 +32,7 @@ _CHARGE = Mission(Kind.CHARGE)
 def foresees(
     robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: frozenset[str]
 ) -> bool:
-    """Whether the robot may come to be shown so, by calls of some operations and else whatever; see `Spec.foresees`."""
+    """Whether the robot may come to be shown as the content, by calls of some operations; see `Spec.foresees`."""
     if isinstance(content, Malformed) or not all(content.named):
         return True
     later = _Later(robot, names, content.states.missions, shown, calls)
@@ -42,7 +45,7 @@ def foresees(
 def succeeds(
     robot: Robot, names: tuple[int, ...], request: Request, args: tuple[int, ...], answered: tuple[int, ...]
 ) -> bool:
-    """Whether the robot may come to answer a request with success and these names; see `Spec.succeeds`."""
+    """Whether the robot may come to answer a request OK with these names; see `Spec.succeeds`."""
     operation = request.operation
     if operation in _MAKES:
         return all(name not in names for name in answered)
@@ -53,10 +56,10 @@ def succeeds(
 
 
 def _may_clear(robot: Robot, names: tuple[int, ...], cleared: tuple[int, ...]) -> bool:
-    """Whether the robot may come to clear missions with these names: all that have ended by then, or all.
+    """Whether the robot may come to clear the missions with these names: all of them, or those that have ended by then.
 
-    Where one of them has ended already, nothing is forgotten before. What is active has to end then, and whatever had
-    its turn before one of them has ended as well: those that wait vanish together.
+    If one of them has ended already, nothing was forgotten before. Then the active mission has to end, and so has every
+    mission that has its turn before one of them, since waiting missions vanish together.
     """
     ended = len(robot.done)
     if not any(name in cleared for name in names[:ended]):
@@ -68,16 +71,7 @@ def _may_clear(robot: Robot, names: tuple[int, ...], cleared: tuple[int, ...]) -
     return unseen <= new and all(name < 0 or name in cleared for name in gone)
 
 
-_MAKES = frozenset(
-    {
-        "CreateMission",
-        "CreateMissionBatch",
-        "CreateMissionWorkflow",
-        "AppendMission",
-        "AppendMissionBatch",
-        "ChargeRobot",
-    }
-)
+_MAKES = frozenset(ADDING)
 """Operations that are answered with the names of new missions."""
 
 _FORGETS = frozenset({"ClearMissionStatus", *AM_13})
@@ -86,7 +80,15 @@ _FORGETS = frozenset({"ClearMissionStatus", *AM_13})
 
 @frozen
 class _Later:
-    """A robot with the names of its missions, and the missions with theirs that a message lists later."""
+    """A robot, and a message that may come later.
+
+    Attributes:
+        robot: the robot.
+        names: the names of its missions, in the order of their turns.
+        missions: the missions that the message lists.
+        shown: their names.
+        calls: the operations that may have been called in between.
+    """
 
     robot: Robot
     names: tuple[int, ...]
@@ -95,7 +97,7 @@ class _Later:
     calls: frozenset[str]
 
     def all_kept(self) -> bool:
-        """Whether the message may list everything that has started, before all else."""
+        """Whether the message may list every mission that has started, and those first."""
         robot = self.robot
         ended, started = len(robot.done), len(robot.done) + (robot.active is not None)
         return (
@@ -107,7 +109,7 @@ class _Later:
         )
 
     def started_are_kept(self) -> bool:
-        """Whether the message may list everything that has started, whatever the turns of the missions are."""
+        """Whether the message may list every mission that has started, whatever the order of the turns is."""
         robot, names, shown = self.robot, self.names, self.shown
         ended = len(robot.done)
         started = ended + (robot.active is not None)
@@ -124,7 +126,7 @@ class _Later:
         return kept == sorted(kept)
 
     def some_forgotten(self) -> bool:
-        """Whether the message may list what is left once those that have ended by then were forgotten."""
+        """Whether the message may list what is left once all missions that have ended by then were forgotten."""
         robot, listed = self.robot, frozenset(self.shown)
         ended = len(robot.done)
         if not listed.isdisjoint(self.names[:ended]):
@@ -154,20 +156,22 @@ class _Later:
         return self.shown[place] not in self.names
 
     def _is_charge(self, place: int) -> bool:
-        """Whether a new mission in that place of the message may be a charge that goes before those that wait."""
+        """Whether a new mission in that place of the message may be a charge that goes before waiting missions."""
         new = "ChargeRobot" in self.calls and self._is_new(place)
         return new and has_goals(_CHARGE, self.missions[place])
 
     def _waiting(self, first: int, place: int, *, survived: bool) -> bool:
-        """Whether those that wait, from the first one that is left, may be what the message lists from a place on.
+        """Whether the waiting missions may be what the message lists from a place on.
 
         Args:
-            survived: whether something before them is listed.
+            first: the first of them that is left.
+            place: the place in the message.
+            survived: whether a mission before them is listed.
         """
         pending, shown = self.robot.pending, self.shown
         behind = len(self.names) - len(pending)
         goes_on = survived and self.robot.active is not None and self.missions[place - 1].state in _ACTIVE
-        # Where the first so many of those that wait can be followed by what is listed from that place on.
+        # The places from which the message may go on, once the first so many of the waiting missions are accounted for.
         places = {place: survived}
         for at in range(first, len(pending) + 1):
             name = behind + at
@@ -188,14 +192,14 @@ class _Later:
         return False
 
     def _end_here(self, name: int, place: int, *, survived: bool) -> bool:
-        """Whether those from a name on may have vanished, and what is listed from a place on be new."""
+        """Whether the missions from a name on may have vanished, and those from a place on may be new."""
         new = range(place, len(self.shown))
         if new and (self.calls.isdisjoint(_MAKES) or not all(map(self._is_new, new))):
             return False
         if name == len(self.names) or not survived:
             return True
         replaced = "CreateMissionWorkflow" in self.calls and (self.robot.halted or place < len(self.shown))
-        # The queue vanishes with the mission that has run last before it: the last one listed, or a charge behind it.
+        # The queue vanishes with the mission that ran last before it: the last one listed, or a charge behind that.
         last = slice(place - 1, len(self.shown) if "ChargeRobot" in self.calls else place)
         return replaced or any(one.state in _BROKEN_OFF for one in self.missions[last])
 

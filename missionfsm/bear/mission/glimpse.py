@@ -1,7 +1,7 @@
-"""What one status message tells of a robot of which nothing else is known: where a log begins while it is in use.
+"""Which robots a status message may show if nothing else is known of them: a log begins while the robot is in use.
 
-What a message does not show is left open as far as that makes few robots: of which kind the active mission is, whether
-it was told to finish. What is left out here is found out to be so later, and flagged (`missionfsm.kernel.middle`).
+What a message does not show is left open as long as that makes few robots: the kind of the active mission, whether it
+was told to finish. Possibilities that are left out here are found later, and flagged (`missionfsm.kernel.middle`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from missionfsm.kernel.rules import DEADLINE_EXCEEDED, INTERNAL
 from missionfsm.kernel.spec import Glimpses, Middle, Things
 
 MAX_STATES = 32
-"""How many robots are imagined behind one message at most."""
+"""How many robots one message stands for at most."""
 
 
 @functools.lru_cache(maxsize=1_000)
@@ -53,7 +53,7 @@ def _robots(world: World, content: Seen) -> Iterator[Robot]:
         yield Robot(world)
         return
     ended = next((place for place, one in enumerate(missions) if one.state not in ENDED), len(missions))
-    # What has ended does nothing any more, so that it may have been of the kind of which least is known.
+    # An ended mission does nothing any more, so it is taken for one of the kind of which least is known.
     done = tuple(Mission(Kind.RETURN, (), _state(one)) for one in missions[:ended])
     rest = missions[ended:]
     for active in (True, False) if rest and rest[0].state is State.STATE_PAUSED else (_runs(rest),):
@@ -85,7 +85,7 @@ def _active(world: World, message: MissionState) -> Iterator[Mission]:
 
 
 def _queues(world: World, waiting: Sequence[MissionState]) -> Iterable[tuple[Mission, ...]]:
-    """What waits: all of the likeliest kinds, or else all of the least likely."""
+    """The waiting missions: all of their likeliest kinds, or all of their least likely ones."""
     return dict.fromkeys(tuple(_waiting(world, one, which) for one in waiting) for which in (0, -1))
 
 
@@ -96,12 +96,12 @@ def _waiting(world: World, message: MissionState, which: int) -> Mission:
 
 
 def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
-    """The kinds that a mission of this type may have, the likeliest first, of those that are shown alike only one."""
+    """The kinds that a mission of this type may have, the likeliest first; of kinds that look and act alike, one."""
     stated = message.mission_type or MissionType()
     known = [
         kind for kind, types in TYPES.items() if stated in types or stated == FAMILY_TYPES.get((kind, world.family))
     ]
-    known.sort(key=lambda kind: stated not in TYPES[kind])  # what is told by its own type assumes nothing
+    known.sort(key=lambda kind: stated not in TYPES[kind])  # a kind that reports its own type assumes nothing
     if not known or stated == MissionType():
         known += [kind for kind in AM_26 if FAMILY[kind] in (None, world.family)]
     kinds = known if message.goals else []
@@ -116,7 +116,7 @@ def _kinds(world: World, message: MissionState) -> tuple[Kind, ...]:
 
 @functools.lru_cache(maxsize=100)
 def samples(world: World) -> tuple[Robot, ...]:
-    """Robots that stand for all there are as far as answers differ."""
+    """Robots that stand for all others: in any state, a request is answered as by one of them."""
     goals = tuple(Goal(destination_id=name) for name in world.destinations[:2]) or (Goal(destination_id="-"),)
     active = tuple(_under_way(world, goals))
     waits = Mission(Kind.BASE_NAVIGATE, goals[:1])
@@ -150,7 +150,7 @@ def _under_way(world: World, goals: tuple[Goal, ...]) -> Iterator[Mission]:
 
 
 def things(robot: Robot, names: tuple[int, ...]) -> Things:
-    """The missions in the order in which they are listed: of which kind they are, and their goals."""
+    """The kind and the goals of each mission, in the order of the list."""
     return tuple(zip(robot.listed(names), robot.listed(tuple(map(_lasting, robot.turns))), strict=True))
 
 
@@ -160,14 +160,14 @@ def _lasting(mission: Mission) -> Mission:
 
 
 def shown(view: Listing, names: tuple[int, ...]) -> Things:
-    """The missions that were listed, each in the state in which it was."""
+    """The missions that a message listed, each in the state that it had."""
     return tuple(zip(names, view.missions, strict=True))
 
 
 def follows(
     world: World, before: Things, content: Seen | Malformed, names: tuple[int, ...]
 ) -> tuple[Assumption, ...] | None:
-    """What is assumed where missions have become those of a message by whatever calls; None where they cannot have.
+    """What is assumed if calls have made of some missions those of a message; None if no calls can have.
 
     Missions keep their order, their goals and their type; one that has ended stays as it ended, and one that has begun
     never waits again.
@@ -189,7 +189,7 @@ def follows(
 
 @functools.lru_cache(maxsize=10_000)
 def _goes_on(family: Family, before: Mission, message: MissionState) -> tuple[Assumption, ...] | None:
-    """What is assumed where a mission is listed so later; None where it cannot be."""
+    """What is assumed if a mission is listed like this later; None if it cannot be."""
     if before.state in ENDED and message.state is not before.state:
         return None
     if before.state in _BEGUN and message.state in (State.STATE_DEFAULT, State.STATE_UNKNOWN):

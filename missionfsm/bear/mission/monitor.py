@@ -1,8 +1,8 @@
-"""A monitor that stands alone: the messages of one live mission subscription in, what is wrong with each of them out.
+"""A monitor that takes the messages of one live mission subscription and says what is wrong with each of them.
 
-Nothing is known of the robot but what the messages say, nor of what anybody asked it: a message is held to what it
-shows by itself, and to those before it. Rules and lifecycle are those of the specification. What only a call could
-tell, no bare message breaks; and as messages may be lost between two, only what no sequence of steps can do is wrong.
+It knows nothing of the robot but its messages, and nothing of the calls. A message is compared with the rules of the
+specification and with the messages before it. As messages may be lost in between, only what no sequence of steps can
+bring about is wrong.
 """
 
 from __future__ import annotations
@@ -44,7 +44,6 @@ _AUTOMATIC = (
 )
 """The types of missions that select their goal themselves, some time after they have started."""
 
-
 _BY_THEMSELVES = (
     *_AUTOMATIC,
     MissionType(base_type=BaseType.BASE_TYPE_NAVIGATE),
@@ -62,7 +61,7 @@ _ONCE_ROUND = (
 
 
 def _reached() -> dict[State, frozenset[State]]:
-    """For each state of a mission those in which it may be seen next, whatever was not seen in between."""
+    """For each state of a mission, the states in which it may be seen later, whatever was not seen in between."""
     found: dict[State, frozenset[State]] = {}
     for state in LIFECYCLE.states:
         reached, todo = {state}, [state]
@@ -84,13 +83,13 @@ class MissionMonitor:
     """Judges the messages of one robot's stream as they come.
 
     Args:
-        robot: the robot that they are about, where that is known.
-        strict: whether a message that comes twice is wrong, though it was only delivered twice.
+        robot: the robot that they are about, if that is known.
+        strict: whether a message is wrong that was delivered twice.
 
     Attributes:
         messages: how many messages came.
         repeats: how many of them list the same missions in the same way as the one before.
-        redelivered: how many were the one before, number, timestamp and all.
+        redelivered: how many of them equal the one before, with its number and timestamp.
     """
 
     def __init__(self, robot: str = "", *, strict: bool = False) -> None:
@@ -131,7 +130,7 @@ class MissionMonitor:
         return tuple(problems)
 
     def _shown(self, seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
-        """What is wrong with a list of missions by itself, and after those before it."""
+        """What is wrong with a list of missions by itself, and after the list before it."""
         missions = dict(zip(names, seen.states.missions, strict=False))
         self.repeats += missions == self._missions and self.messages > 1
         yield from _listed(seen, names, self._begun)
@@ -140,9 +139,9 @@ class MissionMonitor:
             yield from self._put_in_front(missions)
 
     def _have_begun(self, seen: Seen, names: tuple[object, ...]) -> frozenset[object]:
-        """The missions that have had their turn and have not ended, as far as messages have shown it.
+        """The missions that messages have shown to have begun, and not to have ended.
 
-        AM-08: one that waits may be shown as paused, unless the index points at it.
+        AM-08: a waiting mission may be shown as paused, unless the index points at it.
         """
         index = seen.states.current_mission_index
         return frozenset(
@@ -153,9 +152,9 @@ class MissionMonitor:
         )
 
     def _put_in_front(self, missions: dict[object, MissionState]) -> Iterator[Found]:
-        """New missions that are listed before one that was there.
+        """New missions that are listed before an old one, although they may not be.
 
-        Only a charge or a workflow's may be (AM-07, AM-37), and only before one that waited.
+        A charge or a mission of a workflow may be listed before one that waited (AM-07, AM-37).
         """
         old = [name for name in missions if name in self._missions]
         listed = list(missions)
@@ -194,7 +193,7 @@ class MissionMonitor:
         self._number = number
 
     def _goes_on(self, missions: dict[object, MissionState]) -> Iterator[Found]:
-        """What cannot have become of the missions that were listed before."""
+        """Changes of the missions that were listed before which cannot have come about."""
         both = [name for name in missions if name in self._missions]
         if both != [name for name in self._missions if name in missions]:
             yield ALL_LISTED, "the missions have changed places"
@@ -212,7 +211,7 @@ class MissionMonitor:
 
 
 def _stage(mission: MissionState) -> State:
-    """The state of the lifecycle that a message shows; AM-08: one that waits may be shown as unknown."""
+    """The state of the lifecycle that a message shows. AM-08: a waiting mission may be shown as unknown."""
     state = mission.state
     return State(state) if isinstance(state, State) and state not in _WAITING else State.STATE_DEFAULT
 
@@ -222,7 +221,7 @@ def _name(state: int) -> str:
 
 
 def _listed(seen: Seen, names: tuple[object, ...], begun: frozenset[object]) -> Iterator[Found]:
-    """What is wrong with a list of missions by itself, where some are known to have begun."""
+    """What is wrong with a list of missions by itself, given those that are known to have begun."""
     missions = seen.states.missions
     placeholder = len(missions) == 1 and not seen.named[0] and _stage(missions[0]) is State.STATE_DEFAULT
     if not placeholder:  # AM-35, AM-36: one without an id stands for an empty list
@@ -238,10 +237,10 @@ def _listed(seen: Seen, names: tuple[object, ...], begun: frozenset[object]) -> 
 
 
 def _ordered(seen: Seen, begun: set[int]) -> Iterator[Found]:
-    """Whether the ended come first, then a running one, then the others, and whether the index says which is active.
+    """What is wrong with the order (ended missions, then a running one, then the others) and with the current index.
 
-    One that is shown as paused is the active one, or (AM-08) one that waits. A charge or the missions of a workflow may
-    have had their turns before others that were assigned earlier (AM-07, AM-37).
+    A mission that is shown as paused is the active one or waits (AM-08). A charge or the missions of a workflow may
+    have had their turns before missions that were assigned earlier (AM-07, AM-37).
     """
     missions, index = seen.states.missions, seen.states.current_mission_index
     stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
@@ -257,7 +256,7 @@ def _ordered(seen: Seen, begun: set[int]) -> Iterator[Found]:
 
 
 def _active_places(missions: tuple[MissionState, ...], stages: list[int]) -> set[int]:
-    """Where the active mission may be in a list with these stages; -1 where none need be active."""
+    """The places that the active mission may have in a list with these stages; -1 if none need be active."""
     if not missions:
         return {-1}
     if 1 in stages:
@@ -268,7 +267,7 @@ def _active_places(missions: tuple[MissionState, ...], stages: list[int]) -> set
 
 
 def _may_overtake(mission: MissionState) -> bool:
-    """Whether a mission may be a charge or one of a workflow, and have had its turn."""
+    """Whether a mission may be a charge or one of a workflow that has had its turn."""
     return mission.state not in _WAITING and mission.mission_type not in _BY_THEMSELVES
 
 

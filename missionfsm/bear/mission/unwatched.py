@@ -1,8 +1,8 @@
-"""What other robots hold or claim where nobody says so: a robot among others need not have it in its log.
+"""Goals that other robots take or leave while the log of a robot says nothing of it.
 
 In a world that is `unwatched`, a NavigateAuto mission may find any of its goals free, or none, whenever it looks. What
-the world that is known does not give assumes `LOG_03` read as b. Which goals are taken is not remembered, since it may
-be otherwise a moment later, so that worlds do not multiply.
+contradicts the known world assumes `LOG_03` read as b. Which goals are taken is not remembered: a moment later it may
+be different, and worlds would multiply.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ UNWATCHED = Unwatched(LOG_03, lambda world: evolve(world, unwatched=True))
 
 @functools.lru_cache(maxsize=10_000)
 def worlds(world: World, goals: tuple[Goal, ...]) -> tuple[tuple[World, Assumed], ...]:
-    """The world as it is known, and as others may have left it by now: one of the goals is free, or none is."""
+    """The known world, and the worlds that others may have made of it: one of the goals is free, or none is."""
     return tuple(_worlds(world, goals))
 
 

@@ -286,9 +286,6 @@ def message_of(shown: Seen, metadata: JSON) -> JSON:
     return {MAPS[endpoint]: {shown.robot: entry}}
 
 
-# Worlds and drives: written by testers and authors of logs, so what is wrong is refused.
-
-
 CODEC = Codec(
     methods=tuple(OPERATIONS),
     streams=STREAMS,

@@ -148,7 +148,8 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
         TypeError: the command is one text, and no list.
     """
     from missionfsm.adapters.stdio import Child  # noqa: PLC0415 - each function loads what it needs
-    from missionfsm.tools.conform import conform as tester  # noqa: PLC0415
+    from missionfsm.tools.conform.conform import conform as have_conversations  # noqa: PLC0415
+    from missionfsm.tools.conform.plan import STEPS, Plan  # noqa: PLC0415
     from missionfsm.tools.reference.subject import ReferenceSubject  # noqa: PLC0415
 
     judged = _system(system)
@@ -173,10 +174,10 @@ def conform(  # noqa: PLR0913 - every one but the first has a default
     else:
         subject = implementation
     try:
-        return tester.conform(
+        return have_conversations(
             judged,
             subject,
-            plan=tester.Plan.of(examples, tester.STEPS if steps is None else steps),
+            plan=Plan.of(examples, STEPS if steps is None else steps),
             seed=seed,
             readings=readings,
             no_flagged=no_flagged,

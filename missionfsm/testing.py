@@ -82,7 +82,7 @@ class Suite:
         """What a search comes to, or what is wrong with the adapter."""
         from missionfsm.kernel.subject import SubjectError  # noqa: PLC0415
         from missionfsm.systems import system  # noqa: PLC0415
-        from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415
+        from missionfsm.tools.conform.plan import Plan  # noqa: PLC0415
         from missionfsm.tools.conform.survey import survey  # noqa: PLC0415
 
         try:

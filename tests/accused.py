@@ -21,7 +21,7 @@ from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.tour import tour
-from missionfsm.tools.mutate.teeth import Mutant, mutants
+from missionfsm.tools.mutate.mutants import Mutant, mutants
 from missionfsm.tools.reference.model import unchanged_step
 
 EXCUSED = {

@@ -17,7 +17,8 @@ from missionfsm.adapters.stdio import Child, _respond
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, SubjectError
 from missionfsm.systems import system
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 TRIES = 5 + MANY // 100

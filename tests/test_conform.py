@@ -10,7 +10,8 @@ import pytest
 from missionfsm.adapters.stdio import Child
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 
 NODE = shutil.which("node")
 SUBJECT = Path(__file__).parent / "subjects" / "bear_mission.mjs"

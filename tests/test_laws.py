@@ -34,9 +34,10 @@ from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.verdict import CitedRule, Verdict
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.explore.explore import Actions, bindings, reachable, steps
-from missionfsm.tools.mutate.teeth import Mutant, mutants
+from missionfsm.tools.mutate.mutants import Mutant, mutants
 
 BOUNDS = Bounds(2, goals=2, batch=2)
 LARGE = ("bear.status", "isaac.server")

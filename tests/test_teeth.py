@@ -14,7 +14,8 @@ import pytest
 
 from missionfsm.app.parallel import teeth_on
 from missionfsm.systems import names, system
-from missionfsm.tools.mutate.teeth import mutants, teeth
+from missionfsm.tools.mutate.mutants import mutants
+from missionfsm.tools.mutate.teeth import teeth
 
 
 def test_every_rule_has_a_mutant() -> None:

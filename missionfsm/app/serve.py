@@ -248,7 +248,7 @@ def serve(  # noqa: PLR0913 - each with a default
 
 def _mutant(system: System, name: str, readings: Mapping[str, str] | None) -> ReferenceSubject:
     """The reference with a rule broken, by the rule's id or the name that teeth gives the mutant."""
-    from missionfsm.tools.mutate.teeth import mutants  # noqa: PLC0415 - few need it
+    from missionfsm.tools.mutate.mutants import mutants  # noqa: PLC0415 - few need it
 
     if readings:
         raise ValueError("what is broken has the readings under which its rule is in force, and no others")

@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from missionfsm.app.bridged import Bridged, Sockets
     from missionfsm.kernel.subject import Subject
     from missionfsm.tools.check.verdict import Verdict
-    from missionfsm.tools.conform.conform import Plan
+    from missionfsm.tools.conform.plan import Plan
 
 
 GRPC_EXAMPLES = 20
@@ -269,7 +269,7 @@ class _Reached:
 
     def plan(self, steps: int) -> Plan:
         """How many conversations of which kind are had."""
-        from missionfsm.tools.conform.conform import Plan  # noqa: PLC0415 - commands load what they need
+        from missionfsm.tools.conform.plan import Plan  # noqa: PLC0415 - commands load what they need
 
         return Plan.of(self.examples, steps)
 

@@ -1,6 +1,6 @@
 """How an implementation may break its promises: one wrong thing at a time, to test the oracle.
 
-A system says what only it can get wrong; what breaks rules of any system is in ``tools/mutate/teeth.py``.
+A system says what only it can get wrong; what breaks rules of any system is in ``tools/mutate/mutants.py``.
 """
 
 from __future__ import annotations

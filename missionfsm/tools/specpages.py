@@ -40,7 +40,7 @@ from missionfsm.tools.draw.diagram import state_name
 from missionfsm.tools.draw.gallery import SVG, drawn
 from missionfsm.tools.draw.index import path
 from missionfsm.tools.draw.tables import markdown
-from missionfsm.tools.mutate.teeth import mutants
+from missionfsm.tools.mutate.mutants import mutants
 
 _PART = re.compile(
     r"(<!-- generated: (?P<kind>\w+)(?: (?P<what>[^\n]*?))? -->\n)(?P<body>.*?)(<!-- end -->)", re.DOTALL

@@ -15,7 +15,8 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Outcome, Verdict
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import play
 from missionfsm.tools.reference.subject import ReferenceSubject

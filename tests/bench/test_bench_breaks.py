@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from missionfsm.systems import system
-from missionfsm.tools.mutate.teeth import mutants
+from missionfsm.tools.mutate.mutants import mutants
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "grpc"))
 from onwire import Searcher, asked, breaks_carried, readings_accepted, unsaid

@@ -25,7 +25,8 @@ from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.systems import names, system
 from missionfsm.tools.conform.actions import length
-from missionfsm.tools.conform.conform import Plan, conform, search
+from missionfsm.tools.conform.conform import conform, search
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.shortest import everything

@@ -35,7 +35,7 @@ from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.tour import play, tour
 from missionfsm.tools.conform.trials import Lab
-from missionfsm.tools.mutate.teeth import Mutant
+from missionfsm.tools.mutate.mutants import Mutant
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 EFFORT = 2_000

@@ -11,7 +11,7 @@ from onwire import Searcher, breaks_carried, connected, readings_accepted
 from missionfsm.app.serve import serve
 from missionfsm.systems import system
 from missionfsm.tools.check.verdict import Violation
-from missionfsm.tools.mutate.teeth import Mutant, mutants
+from missionfsm.tools.mutate.mutants import Mutant, mutants
 
 BREAKS = (
     "bear.mission/CreateMission/INVALID_ARGUMENT/a-goal-occurs-twice-in-the-list holds always",

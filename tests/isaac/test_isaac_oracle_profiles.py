@@ -18,7 +18,8 @@ from missionfsm.kernel.subject import Exchange, Subject
 from missionfsm.systems import names, system
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.verdict import Outcome
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 

@@ -17,7 +17,8 @@ from missionfsm.kernel.alphabet import Bounds
 from missionfsm.kernel.readings import choose
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.conform.conform import Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.explore.explore import explore
 from missionfsm.tools.mutate.teeth import teeth
 from missionfsm.tools.reference.subject import ReferenceSubject

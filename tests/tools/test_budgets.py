@@ -14,10 +14,11 @@ from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject
 from missionfsm.systems import names, system
 from missionfsm.tools.check.verdict import Outcome, Verdict
-from missionfsm.tools.conform.conform import ADVICE, EXPERIMENTS, MISSED, Plan, conform
+from missionfsm.tools.conform.conform import ADVICE, EXPERIMENTS, MISSED, conform
 from missionfsm.tools.conform.drawn import draw
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.mutate.teeth import mutants
+from missionfsm.tools.mutate.mutants import mutants
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 TIME, CALL = 10.0, 0.2

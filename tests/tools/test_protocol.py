@@ -12,7 +12,8 @@ from broken import BUSY, MISSION, answering
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange, Notification, Subject, SubjectError
 from missionfsm.tools.check.verdict import Outcome
-from missionfsm.tools.conform.conform import NOT_CARRIED, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.finding import NOT_CARRIED
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 DRIVES = ("goalReached", "missionSucceeded", "missionFailed", "world", "fault")

@@ -15,7 +15,8 @@ from missionfsm.isaac.robot.scripts import script
 from missionfsm.isaac.server.scripts import A, B, Script
 from missionfsm.systems import system
 from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
-from missionfsm.tools.conform.conform import FILLS, Plan, conform
+from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.plan import FILLS, Plan
 from missionfsm.tools.conform.reach import Candidate
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import fill, follow, play

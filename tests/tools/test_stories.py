@@ -21,12 +21,13 @@ from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
 from missionfsm.tools.check.suspects import suspects, without_effect
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.actions import length
-from missionfsm.tools.conform.conform import Plan, conform, search
+from missionfsm.tools.conform.conform import conform, search
 from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shorten
 from missionfsm.tools.conform.shortest import everything
-from missionfsm.tools.mutate.teeth import mutants
+from missionfsm.tools.mutate.mutants import mutants
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}

@@ -13,7 +13,7 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.check.baseline import Baseline
 from missionfsm.tools.check.scope import held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
-from missionfsm.tools.conform.conform import verdict_of
+from missionfsm.tools.conform.finding import verdict_of
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.tour import play, tour
 

@@ -12,7 +12,9 @@ from missionfsm.kernel.system import System
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Verdict, Violation
-from missionfsm.tools.conform.conform import Plan, search, verdict_of
+from missionfsm.tools.conform.conform import search
+from missionfsm.tools.conform.finding import verdict_of
+from missionfsm.tools.conform.plan import Plan
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.conform.shortening import shortened
 

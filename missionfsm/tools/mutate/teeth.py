@@ -1,9 +1,7 @@
-"""Does the oracle notice? For every rule an implementation that breaks just that rule, judged as any other would be.
+"""Does the oracle notice? Every mutant is judged as any other implementation would be.
 
-The implementations are the reference with one thing changed: a condition dropped or always true, a code swapped, an
-effect left out, a message missing, a value in a message altered. One that is judged right is a *survivor*: either what
-it does is allowed by the documents under some reading (every conversation within bounds can be explained, which is
-shown by exploring it together with the oracle), or the oracle lacks a tooth.
+A mutant that is judged right *survives*. Either the documents allow what it does under some reading: every conversation
+within bounds can be explained, which is shown by exploring it together with the oracle. Or the oracle lacks a tooth.
 """
 
 from __future__ import annotations
@@ -11,73 +9,33 @@ from __future__ import annotations
 import functools
 import math
 import random
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable
 
-from attrs import evolve, frozen
+from attrs import frozen
 
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.history import Answer
-from missionfsm.kernel.mutations import unshown, without_effect
-from missionfsm.kernel.rules import (
-    FAILED_PRECONDITION,
-    INVALID_ARGUMENT,
-    NOT_FOUND,
-    OK,
-    PERMISSION_DENIED,
-    Operation,
-    Rule,
-)
-from missionfsm.kernel.spec import Spec
-from missionfsm.kernel.step import Step
-from missionfsm.kernel.subject import Exchange, GibberishError
+from missionfsm.kernel.subject import GibberishError
 from missionfsm.kernel.system import System
-from missionfsm.kernel.terms import State
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.guide import Guide
 from missionfsm.tools.conform.handshake import handshake, offered
 from missionfsm.tools.conform.run import BOUNDS, Run
 from missionfsm.tools.conform.tour import play, tour
-from missionfsm.tools.mutate.equivalent import ReferenceSteps, allowed_under, unchanged_message
-from missionfsm.tools.reference.model import Reference, StepMutator, unchanged_step
-from missionfsm.tools.reference.subject import ReferenceSubject
+from missionfsm.tools.mutate.equivalent import ReferenceSteps, allowed_under
+from missionfsm.tools.mutate.mutants import Mutant, mutants
+from missionfsm.tools.reference.model import Reference
 
-FIRST, ROUNDS, STEPS = 16, (64, 64, 64), 40
-"""Conversations before it is asked whether an implementation is allowed; after it, until it survives; steps of each."""
+FIRST = 16
+"""How many conversations a mutant has before it is asked whether what it does is allowed."""
+
+ROUNDS = (64, 64, 64)
+"""How many conversations it has after that, in rounds, until it has survived."""
+
+STEPS = 40
+"""How many calls and drives each conversation has."""
+
 BLOCK = 8
 """How many mutants are judged one after the other in the same part: those of a rule share what they remember."""
-
-_OTHER_CODES = (FAILED_PRECONDITION, INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED, "OUT_OF_RANGE")
-
-
-@frozen
-class Mutant:
-    """An implementation with one rule broken.
-
-    Attributes:
-        rule: the id of the rule; `kind`: how it is broken.
-        choice: the readings that it follows, so that the rule is in force.
-        favour: the operation in which it shows, if it is one.
-    """
-
-    rule: str
-    kind: str
-    choice: Mapping[str, str]
-    favour: str | None
-    spec: Spec
-    mutate_step: StepMutator = unchanged_step
-    mutate_message: Callable[[JSON], JSON] = unchanged_message
-
-    @property
-    def name(self) -> str:
-        """The rule and how it is broken."""
-        return f"{self.rule} {self.kind}"
-
-    def subject(self, system: System, seconds: Callable[[int], float] = float) -> BrokenSubject:
-        """The implementation, to be asked; `seconds` are its timestamps, see `ReferenceSubject`."""
-        return BrokenSubject(
-            evolve(system, spec=self.spec), self.choice, self.mutate_step, self.mutate_message, seconds
-        )
 
 
 @frozen
@@ -111,7 +69,7 @@ class MutationReport:
 
     @property
     def survived(self) -> tuple[MutantResult, ...]:
-        """Survivors that nothing excuses."""
+        """Survivors that do something forbidden."""
         return tuple(result for result in self.results if not result.killed and not result.because)
 
     @property
@@ -121,7 +79,7 @@ class MutationReport:
 
     @property
     def score(self) -> float:
-        """Noticed, of those that break something; 1.0 is all."""
+        """Which part was noticed of the mutants that do something forbidden; 1.0 is all."""
         not_allowed = len(self.results) - len(self.allowed)
         return self.killed / not_allowed if not_allowed else 0.0
 
@@ -160,10 +118,12 @@ def teeth(
     """Judge every mutant of a system.
 
     Args:
-        only: part of the names of the mutants to judge; all by default.
-        every: of those only every so many-th, from the first on.
-        part: which part of them, of how many that go side by side; `joined` puts them together again.
-        progress: told of every mutant when it has been judged.
+        system: the system.
+        seed: the seed of the conversations.
+        only: a text in the names of the mutants to judge; all have the empty text.
+        every: take only every so many-th of those, from the first on.
+        part: which part of them, of how many that are judged side by side; `joined` puts the parts together again.
+        progress: given the result of every mutant.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
     guide = Guide(system, system.alphabet({}, BOUNDS).worlds, BOUNDS)
@@ -179,33 +139,16 @@ def teeth(
 
 
 def sampled(system: System, only: str, every: int) -> list[Mutant]:
-    """Every so many-th of the mutants with this in their names, from the first on."""
+    """Of the mutants with a text in their names, every so many-th from the first on."""
     return [mutant for mutant in mutants(system) if only in mutant.name][::every]
 
 
 def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:
-    """What came of all mutants, from what came of each part of them, in the order of the rules."""
+    """The report on all mutants in the order of the rules, put together from the reports on parts of them."""
     parts = tuple(parts)
     found = {result.mutant: result for part in parts for result in part.results}
     ordered = tuple(found[mutant.name] for mutant in mutants(system) if mutant.name in found)
     return MutationReport(system.name, ordered, parts[0].untested)
-
-
-class BrokenSubject(ReferenceSubject):
-    """The reference with a rule broken: what it cannot answer any more, it answers with nothing.
-
-    Attributes:
-        speechless: whether there was anything that it could not answer.
-    """
-
-    speechless = False
-
-    def _call(self, method: str, params: JSON) -> Exchange:
-        try:
-            return super()._call(method, params)
-        except (LookupError, AssertionError, AttributeError, TypeError, ValueError, StopIteration):
-            self.speechless = True
-            return Exchange({})
 
 
 def _result(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, seed: int) -> MutantResult:
@@ -215,7 +158,7 @@ def _result(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, 
         info = handshake(system, broken)
         run = Run.with_guide(offered(system, info), broken, info, automaton, guide.fresh())
         try:
-            # Every round is a run of its own: what was walked least in the last one has been walked by now.
+            # Every round is a run of its own, since a tour goes where its run has been least.
             draw = random.Random(seed + fresh)  # noqa: S311 - no secret
             toured = functools.partial(tour, run, draw, conversations, STEPS, mutant.favour)
             right = toured() if fresh else _at_first(system, run, toured)
@@ -232,15 +175,15 @@ def _result(system: System, mutant: Mutant, automaton: Automaton, guide: Guide, 
 
 
 def _at_first(system: System, run: Run, toured: Callable[[], bool]) -> bool:
-    """Both the first tour and what is written down, the cheaper one first: with clocks, tours are dear."""
+    """Have the first tour and the scripts, the cheaper of both first: with clocks, tours cost much."""
     return play(run) and toured() if system.spec.abstraction.canonical else toured() and play(run)
 
 
 @functools.lru_cache(maxsize=2)
 def _reference_steps(system: System, choice: tuple[tuple[str, str], ...]) -> ReferenceSteps:
-    """The reference under some readings; the mutants of a rule follow each other and share it.
+    """The reference under some readings, which successive mutants share.
 
-    Those with the readings of the reference come again and again, so that it is in nobody's way that two are kept.
+    Two are kept: that of the default readings, which most mutants follow, and one other.
     """
     return ReferenceSteps(Reference(system, dict(choice)))
 
@@ -248,94 +191,3 @@ def _reference_steps(system: System, choice: tuple[tuple[str, str], ...]) -> Ref
 def _excuse(system: System, mutant: Mutant, model: Reference, worlds: tuple[JSON, ...]) -> str:
     reference = _reference_steps(system, tuple(sorted(mutant.choice.items())))
     return allowed_under(reference, model, mutant.rule, mutant.favour, mutant.mutate_message, worlds)
-
-
-# The mutants.
-
-
-def mutants(system: System) -> Iterator[Mutant]:
-    """Every implementation with one rule broken."""
-    spec = system.spec
-    for operation in spec.operations.values():
-        for rule in operation.refusals:
-            yield from _of_refusal(spec, operation, rule, _reaching(system, rule))
-        for promised in operation.promises:
-            yield from _of_promise(spec, promised, operation.name)
-    own = {one.rule for one in system.message_mutations} | {one.rule for one in system.step_mutations if one.at}
-    for rule in spec.rules:
-        if rule.id not in own:
-            yield from _of_promise(spec, rule, None)
-    for mutation in system.message_mutations:
-        yield Mutant(mutation.rule, mutation.says, {}, None, spec, mutate_message=mutation.mutate_message)
-    for one in system.step_mutations:
-        yield Mutant(
-            one.rule,
-            one.says,
-            _in_force(spec, one.rule),
-            _operation_of(spec, one.rule),
-            spec,
-            _where(one.at or one.rule, one.mutate_step),
-        )
-
-
-def _reaching(system: System, rule: Rule) -> Mapping[str, str]:
-    return system.reaching.get(rule.id) or system.reaching.get(rule.name, {})
-
-
-def _operation_of(spec: Spec, rule: str) -> str | None:
-    name = rule.split("/")[1]
-    return name if name in spec.operations else None
-
-
-def _in_force(spec: Spec, rule_id: str) -> dict[str, str]:
-    """A choice of readings under which a rule is in force."""
-    rule = spec.rules_by_id.get(rule_id)
-    if rule is None or rule.assumes is None or rule.assumes.ambiguity.default in rule.assumes.letters:
-        return {}
-    return {rule.assumes.ambiguity.id: rule.assumes.letters[0]}
-
-
-def _of_refusal(spec: Spec, operation: Operation, rule: Rule, reaching: Mapping[str, str]) -> Iterator[Mutant]:
-    choice = {**_in_force(spec, rule.id), **reaching}
-    code = next(code for code in _OTHER_CODES if code != rule.code)
-    if rule.holds is None or not spec.follows_operations:
-        # Its condition is in the effect: what can be broken is what is answered.
-        yield Mutant(
-            rule.id, "is answered with another code", choice, operation.name, spec, _where(rule.id, _coded(code))
-        )
-        yield Mutant(rule.id, "is dropped", choice, operation.name, spec, _where(rule.id, _coded(OK)))
-        return
-    for kind, others in (
-        ("is dropped", [one for one in operation.refusals if one is not rule]),
-        ("holds always", [evolve(one, holds=_always) if one is rule else one for one in operation.refusals]),
-        (f"is answered {code}", [evolve(one, code=code) if one is rule else one for one in operation.refusals]),
-    ):
-        changed = evolve(operation, refusals=tuple(others))
-        broken = spec.with_operations({**spec.operations, operation.name: changed})
-        yield Mutant(rule.id, kind, choice, operation.name, broken)
-
-
-def _always(_: object, __: object) -> bool:
-    return True
-
-
-def _of_promise(spec: Spec, rule: Rule, operation: str | None) -> Iterator[Mutant]:
-    for kind, mutate_step in (
-        ("has no effect", without_effect),
-        ("is not shown", unshown),
-        ("answers its names in reverse", _reversed),
-    ):
-        yield Mutant(rule.id, kind, {}, operation, spec, _where(rule.id, mutate_step))
-
-
-def _where(rule: str, mutate_step: Callable[[Any, Step], Step | None]) -> StepMutator:
-    """A mutation of the steps that a rule justifies, and of no others."""
-    return lambda state, step: mutate_step(state, step) if step is not None and rule in step.rules else step
-
-
-def _coded(code: str) -> Callable[[Any, Step], Step]:
-    return lambda _, step: evolve(step, answer=Answer(code)) if step.answer is not None else step
-
-
-def _reversed(_: State, step: Step) -> Step:
-    return evolve(step, refs=tuple(reversed(step.refs)))

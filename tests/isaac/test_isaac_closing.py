@@ -1,8 +1,12 @@
 """A connection that the server closes is seen to close, and what was sent on it before is seen to come."""
 
+import json
+from typing import Any
+
 import pytest
 from server_history import SERVER, History
 
+from missionfsm.isaac.wire.messages import Uuid
 from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -50,8 +54,26 @@ def test_the_reference_tells_that_a_connection_ends() -> None:
     assert [(one.method, one.params) for one in told.after] == [("closed", {"connection": 1})]
 
 
-def test_a_status_that_is_never_counted_is_flagged() -> None:
-    """AI-10 c: the uuid in a header is the message's own, so that nothing would ever be counted."""
-    history = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles
-    verdict = history.waits(3).settles.reports(1, 1, "success").settles.shows("STARTED").judged()
+def _never_counted(header: Uuid | None) -> History:
+    history = History().submit(1).robot(1).sends(1, 1)
+    line = json.loads(history.lines[-1]["line"])
+    if header is not None:
+        line["header"]["uuid"] = {"lower": str(header.lower), "upper": str(header.upper)}
+    history.lines[-1] = {"connection": 1, "line": json.dumps(line)}
+    history = history.settles.reports(1, 1, "running").settles
+    return history.waits(3).settles.reports(1, 1, "success").settles.shows("STARTED")
+
+
+def test_a_status_that_is_never_counted_is_wrong() -> None:
+    """AI-10 c: a server that goes by the uuid in a header says it there, else it would never hear of any mission."""
+    assert _never_counted(None).judged().outcome is Outcome.VIOLATES
+    verdict = _never_counted(Uuid(1, 1 << 61 | 1)).judged()
     assert [one.reading for one in verdict.flagged] == ["AI-10=c"]
+
+
+@pytest.mark.parametrize("timeout", [{}, {"timeout": 100}])
+def test_a_mission_that_was_acknowledged_does_not_miss_its_start(timeout: Any) -> None:
+    history = History().submit(1, **timeout).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles
+    for _ in range(8):
+        history = history.waits(1).reports(1, 1, "running").settles
+    assert history.shows("FAILED_TIMEDOUT").judged().outcome is Outcome.VIOLATES

@@ -76,6 +76,34 @@ def test_a_mission_that_says_that_it_is_a_text_is_no_greeting() -> None:
         assert history.settles.judged().conforms is right, line
 
 
+GARBLED_LINES: tuple[dict[str, Any], ...] = (
+    {"priority": 3},
+    {"header": {"seq": "5"}},
+    {"header": {"pubtime": "0x1"}},
+    {"header": {"acqtime": 1.5}},
+    {"header": {"uuid": "7"}},
+    {"header": {"pubtime": "007"}},
+)
+"""Lines in which something is not written as documented."""
+
+
+@pytest.mark.parametrize("shown", ["STARTED", "RUNNING"])
+@pytest.mark.parametrize("changes", [*GARBLED_LINES, {"uuid": "1"}, {"uuid": {"lower": "+1"}}], ids=str)
+def test_a_status_in_which_something_is_of_another_form_counts_or_does_not(changes: Any, shown: str) -> None:
+    history = _reported(**changes).shows(shown)
+    assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
+    assert history.reports(1, 1, "running").settles.shows("STARTED").judged(no_flagged=True).conforms is False
+
+
+@pytest.mark.parametrize("changes", GARBLED_LINES, ids=str)
+@pytest.mark.parametrize("taken", [True, False])
+def test_a_name_in_which_something_is_of_another_form_counts_or_does_not(changes: Any, *, taken: bool) -> None:
+    line = _written(TextProto("r"), "name", **changes)
+    history = History().submit(1).drive("connect", connection=1).drive("line", connection=1, line=line)
+    history = history.sends(1, 1).settles if taken else history.settles.waits(2).settles.says(1).sends(1, 1).settles
+    assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
+
+
 # The robot.
 
 DRIVES = ("line", "behaviorSucceeded", "behaviorFailed", "advance")

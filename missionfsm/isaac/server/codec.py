@@ -7,6 +7,8 @@ import math
 import operator
 from typing import Any
 
+from attrs import evolve
+
 from missionfsm.isaac.server import inputs
 from missionfsm.isaac.server.inputs import (
     BAD,
@@ -22,7 +24,7 @@ from missionfsm.isaac.server.inputs import (
     Statuses,
     Submission,
 )
-from missionfsm.isaac.server.readings import AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
+from missionfsm.isaac.server.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_CONFIG, AI_28_UUID
 from missionfsm.isaac.server.state import Closes, Sends, World
 from missionfsm.isaac.shared.drives import ADVANCE, in_microseconds, seconds, text_line
 from missionfsm.isaac.shared.line import (
@@ -30,6 +32,7 @@ from missionfsm.isaac.shared.line import (
     LineContent,
     canonical,
     from_json,
+    is_garbled,
     is_untyped,
     new_uuid,
     part_of,
@@ -266,19 +269,36 @@ def hear(line: str) -> tuple[Incoming, tuple[Name, ...]]:
     data = line.encode(errors="surrogatepass")
     message = decode_line(data)[0]
     if isinstance(message, WireError):
+        if mended := _mended(line):
+            heard, names = hear(mended)
+            return evolve(heard, garbled=True), names
         return Incoming(FOREIGN if message.kind == _BUFFERS else BAD), ()
     numeric = isinstance(decode_line(data, numbers=False)[0], WireError)
     payload, channel = message.payload, message.header.channel
     raw = json.loads(line)
-    untyped = is_untyped(raw)
+    untyped, garbled = is_untyped(raw), is_garbled(raw)
     if isinstance(payload, TextProto):
-        return Incoming(NAME, payload.text, channel, numeric=numeric, untyped=untyped), ()
+        return Incoming(NAME, payload.text, channel, numeric=numeric, untyped=untyped, garbled=garbled), ()
     if not isinstance(payload, MissionStatusProto):
         return Incoming(NOISE, channel=channel, numeric=numeric), ()
     odd = raw["payload"]["missionStatus"] != payload.mission_status.value
     names = tuple(uuid_name(one) for one in (payload.uuid, message.header.uuid) if one is not None)
     named, header = payload.uuid is not None, message.header.uuid is not None
-    return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric, untyped, odd), names
+    return Incoming(STATUS, payload.mission_status.value, channel, named, header, numeric, untyped, odd, garbled), names
+
+
+def _mended(line: str) -> str | None:
+    """A line without those of its numbers that cannot be read, if it is a message then: nobody has to look at them."""
+    raw = strictjson.parse(line)
+    if not isinstance(raw, dict) or not isinstance(raw.get("header"), dict) or not isinstance(raw.get("payload"), dict):
+        return None
+    header = {key: value for key, value in raw["header"].items() if key in ("channel", "proto")}
+    payload = {key: value for key, value in raw["payload"].items() if key != "uuid"}
+    for mended in ({"header": header, "payload": raw["payload"]}, {"header": header, "payload": payload}):
+        text = json.dumps(mended)
+        if not isinstance(decode_line(text.encode(errors="surrogatepass"))[0], WireError):
+            return text
+    return None
 
 
 def _number(_: Incident, names: tuple[Name, ...]) -> dict[str, JSON]:
@@ -344,7 +364,7 @@ def write_message(view: Sends | Closes, names: tuple[Name, ...], choice: int, nu
     uuid = Uuid.of(names[0][1])  # type: ignore[index]
     # The message's own is no mission's, whatever names those are given, and another one for each that an event causes.
     message_uuid = Uuid.of(new_uuid(number + (uuid.value << 40))[1])  # type: ignore[index]
-    own = uuid if meet(choice, (AI_27_UUID["b"],)) else message_uuid
+    own = uuid if meet(choice, (AI_27_UUID["b"],)) or meet(choice, (AI_10["c"],)) else message_uuid
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     stated = uuid if meet(choice, (AI_28_UUID["y"],)) else None
     header = Header(view.channel, time, time, own)

@@ -113,6 +113,9 @@ def inherited(before: Server, move: Move) -> Moves:
 
 def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: int | None) -> Moves:
     """A line arrives on a connection; `named` and `header` as in `Report`."""
+    if heard.garbled:
+        # It need not be treated like the next one: no sentence is about it.
+        yield from _unreadable(move, link, AI_26)
     for written, question in (
         (heard.numeric, AI_25_TAKEN),
         (heard.untyped, AI_27_TAKEN),

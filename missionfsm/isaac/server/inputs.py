@@ -91,6 +91,8 @@ class Incoming:
         numeric: whether 64-bit integers in it are numbers.
         untyped: whether its header has no type id, or an unsigned one.
         odd: whether it is a status in capitals, or a number.
+        garbled: whether something else in it is not written as documented, so that it may be no message: a field that
+            nobody knows, a number with leading zeros, of another type or out of range.
     """
 
     kind: str
@@ -101,4 +103,5 @@ class Incoming:
     numeric: bool = False
     untyped: bool = False
     odd: bool = False
+    garbled: bool = False
     name: str = "line"

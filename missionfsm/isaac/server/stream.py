@@ -13,6 +13,7 @@ from missionfsm.isaac.server.readings import (
     AI_04,
     AI_04_ROBOT,
     AI_04_SENT,
+    AI_10,
     AI_25_HEADER,
     AI_27_UUID,
     AI_28_CONFIG,
@@ -151,10 +152,16 @@ def matches(view: Sends | Closes, content: LineContent | Malformed) -> tuple[Mat
         AI_28_CONFIG["b" if content.form == "text" else "a"],
         AI_25_HEADER["n" if content.bare else "s"],
         AI_28_UUID["y" if content.named else "n"],
-        *((AI_27_UUID["b"],) if content.borrowed else ()),
     )
     justified = (rules.CHANNEL.id, rules.CONFIG.id, rules.ENVELOPE.id, rules.INTEGERS.id)
-    return (Match(assumes, ((0, 0),) if content.named else (), justified),)
+    return tuple(Match((*assumes, *whose), ((0, 0),) if content.named else (), justified) for whose in _header(content))
+
+
+def _header(content: LineContent) -> tuple[tuple[Assumption, ...], ...]:
+    """What the uuid in the header of a mission assumes: where a server goes by it, it is the mission's (AI-10 c)."""
+    if content.borrowed:
+        return (AI_27_UUID["b"],), (AI_10["c"],)
+    return ((AI_10.besides("c"),),) if content.named else ((),)
 
 
 def sequence(relation: str) -> tuple[Assumption, ...]:

@@ -108,6 +108,19 @@ def test_everything_is_used() -> None:
     assert sorted(found) == []
 
 
+@pytest.mark.long
+def test_every_test_states_its_claim() -> None:
+    """Every test has a docstring: the claim that it makes."""
+    found = [
+        f"{path.name}: {node.name}"
+        for path in sorted((ROOT.parent / "tests").rglob("*.py"))
+        if "strangers" not in path.parts
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_") and ast.get_docstring(node) is None
+    ]
+    assert found == []
+
+
 def _documented(node: ast.ClassDef) -> set[str]:
     """The fields that a class says something of: in its docstring, or in a text right behind the field."""
     said = set(re.findall(r"\w+", ast.get_docstring(node) or ""))

@@ -582,8 +582,10 @@ CHOICES = [{}] + [
 def test_a_first_mission_is_seen_when_the_gap_shows_the_mission_before() -> None:
     """Where the gap shows the mission before, a first mission has none before it, and is seen all the same."""
     robot = Robot(readings={"AM-14.gap": "d"})
-    robot.updates()
-    robot.create_mission(TABLE)
+    updates = robot.updates()
+    mission = robot.create_mission(TABLE)
+    shown = [[one.mission_id for one in update.mission_states.missions] for update in updates]
+    assert shown[-1] == [mission]
 
 
 @given(st.sampled_from(sorted(UNARY)), st.sampled_from(CHOICES), st.data())

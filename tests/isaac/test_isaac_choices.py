@@ -247,6 +247,7 @@ def test_a_report_may_be_worked_off_in_the_next_pass() -> None:
 
 
 def test_what_is_shown_at_once_is_not_worked_off_in_a_pass() -> None:
+    """AI-39.reports a: a server that shows one report at once may not keep the next one for a pass."""
     begun = _heard().shows("RUNNING")
     assert follows(begun.judged(no_flagged=True), AI_39_reports="a")
     mixed = begun.reports(1, 1, "success").settles.shows("RUNNING")
@@ -254,11 +255,13 @@ def test_what_is_shown_at_once_is_not_worked_off_in_a_pass() -> None:
 
 
 def test_a_server_that_sends_at_once_shows_reports_at_once() -> None:
+    """A server without scheduling passes (AI-39 a) has none in which it could work off reports."""
     begun = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles.shows("STARTED")
     assert not begun.judged(readings={"AI-10": "ab"}).conforms
 
 
 def test_a_dependant_is_sent_in_the_pass_that_works_off_the_report() -> None:
+    """AI-39.reports b: the pass that shows that an upstream succeeded sends what waited for it."""
     begun = History().submit(1).submit(2, robot="q", upstream=[1]).robot(1).robot(2, "q").settles.waits(1).sends(1, 1)
     begun = begun.settles.reports(1, 1, "success").settles.shows("STARTED", "QUEUED").waits(1).sends(2, 2).settles
     assert begun.shows("SUCCESS", "STARTED").judged(no_flagged=True).conforms

@@ -15,11 +15,13 @@ ABORTS = {"AI-08": "c", "AI-29": "d"}
 
 
 def test_a_mission_that_was_never_sent_is_not_excused_by_a_close_that_nobody_saw() -> None:
+    """A mission to a connected robot has to be sent: that its connection was closed is assumed only if seen."""
     history = History().submit(1).settles.robot(1).settles.waits(60).settles
     assert history.shows("FAILED_TIMEDOUT").judged().outcome is Outcome.VIOLATES
 
 
 def test_an_abort_that_closes_the_connection_is_flagged() -> None:
+    """AI-08 c: an abort may close the robot's connection, which departs from the text."""
     history = History().submit(1).robot(1).sends(1, 1).settles.waits(9).closes(1).settles.shows("FAILED_TIMEDOUT")
     returns = history.submit(2).robot(2).sends(2, 2).settles
     verdict = returns.judged()
@@ -28,22 +30,26 @@ def test_an_abort_that_closes_the_connection_is_flagged() -> None:
 
 @pytest.mark.parametrize("seen", [True, False])
 def test_a_close_has_to_be_seen(*, seen: bool) -> None:
+    """Under AI-08 c an abort conforms if the connection is seen to close, and not otherwise."""
     history = History().submit(1).robot(1).sends(1, 1).settles.waits(9)
     history = (history.closes(1) if seen else history).settles.shows("FAILED_TIMEDOUT")
     assert history.judged(readings=ABORTS).conforms is seen
 
 
 def test_nothing_is_heard_on_a_connection_that_is_closed() -> None:
+    """A report that comes after the abort does not keep the server from having closed the connection before it."""
     history = History().submit(1).robot(1).sends(1, 1).settles.waits(9).reports(1, 1, "running").closes(1)
     assert not history.settles.judged(readings=ABORTS).conforms
 
 
 def test_what_the_server_has_closed_does_not_drop() -> None:
+    """A connection that the server has closed cannot drop afterwards."""
     history = History().submit(1).robot(1).sends(1, 1).settles.waits(9).closes(1).settles
     assert not history.drive("disconnect", connection=1).judged(readings=ABORTS).conforms
 
 
 def test_the_reference_tells_that_a_connection_ends() -> None:
+    """The reference reports `closed` when an abort closes a connection."""
     subject = ReferenceSubject(SERVER, {**ABORTS, "AI-39": "a"})
     subject.exchange("reset", {"world": {}})
     subject.exchange("submit", {"mission": {"robot": "r"}})

@@ -17,15 +17,18 @@ def _sent(*drives: str, **limits: float) -> History:
     ("seconds", "outcome"), [(8, Outcome.CONFORMS), (4.5, Outcome.CONFORMS), (2, Outcome.VIOLATES)]
 )
 def test_a_limit_may_have_run_out_by_the_times_of_the_lines(seconds: float, outcome: Outcome) -> None:
+    """A start limit of 5 s may have run out 4.5 s or 8 s after the line before, and not after 2 s."""
     history = _sent(*SEEN).at(0).shows("FAILED_TIMEDOUT").at(seconds)
     assert history.judged().outcome is outcome
 
 
 def test_a_limit_that_has_run_out_by_the_times_of_the_lines_need_not_have_been_noticed() -> None:
+    """The times of lines do not force a limit to have run out."""
     assert _sent(*SEEN).at(0).shows("STARTED").at(8).judged().outcome is Outcome.CONFORMS
 
 
 def test_a_run_limit_counts_from_the_line_that_began_it() -> None:
+    """A run limit of 60 s has not run out 30 s after the first report, and may have after 61 s."""
     begun = _sent(*SEEN, timeout=60).at(0).reports(1, 1, "running").at(1)
     for second in range(2, 30):
         begun.reports(1, 1, "running").at(second)
@@ -36,10 +39,12 @@ def test_a_run_limit_counts_from_the_line_that_began_it() -> None:
 
 
 def test_without_times_any_limit_may_have_run_out() -> None:
+    """If lines have no times, any amount of time may have passed between two."""
     assert _sent(*SEEN).settles.shows("STARTED").settles.shows("FAILED_TIMEDOUT").judged().outcome is Outcome.CONFORMS
 
 
 def test_a_log_that_says_when_time_passes_says_all_of_it() -> None:
+    """Once a line lets time pass, or a tester commands time, no other time passes."""
     history = _sent(*SEEN).waits(1).shows("FAILED_TIMEDOUT")
     told = History().submit(1).robot(1).sends(1, 1).waits(1).shows("FAILED_TIMEDOUT")
     assert told.judged().outcome is Outcome.VIOLATES
@@ -48,11 +53,13 @@ def test_a_log_that_says_when_time_passes_says_all_of_it() -> None:
 
 
 def test_time_that_passes_by_itself_is_no_event_of_the_log() -> None:
+    """Time that is inserted is not counted among the events of the verdict."""
     verdict = _sent(*SEEN).at(0).shows("STARTED").at(8).judged()
     assert verdict.events == 7
 
 
 def test_a_server_that_looks_once_a_second_sends_later_by_the_times_of_the_lines() -> None:
+    """A scheduling pass may have come between two lines that are a second apart."""
     history = History(*SEEN).submit(1).robot(1).settles.at(0).sends(1, 1).at(1).shows("STARTED").at(1)
     assert history.judged().outcome is Outcome.CONFORMS
 
@@ -62,10 +69,12 @@ def test_a_server_that_looks_once_a_second_sends_later_by_the_times_of_the_lines
     [(("connect", "line", "advance"), Outcome.CONFORMS), ((*SEEN, "advance"), Outcome.VIOLATES)],
 )
 def test_a_connection_drops_by_itself_only_where_nobody_commands_it(drives: tuple[str, ...], outcome: Outcome) -> None:
+    """A disconnection may be unseen unless the tester has a drive for it."""
     history = _sent(*drives).settles.reports(1, 1, "running").settles.waits(3).settles.shows("FAILED_DISCONNECTED")
     assert history.judged().outcome is outcome
 
 
 def test_what_comes_on_a_connection_shows_that_it_has_not_dropped() -> None:
+    """A line on a connection contradicts that the connection dropped before."""
     history = _sent("connect", "line", "advance").settles.shows("FAILED_DISCONNECTED").reports(1, 1, "running")
     assert history.judged().outcome is Outcome.VIOLATES

@@ -45,12 +45,14 @@ def _reported(**changes: Any) -> History:
     "changes", [{"missionStatus": "RUNNING"}, {"missionStatus": 0}, {"header": {"proto": None}}], ids=str
 )
 def test_a_status_that_is_written_otherwise_counts_or_does_not(changes: Any, shown: str) -> None:
+    """A server may count or ignore a status in capitals, as a number or without a type id, and goes on either way."""
     history = _reported(**changes).shows(shown)
     assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
     assert history.reports(1, 1, "running").settles.shows("RUNNING").judged().outcome is Outcome.CONFORMS
 
 
 def test_whether_a_status_in_capitals_counts_is_decided_once() -> None:
+    """A server that ignored one status in capitals may not count the next one."""
     twice = _reported(missionStatus="RUNNING").shows("STARTED")
     line = _written(MissionStatusProto(ONE, WireStatus.SUCCESS), "mission_status", missionStatus="SUCCESS")
     history = twice.drive("line", connection=1, line=line).settles
@@ -60,6 +62,7 @@ def test_whether_a_status_in_capitals_counts_is_decided_once() -> None:
 @pytest.mark.parametrize("proto", [None, "10961607615765939303"])
 @pytest.mark.parametrize("taken", [True, False])
 def test_a_name_without_a_signed_type_id_counts_or_does_not(proto: str | None, *, taken: bool) -> None:
+    """A server may or may not identify a robot by a name whose type id is missing or unsigned."""
     line = _written(TextProto("r"), "name", {"proto": proto})
     history = History().submit(1).drive("connect", connection=1).drive("line", connection=1, line=line)
     history = history.sends(1, 1).settles if taken else history.settles.waits(2).settles.says(1).sends(1, 1).settles
@@ -67,6 +70,7 @@ def test_a_name_without_a_signed_type_id_counts_or_does_not(proto: str | None, *
 
 
 def test_a_mission_that_says_that_it_is_a_text_is_no_greeting() -> None:
+    """A mission under the type id of a text is malformed; a text on the same channel is not."""
     proto = str(json.loads(_written(TextProto("hello"), "log"))["header"]["proto"])
     mission = {"connection": 1, "line": _written(MissionProto(ONE, "{}"), "mission", {"proto": proto})}
     greeting = {"connection": 1, "line": _written(TextProto("hello"), "mission")}
@@ -148,6 +152,7 @@ CONFIG = {"a": {"b": {"c": 1}}}
     ids=str,
 )
 def test_a_mission_that_is_written_otherwise_runs_or_is_no_message(changes: Any, then: Any) -> None:
+    """A robot may run or ignore a mission whose type id or configuration is written differently."""
     assert _judged(_arrives(ONE, **changes), *then, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
@@ -158,6 +163,7 @@ NUMBERS = {"uuid": {"lower": 1, "upper": 1 << 61 | 1}}
     "changes", [NUMBERS, {"header": {"proto": None}}, {"header": {"proto": "9410896613310777529"}}], ids=str
 )
 def test_a_mission_that_is_written_otherwise_may_fail(changes: Any) -> None:
+    """A robot may fail a mission whose type id or uuid is written differently."""
     assert _judged(_arrives(ONE, **changes), *FAILS, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
@@ -180,12 +186,14 @@ GARBLED: tuple[dict[str, Any], ...] = (
 @pytest.mark.parametrize("then", [RUNS, FAILS, ()], ids=["runs", "fails", "is ignored"])
 @pytest.mark.parametrize("changes", GARBLED, ids=str)
 def test_nothing_is_said_of_a_mission_in_which_something_is_of_another_form(changes: Any, then: Any) -> None:
+    """A robot may run, fail or ignore a mission with a member of another form."""
     assert _judged(_arrives(ONE, **changes), *then, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
 @pytest.mark.parametrize("fails", [FAILS, ()])
 @pytest.mark.parametrize("old", [RUNS[:1], (_says(TWO, WireStatus.FAILURE),)], ids=["goes on", "preempted"])
 def test_such_a_mission_preempts_another_or_does_not(old: Any, fails: Any) -> None:
+    """A mission with a malformed uuid may end the one that runs or leave it alone, and may fail or not."""
     preempted = old != RUNS[:1]
     shown = (*old, *fails) if preempted else (*fails, _says(TWO, WireStatus.RUNNING))
     lines = (_arrives(TWO), _says(TWO, WireStatus.RUNNING), SETTLED, _arrives(ONE, uuid="1"), *shown)
@@ -193,6 +201,7 @@ def test_such_a_mission_preempts_another_or_does_not(old: Any, fails: Any) -> No
 
 
 def test_a_mission_in_a_line_of_another_form_does_not_end_by_itself() -> None:
+    """Such a mission succeeds only if its behavior does, fails once, and has to be a mission at all."""
     succeeds = (_says(ONE, WireStatus.SUCCESS),)
     assert _judged(_arrives(ONE, priority=3), *RUNS[:2], *succeeds).outcome is Outcome.VIOLATES
     assert _judged(_arrives(ONE, priority=3), *FAILS, *FAILS).outcome is Outcome.VIOLATES
@@ -222,20 +231,24 @@ def test_what_becomes_of_one_kind_of_configuration_is_not_tied_to_another(first:
 
 
 def test_a_mission_that_is_written_well_is_not_ignored() -> None:
+    """A robot has to report a mission whose line is as documented."""
     assert _judged(_arrives(ONE), *NEXT).outcome is Outcome.VIOLATES
 
 
 @pytest.mark.parametrize("config", [{"serialized": CONFIG}, CONFIG])
 def test_a_configuration_that_is_no_text_may_be_unusable(config: Any) -> None:
+    """A robot may fail a mission whose configuration is an object instead of a text."""
     assert _judged(_arrives(ONE, config=config), *FAILS, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
 def test_a_configuration_of_unknown_nodes_may_be_passed_over_which_is_flagged() -> None:
+    """AI-33.unknown c: a robot may ignore a mission that configures unknown nodes, which is flagged."""
     verdict = _judged(_arrives(ONE, json.dumps(CONFIG)), *NEXT)
     assert [one.reading for one in verdict.flagged] == ["AI-33.unknown=c"]
 
 
 def test_a_configuration_of_unknown_nodes_may_be_unusable_which_is_flagged() -> None:
+    """AI-33.unknown b: a robot may fail such a mission, which is flagged; one without configuration may not fail."""
     arrives = _arrives(ONE, json.dumps(CONFIG))
     verdict = _judged(arrives, *FAILS, *NEXT)
     assert [one.reading for one in verdict.flagged] == ["AI-33.unknown=b"]

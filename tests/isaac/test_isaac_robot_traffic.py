@@ -49,11 +49,13 @@ RUNS = _line(MissionStatusProto(MISSION, WireStatus.RUNNING), "mission_status")
 
 @pytest.mark.parametrize("other", [_of_type("123456"), _of_type("-5"), _line(TextProto("battery low"), "log")])
 def test_other_traffic_of_the_application_changes_nothing(other: Any) -> None:
+    """Messages of other types and texts on other channels are allowed, and exercise no rule."""
     assert _judged(NAME, other, ARRIVES, SETTLED, other, RUNS, other, NAME).outcome is Outcome.CONFORMS
     assert _judged(other).outcome is Outcome.INCONCLUSIVE
 
 
 def test_other_traffic_is_no_name_and_no_status() -> None:
+    """A text on another channel does not stand for the name that a robot has to say."""
     silent = _judged(_line(TextProto("robot"), "log"), {"drive": {"event": "advance", "seconds": 60}})
     assert silent.outcome is Outcome.VIOLATES
 
@@ -73,15 +75,18 @@ def test_other_traffic_is_no_name_and_no_status() -> None:
     ids=str,
 )
 def test_messages_of_missions_and_malformed_ones_are_judged_on_every_channel(wrong: Any) -> None:
+    """Malformed lines, other types on the channels of missions, and missions' messages elsewhere are violations."""
     assert _judged(NAME, wrong).outcome is Outcome.VIOLATES
 
 
 def test_nothing_else_is_sent_without_a_connection() -> None:
+    """Other traffic cannot come after the connection has dropped and things have settled."""
     dropped = {"drive": {"event": "disconnect"}}
     assert _judged(NAME, SETTLED, dropped, SETTLED, _of_type("123456")).outcome is Outcome.VIOLATES
 
 
 def test_a_robot_of_which_the_world_says_no_name_has_the_one_of_the_protocol() -> None:
+    """Without a name in the world a robot is called `robot`; with null it may have any name, always the same."""
     other = _line(TextProto("zzz"), "name")
     assert _judged(NAME).outcome is Outcome.CONFORMS
     assert _judged(other).outcome is Outcome.VIOLATES
@@ -91,6 +96,7 @@ def test_a_robot_of_which_the_world_says_no_name_has_the_one_of_the_protocol() -
 
 
 def test_a_name_that_is_any_is_written_as_it_is_read() -> None:
+    """A world whose name is null is written with null; no other parameter may be null."""
     codec = ROBOT.codec
     assert codec.write_world(codec.read_world({"name": None}))["name"] is None
     with pytest.raises(UnreadableError):
@@ -98,6 +104,7 @@ def test_a_name_that_is_any_is_written_as_it_is_read() -> None:
 
 
 def test_over_tcp_nobody_knows_what_a_robot_is_called() -> None:
+    """Over TCP a robot is tried in the world in which it may have any name."""
     found = bridged(ROBOT, Sockets(None, 0, None, 0.5), None, None, 1)
     found.subject.close()
     assert found.system.alphabet({}, BOUNDS).worlds == ({"name": None},)
@@ -125,6 +132,7 @@ SUCCESS = _line(MissionStatusProto(MISSION, WireStatus.SUCCESS), "mission_status
 
 @pytest.mark.parametrize("late", [(RUNS,), (RUNS, RUNS, NAME), (NAME,), (_of_type("123456"),)])
 def test_what_was_on_its_way_when_the_connection_dropped_may_still_come(late: Any) -> None:
+    """Lines that were due before a drop may come after it, until things settle, time passes or the robot is back."""
     runs = (NAME, ARRIVES, SETTLED, RUNS, SETTLED, DROPS)
     assert _judged(*runs, *late, SETTLED, CONNECTS, NAME).outcome is Outcome.CONFORMS
     for later in (SETTLED, WAITS, CONNECTS):
@@ -133,6 +141,7 @@ def test_what_was_on_its_way_when_the_connection_dropped_may_still_come(late: An
 
 
 def test_a_final_status_that_was_on_its_way_may_still_come_once() -> None:
+    """A final status that was due before a drop may come after it, once; one that was not due may not."""
     ends = (NAME, ARRIVES, RUNS, SETTLED, SUCCEEDED, DROPS)
     assert _judged(*ends, SUCCESS).outcome is Outcome.CONFORMS
     assert _judged(*ends, SUCCESS, SUCCESS).outcome is Outcome.VIOLATES
@@ -140,12 +149,14 @@ def test_a_final_status_that_was_on_its_way_may_still_come_once() -> None:
 
 
 def test_a_tree_that_stops_while_no_mission_runs_is_nothing_to_the_codelet() -> None:
+    """AI-31.idle b: a behavior that ends while no mission runs may be ignored, and never makes a status."""
     verdict = _judged(NAME, SETTLED, SUCCEEDED, SETTLED, ARRIVES, RUNS, SETTLED, SUCCEEDED, SUCCESS)
     assert [one.reading for one in verdict.flagged] == ["AI-31.idle=b"]
     assert _judged(NAME, SETTLED, SUCCEEDED, SUCCESS).outcome is Outcome.VIOLATES
 
 
 def test_a_status_is_a_name_or_a_number_which_is_flagged() -> None:
+    """AI-28.status e: a robot may write a status as a number, which is flagged."""
     line = json.loads(RUNS["line"])
     for written, flagged in (("RUNNING", []), (0, ["AI-28.status=e"])):
         line["payload"]["missionStatus"] = written

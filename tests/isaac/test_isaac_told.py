@@ -22,11 +22,13 @@ A = '{"a":{"b":{"c":1}}}'
 
 
 def test_an_upstream_has_not_succeeded() -> None:
+    """The violation says that an upstream has not succeeded yet."""
     history = _first().submit(2, upstream=[1]).robot(1).sends(1, 1, A).settles.sends(1, 2)
     assert "an upstream of the mission with that configuration has not succeeded" in _told(history)
 
 
 def test_an_upstream_has_failed() -> None:
+    """The violation says that an upstream has failed, and does not say that nothing changed."""
     begun = _first().robot(1).sends(1, 1, A).settles.reports(1, 1, "failure").settles.shows("FAILED")
     told = _told(begun.submit(2, upstream=[1]).sends(1, 2), readings={"AI-10": "ab"})
     assert "an upstream of the mission with that configuration has failed" in told
@@ -34,11 +36,13 @@ def test_an_upstream_has_failed() -> None:
 
 
 def test_a_mission_is_sent_twice() -> None:
+    """The violation says that the mission was sent before."""
     history = _first().robot(1).sends(1, 1, A).settles.sends(1, 1, A)
     assert "the mission with that uuid was sent already" in _told(history)
 
 
 def test_a_mission_has_ended() -> None:
+    """The violation says that the mission has ended, and how."""
     begun = _first().robot(1).sends(1, 1, A).settles.reports(1, 1, "success").settles.shows("SUCCESS")
     assert "the mission with that uuid has ended, it is success" in _told(begun.sends(1, 1, A))
     never = History().submit(1, start_timeout=2).settles.waits(9).settles.shows("FAILED_TIMEDOUT").robot(1)
@@ -46,6 +50,7 @@ def test_a_mission_has_ended() -> None:
 
 
 def test_a_mission_is_for_another_robot() -> None:
+    """The violation says for which robot the mission is, and whose connection it came on."""
     history = _first(robot="q").robot(1).settles.sends(1, 1, A)
     assert "the mission with that configuration is for 'q', the connection is that of 'r'" in _told(history)
     nobody = _first().drive("connect", connection=1).settles.sends(1, 1, A)
@@ -53,12 +58,14 @@ def test_a_mission_is_for_another_robot() -> None:
 
 
 def test_a_mission_was_never_accepted() -> None:
+    """The violation says that no such mission was accepted."""
     history = History().submit(1, refused=True, start_timeout=-1).robot(1).sends(1, 1)
     assert "a mission with that channel and that configuration was never accepted" in _told(history)
 
 
 @pytest.mark.parametrize("name", [uuid_name(Uuid(2, 7)), new_uuid(3)])
 def test_a_uuid_is_told_by_its_halves(name: object) -> None:
+    """A uuid is written in words and in JSON by its lower and upper half, as a log has them."""
     uuid = Uuid.of(name[1])  # type: ignore[index]
     assert name_words(name) == f"uuid (lower {uuid.lower}, upper {uuid.upper})"
     assert SERVER.naming.write(name) == {"lower": str(uuid.lower), "upper": str(uuid.upper)}

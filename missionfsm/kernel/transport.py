@@ -64,12 +64,16 @@ MADE_BY_CLIENTS = frozenset(
     }
 )
 """The statuses that any gRPC client or gateway may make by itself, on every call."""
+
 MADE_UP = Failure((TR_04["b"],), open_ended=True)
 """An answer with such a status, which leaves open what becomes of the call."""
+
 TOO_OLD = Failure((TR_06["b"],))
 """A refusal of a call that the robot's software does not know yet."""
+
 REDELIVERED = "redelivered"
 """The relation of a message to the one before if number, timestamp and content are the same."""
+
 ENDS = frozenset({OK, DEADLINE_EXCEEDED})
 """How a transport ends a stream that has lasted long enough."""
 

@@ -28,10 +28,13 @@ from missionfsm.kernel.text import brief
 
 ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
+
 PATIENCE = 10
 """How many times as long as a silence usually is something is waited for that is missing."""
+
 MARGIN = 2
 """How many times as long as the slowest message took the next ones may take."""
+
 MAX_ROUNDS = 100
 """Missions that are cancelled in one reset before it is given up."""
 

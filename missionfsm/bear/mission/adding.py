@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
+from missionfsm.bear.mission.edits import Edit, Op
 from missionfsm.bear.mission.inputs import Call, Wanted
 from missionfsm.bear.mission.outcome import ADDED, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings.charging import AM_37_QUEUED
@@ -20,10 +21,8 @@ from missionfsm.bear.mission.state import (
     AUTOMATIC,
     NOT_CHOSEN,
     RETURN_POINT,
-    Edit,
     Kind,
     Mission,
-    Op,
     Situation,
     free_goal,
     is_foreign,
@@ -31,9 +30,7 @@ from missionfsm.bear.mission.state import (
 )
 from missionfsm.bear.wire.messages import Goal
 from missionfsm.kernel.readings import UNCONSTRAINED, meet
-from missionfsm.kernel.rules import (
-    OK,
-)
+from missionfsm.kernel.rules import OK
 
 
 def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from missionfsm.bear.mission.edits import ADDITIONS, Edit, Op
 from missionfsm.bear.mission.effects import outcomes
 from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
 from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import OPERATIONS
-from missionfsm.bear.mission.state import ADDING, Edit, Fault, Kind, Mission, Op, Robot, Situation, World, situation
+from missionfsm.bear.mission.state import Fault, Kind, Mission, Robot, Situation, World, situation
 from missionfsm.bear.wire.messages import State
 from missionfsm.kernel.readings import meet
 
@@ -169,7 +170,7 @@ class Shortcut:
         ops: list[tuple[Op, tuple[int, ...]]] = []
         added = 0
         for op, what in edit:
-            if op in ADDING:
+            if op in ADDITIONS:
                 ops.append((op, self._numbers(what)))
                 added += len(what)
                 fresh = False

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.bear.mission.adding import append, charge, create, create_workflow
+from missionfsm.bear.mission.edits import Edit, Op
 from missionfsm.bear.mission.inputs import Call, Request, Target
 from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
@@ -34,10 +35,8 @@ from missionfsm.bear.mission.state import (
     NOT_CHOSEN,
     PATROLS,
     SYSTEM_NAME,
-    Edit,
     Kind,
     Mission,
-    Op,
     Robot,
     Situation,
     World,

@@ -7,6 +7,7 @@ from collections.abc import Hashable, Iterable, Iterator
 
 from attrs import evolve
 
+from missionfsm.bear.mission.edits import Edit, Op
 from missionfsm.bear.mission.effects import become, end, failed, failed_to_start, reselected, turned_away
 from missionfsm.bear.mission.outcome import Way
 from missionfsm.bear.mission.readings.goals import AM_43_LEFT, AM_45_NONE
@@ -16,11 +17,9 @@ from missionfsm.bear.mission.state import (
     AUTOMATIC,
     NOT_CHOSEN,
     PATROLS,
-    Edit,
     Fault,
     Kind,
     Mission,
-    Op,
     Situation,
     World,
     free_goal,

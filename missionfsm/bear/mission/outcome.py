@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from missionfsm.bear.mission.state import (
-    Edit,
-)
+from missionfsm.bear.mission.edits import Edit
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.values import value
 

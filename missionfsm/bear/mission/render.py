@@ -9,14 +9,7 @@ from missionfsm.bear.mission.matching import FAMILY_TYPES, MEMBERS, TYPES, waiti
 from missionfsm.bear.mission.readings.messages import AM_08, AM_35, AM_36, AM_50_MEMBER, AM_50_SHAPE, AM_51
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_26
-from missionfsm.bear.mission.state import (
-    AUTOMATIC,
-    FAMILY,
-    GOALLESS,
-    NOT_CHOSEN,
-    RETURN_POINT,
-    Mission,
-)
+from missionfsm.bear.mission.state import AUTOMATIC, FAMILY, GOALLESS, NOT_CHOSEN, RETURN_POINT, Mission
 from missionfsm.bear.mission.stream import current_index
 from missionfsm.bear.mission.views import Listing
 from missionfsm.bear.wire.messages import (

@@ -9,6 +9,7 @@ from attrs import evolve
 
 from missionfsm.bear.mission.compiled import Shortcut, forget_ended
 from missionfsm.bear.mission.describe import describe
+from missionfsm.bear.mission.edits import Edit, Op, apply, renumber
 from missionfsm.bear.mission.effects import call_of, failing, outcomes, target
 from missionfsm.bear.mission.events import Event, apply_event, by_itself, due, unwatched_choices
 from missionfsm.bear.mission.foresight import foresees, succeeds
@@ -28,12 +29,8 @@ from missionfsm.bear.mission.state import (
     MISSION,
     PATROLS,
     SYSTEM_NAME,
-    Edit,
     Kind,
-    Op,
     Robot,
-    apply,
-    renumber,
     situation,
     without_place,
 )

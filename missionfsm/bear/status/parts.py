@@ -23,9 +23,7 @@ from missionfsm.bear.status.messages import (
 from missionfsm.bear.status.readings.unknown import AS_09_PART
 from missionfsm.bear.status.readings.values import AS_17_OFFLINE, AS_17_ZERO, AS_21, AS_22, AS_29_EMPTY, AS_32
 from missionfsm.bear.status.state import TYPED
-from missionfsm.bear.status.values import (
-    difference,
-)
+from missionfsm.bear.status.values import difference
 from missionfsm.bear.status.views import Assumed, Seen, View
 from missionfsm.bear.wire.messages import MissionState, State
 

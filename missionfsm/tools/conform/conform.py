@@ -22,6 +22,7 @@ from missionfsm.tools.conform.tour import fill, play, tour
 
 AGAIN = 0.6
 """How likely a drive is to be repeated at once: goal after goal, say."""
+
 EXPERIMENTS, ADVICE = "telling open readings apart", "what would decide open readings and why rules came up seldom"
 MISSED = "which rules could not be tested for want of drives"
 """What a stopped run may not come to besides conversations, in words."""

@@ -22,6 +22,7 @@ from missionfsm.tools.explore.undriven import Missed, missed_without
 
 LONGEST_SUSPECTED = 60
 """How long a history may be, in lines, for suspects to be looked for although the time is up."""
+
 NOT_CARRIED = 'nobody sends this in binary protobuf: an adapter that declares "requests": "binary" is not asked it'
 """A note on a wrong answer to a request that only JSON can carry."""
 

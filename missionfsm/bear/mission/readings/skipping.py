@@ -28,6 +28,7 @@ AM_17_LAST = asked_of_each(
 )
 LOOPS = PATROLS - {Kind.SERVI_HOSTING_PATROL}
 """The patrols of which the page says that they loop, so that another goal follows the last."""
+
 AM_17_PATROL = {
     part: one
     for kinds, flagged in ((LOOPS, "abcd"), (PATROLS - LOOPS, ""))

@@ -22,6 +22,7 @@ AM_25 = asked_of_each(
 )
 UNNAMED = (Kind.SERVI_BIRTHDAY, Kind.SERVI_HOSTING, Kind.SERVI_HOSTING_PATROL)
 """Workflows whose types no enum names (AM-26)."""
+
 AM_26 = {
     kind: Ambiguity(
         f"AM-26.{part_of(kind).removeprefix('servi-')}",

@@ -107,6 +107,7 @@ AS_04_BLANK: Mapping[str, Mapping[str, Ambiguity]] = {
     )
 }
 """By the arm that is empty."""
+
 AS_05 = asked_of_each(
     "AS-05",
     "{}: a selector names a robot twice: what is answered?",
@@ -140,6 +141,7 @@ AS_06_ORDER: Mapping[str, Mapping[str, Ambiguity]] = {
     for situation, (calls, says) in _ORDERS.items()
 }
 """By what is invalid about the request."""
+
 _LEVELS: Mapping[str, tuple[tuple[str, ...], str]] = {
     "request": (CALLS, "the request"),
     "selector": (SUBSCRIPTIONS, "its selector"),
@@ -156,6 +158,7 @@ AS_06_FIELD: Mapping[str, Mapping[str, Ambiguity]] = {
     for level, (calls, says) in _LEVELS.items()
 }
 """By where the field stands."""
+
 AS_06_LIST = asked_of_each(
     "AS-06.list",
     "{}: robot_ids is a bare list of ids, as in the page's example: is such a request invalid?",

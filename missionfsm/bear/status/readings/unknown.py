@@ -55,6 +55,7 @@ AS_09_GONE = {
     for call in (BATTERY, ERRORS, NAVIGATION, ROBOT)
 }
 """As with `AS_09_UNKNOWN`, what is shown of what was never reported may differ by topic: the calls are not alike."""
+
 _UNREPORTED = {"a": "it is left out", "c": "with UNKNOWN values"}
 AS_09_PART: Mapping[str, Mapping[str, Ambiguity]] = {
     part: asked_of_each(
@@ -67,6 +68,7 @@ AS_09_PART: Mapping[str, Mapping[str, Ambiguity]] = {
     for part in ("connection", "battery", "emergency_stop", "error_codes", "navigation_state")
 }
 """By the part of the state."""
+
 _UNSET = {"a": "what was known last stays", "b": "nothing", "c": "UNKNOWN values"}
 AS_09_UNSET = {
     call: Ambiguity(

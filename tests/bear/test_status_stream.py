@@ -473,8 +473,25 @@ def test_a_location_that_loses_a_robot_may_go_on_showing_it_or_not() -> None:
         MOVED,
         report("r3", "battery", battery(50)),
     ]
-    assert readings(judge([*lines, battery_message(1, "r3", 2, battery(50)), SETTLED]), "AS-25") == ("a",)
+    assert readings(judge([*lines, battery_message(1, "r3", 2, battery(50)), SETTLED]), "AS-25") == ("a", "d")
     assert readings(judge([*lines, SETTLED]), "AS-25") == ("b", "c", "e")
+
+
+@pytest.mark.parametrize("left", [False, True])
+def test_a_robot_that_has_come_to_a_location_may_stay_in_its_stream(left: bool) -> None:  # noqa: FBT001
+    """AS-25 d: one that came and has left again goes on being shown; one that was never there is not."""
+    away = {"drive": {"event": "move", "robotId": "r3", "locationId": "L2"}}
+    first = WORLDS[0]["robots"][2]["state"]["battery"]
+    opening = [
+        *opened(1, BATTERY, at("L1")),
+        battery_message(1, "r1", 1, FIRST),
+        battery_message(1, "r2", 1, SECOND),
+    ]
+    changes = [report("r3", "battery", battery(50)), battery_message(1, "r3", 2, battery(50)), SETTLED]
+    come = [*opening, MOVED, battery_message(1, "r3", 1, first), *([away] if left else [])]
+    assert readings(judge([*come, *changes]), "AS-25") == (("d",) if left else ("b", "d"))
+    assert conforms(*come, changes[0], SETTLED) is left
+    assert not conforms(*opening, *changes)
 
 
 @pytest.mark.parametrize("shown", [False, True])

@@ -33,8 +33,8 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import UPDATES
 from missionfsm.bear.status.values import clamped
-from missionfsm.bear.status.views import BLANK, About, Assumed, View, blank, each, view
-from missionfsm.kernel.readings import Assumption
+from missionfsm.bear.status.views import BLANK, MEMBERS, About, Assumed, Tie, View, blank, each, view
+from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.terms import Refs
 
@@ -162,19 +162,45 @@ def _addressed(
     optional: bool = False,
     stays: bool = False,
 ) -> list[Way]:
-    """A message about a robot, once for each way to find its streams (AS-25), which matters once it has moved."""
-    about, question = About(endpoint, robot.id, robot.location), AS_25[endpoint.value]
+    """A message about a robot, once for each way to find its streams (AS-25), which matters once it has moved.
+
+    Of one that may be left out nobody sees which streams it should have been on: only one that shows it decides that.
+    """
+    about, question = About(endpoint, robot.id, robot.location, robot.left), AS_25[endpoint.value]
     message = Emission(about, shown, (), only, optional, stays)
-    if not robot.moved:
+    if not robot.left:
         return [((message,), ())]
-    # Where it is again it may have left a stream for good, or have been there when the stream began.
-    by_ids = evolve(message, topic=evolve(about, placed=False))
-    stayed = evolve(message, topic=evolve(about, now=True, placed=True), optional=True)
+    if only is None and (optional or stays):
+        return [(tuple(_offered(message, about, question)), ())]
     return [
-        ((message,), (question["a"],)),
-        ((evolve(message, topic=evolve(about, start=False, now=True)),), (question["b"],)),
-        ((by_ids, stayed), (question["c", "e"],)),
+        (
+            (
+                evolve(message, topic=evolve(about, ties=owed)),
+                *(evolve(message, topic=evolve(about, ties=may), optional=True) for may in (offered,) if may),
+            ),
+            (question[letters],),
+        )
+        for letters, owed, offered in _FOLLOWED
     ]
+
+
+_FOLLOWED: tuple[tuple[tuple[str, ...], frozenset[Tie], frozenset[Tie]], ...] = (
+    (("a",), MEMBERS, frozenset()),
+    (("b",), frozenset((Tie.NAMED, Tie.STAYED, Tie.COME)), frozenset()),
+    # It may have left in between, and a stream that it has left does not follow it when it is back.
+    (("c", "e"), frozenset((Tie.NAMED,)), frozenset((Tie.STAYED,))),
+    # It may have left before the stream began, and never have come.
+    (("d",), MEMBERS | {Tie.COME}, frozenset((Tie.PASSED,))),
+)
+"""By the letters of AS-25: how a robot that has moved belongs to the streams that follow it, and to those that may."""
+
+
+def _offered(message: Emission, about: About, question: Ambiguity) -> Iterator[Emission]:
+    """A message that may be left out: on which streams it may come, and which letters of AS-25 that takes."""
+    for tie in Tie:
+        letters = tuple(one for letters, owed, offered in _FOLLOWED if tie in owed | offered for one in letters)
+        only = question[letters] if len(letters) < len(question.readings) else None
+        yield evolve(message, topic=evolve(about, ties=frozenset((tie,))), only=only)
 
 
 def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assumption] = ()) -> Iterator[Way]:
@@ -292,11 +318,11 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
-    after = evolve(robot, location=str(event.value), moved=True)
+    after = evolve(robot, location=str(event.value), left=robot.left | {robot.location})
     if after.location == robot.location:
         return (Step(fleet, label="move"),)
     emits = tuple(
-        Emission(About(endpoint, after.id, after.location, start=False, now=True), shown, (), only, stays=True)
+        Emission(About(endpoint, after.id, after.location, after.left, _HERE), shown, (), only, stays=True)
         for endpoint in Endpoint
         if robot.owned
         for shown, only in _joining(fleet, after, endpoint)
@@ -304,9 +330,13 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     return (Step(fleet.put(after), emits=emits, label="move"),)
 
 
+_HERE = frozenset((Tie.STAYED, Tie.COME))
+"""The ties of a robot to the streams of the location where it is."""
+
+
 def _joining(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator[tuple[View, Assumption]]:
     """What a stream of a location may show of a robot that has come: what a new one could begin with (AS-09)."""
-    followed = AS_25[endpoint.value]["b"]
+    followed = AS_25[endpoint.value]["b", "d"]
     if fleet.unheard:
         yield View(robot.id, endpoint, unheard=True), followed
         return

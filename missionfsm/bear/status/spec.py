@@ -219,7 +219,7 @@ def _search_key(fleet: Fleet) -> tuple[object, ...]:
 
 @functools.lru_cache(maxsize=10_000)
 def _outline(robot: Robot) -> tuple[object, ...]:
-    return (robot.connection, robot.moved, *(part for part in STATE_PARTS if robot.part(part) is not None))
+    return (robot.connection, bool(robot.left), *(part for part in STATE_PARTS if robot.part(part) is not None))
 
 
 # A fleet falls into robots: what is streamed of one says nothing of another.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from enum import Enum
 
 from attrs import evolve, frozen
 
@@ -49,34 +50,52 @@ class Topic:
     partly: bool = False
 
 
+class Tie(Enum):
+    """How a robot belongs to a stream, once robots have moved (AS-25)."""
+
+    NAMED = "it is one of the robot ids that were asked for"
+    STAYED = "it was at the location at the stream's start, and is there"
+    GONE = "it was at the location at the stream's start, and is elsewhere"
+    COME = "it is at the location, and was not at the stream's start"
+    PASSED = "it has been at the location, neither at the stream's start nor now"
+
+
+MEMBERS = frozenset((Tie.NAMED, Tie.STAYED, Tie.GONE))
+"""The ties of a robot that belonged to a stream at its start."""
+
+
 @frozen(cache_hash=True)
 class About:
-    """What an emission is about: one robot, where it is, and which streams of a location show it (AS-25).
+    """What an emission is about: one robot, where it is, and which streams show it.
 
     Attributes:
-        start: only those that it belonged to at their start.
-        now: only those of the location where it is.
-        placed: only those of a location, or only those by robot ids; None for both.
+        left: the locations that the robot has left.
+        ties: how it belongs to the streams that show it.
     """
 
     endpoint: Endpoint
     robot: str
     location: str
-    start: bool = True
-    now: bool = False
-    placed: bool | None = None
+    left: frozenset[str] = frozenset()
+    ties: frozenset[Tie] = MEMBERS
 
 
 def concerns(channel: Topic, emission: About) -> bool:
     """Whether a channel gets an emission."""
     if channel.robot != emission.robot or channel.endpoint is not emission.endpoint:
         return False
-    placed = channel.location is not None
-    if emission.placed not in (None, placed):
-        return False
-    if not placed:
-        return bool(channel.member)
-    return (channel.member or not emission.start) and (channel.location == emission.location or not emission.now)
+    return _tie(channel, emission) in emission.ties
+
+
+def _tie(channel: Topic, emission: About) -> Tie | None:
+    """How the robot of an emission belongs to the stream of a channel about it; None for not at all."""
+    if channel.location is None:
+        return Tie.NAMED
+    if channel.location == emission.location:
+        return Tie.STAYED if channel.member else Tie.COME
+    if channel.member:
+        return Tie.GONE
+    return Tie.PASSED if channel.location in emission.left else None
 
 
 @frozen(cache_hash=True)

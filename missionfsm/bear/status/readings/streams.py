@@ -66,6 +66,7 @@ AS_25 = asked_of_each(
         "a": "those that were there at its start",
         "b": "those that are there",
         "c": "those that were there at its start, until they leave",
+        "d": "those that were there at its start or have come since",
         "e": "those that were there at its start, until they leave; with the last one it ends, NOT_FOUND",
     },
     "a",

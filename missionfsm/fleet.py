@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from missionfsm.app.cores import cores
-from missionfsm.app.many import Judged, Piece, histories, joined, judge_piece, pieces
+from missionfsm.app.many import Judged, Piece, histories, judge_piece, merged_results, pieces
 from missionfsm.kernel.codec import UnreadableError
 
 LOCAL = "local"
@@ -73,7 +73,7 @@ def judge(
             while not all(one in done for one in wanted):
                 number, result = next(found)
                 done[number] = result or Judged(path, trouble=f"{path}: every worker that judged it ended meanwhile")
-            yield _named(joined(parts, [done.pop(one) for one in wanted]), path)
+            yield _named(merged_results(parts, [done.pop(one) for one in wanted]), path)
 
 
 def _absolute(piece: Piece) -> Piece:

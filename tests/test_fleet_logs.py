@@ -68,7 +68,7 @@ def test_a_large_file_is_judged_by_its_robots(tmp_path: Path) -> None:
     assert abs(sum((-1) ** at * lines[robot] for at, piece in enumerate(cut) for _, robot in piece.robots)) < max(
         lines.values()
     )
-    together = many.joined(cut, [many.judge_piece(piece, {}, {}) for piece in reversed(cut)])
+    together = many.merged_results(cut, [many.judge_piece(piece, {}, {}) for piece in reversed(cut)])
     assert as_json(together) == as_json(whole)
     assert [robot for robot, verdict in whole.verdicts if not verdict.conforms] == ["b", "c"]
 
@@ -80,7 +80,7 @@ def test_of_what_is_wrong_with_a_file_the_first_is_told(tmp_path: Path) -> None:
     ((*cut,),) = many.pieces([path], 2)
     whole = many.judge_piece(many.Piece(path), {}, {})
     assert (len(cut), whole.verdicts, whole.trouble.startswith(f"{path}:")) == (2, (), True)
-    assert as_json(many.joined(cut, [many.judge_piece(piece, {}, {}) for piece in cut])) == as_json(whole)
+    assert as_json(many.merged_results(cut, [many.judge_piece(piece, {}, {}) for piece in cut])) == as_json(whole)
 
 
 def test_what_names_no_robots_is_judged_in_one_piece(tmp_path: Path) -> None:

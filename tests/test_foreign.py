@@ -69,8 +69,8 @@ def test_what_is_flagged_of_the_right_one_too_notices_no_fault(monkeypatch: pyte
     """A fault that conforms is noticed by what is flagged of it alone."""
     flags = {"right": {"AM-09=b"}, "its mutant": {"AM-09=b"}, "another": {"AM-09=b", "an unknown member"}}
 
-    def judge(_name: str, subject: foreign.Subject, _seed: int, _seconds: float) -> foreign.Judged:
-        return foreign.Judged(subject, "conforms", frozenset(flags[subject.name]))
+    def judge(_name: str, subject: foreign.Subject, _seed: int, _seconds: float) -> foreign.SubjectResult:
+        return foreign.SubjectResult(subject, "conforms", frozenset(flags[subject.name]))
 
     monkeypatch.setattr(foreign, "judge", judge)
     given = [foreign.Subject(name, (), "conforms" if name == "right" else "violates", ".") for name in flags]

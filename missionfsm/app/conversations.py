@@ -15,7 +15,7 @@ from missionfsm.tools.check.basis import NOT_TRIED
 from missionfsm.tools.check.judge import MAX_LINES, Judge
 from missionfsm.tools.check.narrate import story_of
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
-from missionfsm.tools.conform.contradiction import MAX_KEPT, together
+from missionfsm.tools.conform.contradiction import MAX_KEPT, irreconcilable
 
 Judgement = tuple[System, str | None, Judge, Verdict]
 """Of one conversation: the system, the robot that it is with, its judge and the verdict."""
@@ -76,7 +76,7 @@ class Conversations:
         return _of_all(bad or whole) if len(found) > 1 else found[0][2]
 
 
-def joined(judgements: Iterable[Judgement]) -> list[tuple[str | None, Verdict]]:
+def verdicts_by_robot(judgements: Iterable[Judgement]) -> list[tuple[str | None, Verdict]]:
     """The verdict for each robot on several conversations with it, which one choice of readings has to explain."""
     found: dict[str | None, list[tuple[System, Judge, Verdict]]] = {}
     for judged, robot, judge, verdict in judgements:
@@ -95,7 +95,7 @@ def _of_all(found: Sequence[tuple[System, Judge, Verdict]]) -> Verdict:
     where, judges = found[-1][0], [judge for _, judge, _ in found]
     undecided = next((verdict for _, judge, verdict in found if judge.exhausted), None)
     whole = _added_up(verdicts, undecided)
-    violation = together(where, judges)
+    violation = irreconcilable(where, judges)
     if violation is None:
         return whole
     return evolve(whole, outcome=Outcome.VIOLATES, violation=violation, story=story_of(where, violation))

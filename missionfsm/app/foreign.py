@@ -43,7 +43,7 @@ class Subject:
 
 
 @frozen
-class Judged:
+class SubjectResult:
     """What the oracle says of a subject.
 
     Attributes:
@@ -80,14 +80,14 @@ class ForeignReport:
     """What the oracle says of all subjects of a folder."""
 
     system: str
-    judged: tuple[Judged, ...]
+    judged: tuple[SubjectResult, ...]
 
     @property
-    def wrong(self) -> tuple[Judged, ...]:
+    def wrong(self) -> tuple[SubjectResult, ...]:
         """The subjects with another verdict than they deserve."""
         return tuple(one for one in self.judged if not one.right)
 
-    def _of(self, verdict: str) -> tuple[Judged, ...]:
+    def _of(self, verdict: str) -> tuple[SubjectResult, ...]:
         return tuple(one for one in self.judged if one.subject.verdict == verdict)
 
     def to_json(self) -> JSON:
@@ -169,7 +169,7 @@ def _subject(row: JSON, where: str, folder: Path) -> Subject:
     return Subject(name, tuple(command), verdict, str(folder))
 
 
-def judge(name: str, subject: Subject, seed: int, seconds: float) -> Judged:
+def judge(name: str, subject: Subject, seed: int, seconds: float) -> SubjectResult:
     """Judge one subject as `conform` would, in at most so many seconds."""
     begin = time.monotonic()
     try:
@@ -181,9 +181,9 @@ def judge(name: str, subject: Subject, seed: int, seconds: float) -> Judged:
         finally:
             child.close()
     except SubjectError as error:
-        return Judged(subject, f"no verdict ({brief(str(error))})", seconds=time.monotonic() - begin)
+        return SubjectResult(subject, f"no verdict ({brief(str(error))})", seconds=time.monotonic() - begin)
     violation = found.violation
-    return Judged(
+    return SubjectResult(
         subject,
         found.outcome.value,
         frozenset(line.reading or str(line) for line in found.flagged),
@@ -203,7 +203,7 @@ def judge_all(
     progress: Callable[[], None] = lambda: None,
 ) -> ForeignReport:
     """Judge subjects of a system in so many processes; `progress` is called for each that was judged."""
-    found: list[Judged] = []
+    found: list[SubjectResult] = []
     if jobs == 1:
         for one in given:
             found.append(judge(name, one, seed, seconds))
@@ -216,6 +216,6 @@ def judge_all(
     return _reported(name, found)
 
 
-def _reported(name: str, found: Sequence[Judged]) -> ForeignReport:
+def _reported(name: str, found: Sequence[SubjectResult]) -> ForeignReport:
     usual = next((one.flags for one in found if one.subject.verdict == "conforms"), frozenset())
     return ForeignReport(name, tuple(evolve(one, usual=usual) for one in found))

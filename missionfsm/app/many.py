@@ -144,7 +144,7 @@ def _by_robot(path: str, workers: int) -> tuple[Piece, ...]:
 _PLACE = re.compile(r":(\d+): ")
 
 
-def joined(cut: Sequence[Piece], parts: Sequence[Judged]) -> Judged:
+def merged_results(cut: Sequence[Piece], parts: Sequence[Judged]) -> Judged:
     """What there is to say of a file whose pieces were judged: of what is wrong with it the first, as in one piece."""
     if len(parts) == 1:
         return parts[0]
@@ -207,7 +207,9 @@ def judge_files(
                 for future in begun[-1]:
                     future.add_done_callback(lambda _, share=share: progress(share))  # type: ignore[misc]
             for parts, futures in zip(cut, begun, strict=True):
-                yield joined(parts, [_result(piece.path, future) for piece, future in zip(parts, futures, strict=True)])
+                yield merged_results(
+                    parts, [_result(piece.path, future) for piece, future in zip(parts, futures, strict=True)]
+                )
         finally:
             for future in (one for futures in begun for one in futures):
                 future.cancel()
@@ -239,4 +241,14 @@ def judge_piece(
     return evolve(found, seconds=time.perf_counter() - begun)
 
 
-__all__ = ["Judged", "Piece", "histories", "joined", "judge_files", "judge_piece", "pieces", "robots", "workers_for"]
+__all__ = [
+    "Judged",
+    "Piece",
+    "histories",
+    "judge_files",
+    "judge_piece",
+    "merged_results",
+    "pieces",
+    "robots",
+    "workers_for",
+]

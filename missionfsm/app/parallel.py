@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnContext
 
 from missionfsm.systems import system
-from missionfsm.tools.mutate.teeth import MutationReport, joined, teeth
+from missionfsm.tools.mutate.teeth import MutationReport, merged_reports, teeth
 
 _MORE = "one more"
 """What a process tells the one that shows the progress, before it tells what it found."""
@@ -41,7 +41,7 @@ def teeth_on(
                     progress()
                 else:
                     found[part] = said
-    return joined(system(name), (found[part] for part in parts))
+    return merged_reports(system(name), (found[part] for part in parts))
 
 
 @contextlib.contextmanager

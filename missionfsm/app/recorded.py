@@ -25,7 +25,7 @@ from missionfsm.adapters.historyfile import (
     wrong_line,
 )
 from missionfsm.app.asked import Asked, judged_system
-from missionfsm.app.conversations import joined
+from missionfsm.app.conversations import verdicts_by_robot
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.line_cache import Texts
@@ -152,7 +152,7 @@ def _judged(
     if len(parts) > 1:  # they are judged together, for which their lines are needed
         if not keep:
             return _judged(path, asked, tell, lost, MAX_KEPT)
-        return joined((part.system, *one) for part in parts for one in part.judgements(path))
+        return verdicts_by_robot((part.system, *one) for part in parts for one in part.judgements(path))
     found = judges.verdicts(path)
     if judges.nodes > KEPT_NODES:
         _automaton.cache_clear()

@@ -46,7 +46,7 @@ Read = Callable[[Item], Iterable[dict[str, JSON]]]
 
 
 @frozen
-class Judged:
+class Statement:
     """What a judge says: a text for people as soon as something breaks, and the verdict at the end, as JSON."""
 
     text: str
@@ -104,7 +104,7 @@ class Recorder(Generic[Item]):
         self._bytes_gone = 0
         self._tell = tell
         self._over = False
-        self.judged: Judged | None = None
+        self.judged: Statement | None = None
         if file:
             Path(file).open("wb").close()  # what cannot be written is said at once
         context = multiprocessing.get_context("spawn")
@@ -171,7 +171,7 @@ class Recorder(Generic[Item]):
                 if said.verdict is None:
                     self._tell(said.text)
 
-    def close(self, seconds: float = LAG_SECONDS) -> Judged | None:
+    def close(self, seconds: float = LAG_SECONDS) -> Statement | None:
         """Write and judge what has come, and end.
 
         Args:
@@ -241,7 +241,7 @@ class _Said:
         self._say = say
         self._lock = threading.Lock()
 
-    def __call__(self, what: str | Judged) -> None:
+    def __call__(self, what: str | Statement) -> None:
         with self._lock, contextlib.suppress(OSError):  # the proxy is gone; the file is written to its end
             self._say.send(what)
 
@@ -295,13 +295,13 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
             try:
                 wrong = not judge.feed(line)
             except UnreadableError as error:
-                say(Judged(f"what was recorded cannot be judged any further: {error}", conforms=False))
+                say(Statement(f"what was recorded cannot be judged any further: {error}", conforms=False))
                 wrong = True
             if wrong and judge.violation is not None:
                 verdict = judge.verdict()
                 page.show_verdict(verdict, over=False)
                 said = [line.strip() for line in str(verdict).splitlines() if line.strip()]
-                say(Judged("; ".join(said[:2]), conforms=False))  # a line; all of it comes at the end
+                say(Statement("; ".join(said[:2]), conforms=False))  # a line; all of it comes at the end
         if not wrong:
             page.so_far(work.head["system"], judge.read)
         if batches.qsize() > MAX_WAITING_BATCHES:
@@ -309,7 +309,7 @@ def _judge(work: _Work, batches: queue.SimpleQueue[list[bytes] | None], say: _Sa
             return
     verdict = judge.verdict()
     page.show_verdict(verdict, over=True)
-    say(Judged(str(verdict), verdict.conforms, verdict.to_json()))
+    say(Statement(str(verdict), verdict.conforms, verdict.to_json()))
 
 
 class _Page:
@@ -338,7 +338,7 @@ class _Page:
     def show_verdict(self, verdict: Verdict, *, over: bool) -> None:
         """There is a verdict; it is final once traffic is over."""
         if self._path:
-            from missionfsm.pages.report import Judged as On  # noqa: PLC0415 - pages are for who wants them
+            from missionfsm.pages.report import LabelledVerdict as On  # noqa: PLC0415 - pages are for who wants them
             from missionfsm.pages.report import report  # noqa: PLC0415
             from missionfsm.systems import system  # noqa: PLC0415
 

@@ -34,7 +34,7 @@ _REACHED = (Standing.VIOLATED, Standing.AMBIGUOUS, Standing.EXERCISED)
 
 
 @frozen
-class Judged:
+class LabelledVerdict:
     """A verdict, and what it is about: the file that was read, the robot in it."""
 
     verdict: Verdict
@@ -125,7 +125,7 @@ class Story:
         history: the history as text, to be copied; `test`: as a pytest module.
     """
 
-    judged: Judged
+    judged: LabelledVerdict
     earlier: tuple[Row, ...]
     rows: tuple[Row, ...]
     asked: tuple[Asked, ...]
@@ -158,7 +158,7 @@ class Chapter:
         return sum(topic.violated for topic in self.topics)
 
 
-def report(judged: Sequence[Judged], system: Callable[[str], System], made: str = "") -> str:
+def report(judged: Sequence[LabelledVerdict], system: Callable[[str], System], made: str = "") -> str:
     """The page on some verdicts, the gravest first.
 
     Args:
@@ -166,7 +166,7 @@ def report(judged: Sequence[Judged], system: Callable[[str], System], made: str 
         made: when, by which version and by which command the page is made.
     """
     judged = sorted(judged, key=lambda one: _GRAVITY.index(one.verdict.outcome))
-    by_system: dict[str, list[Judged]] = {}
+    by_system: dict[str, list[LabelledVerdict]] = {}
     for one in judged:
         by_system.setdefault(one.verdict.system, []).append(one)
     chapters = [_chapter(system(name), some) for name, some in by_system.items()]
@@ -183,7 +183,7 @@ def report(judged: Sequence[Judged], system: Callable[[str], System], made: str 
     )
 
 
-def _story(system: System, judged: Judged) -> Story:
+def _story(system: System, judged: LabelledVerdict) -> Story:
     violation = judged.verdict.violation
     history = violation.history if violation else ()
     # One that follows no single reading is wrong in no one place.
@@ -244,7 +244,7 @@ def readings_asked(spec: Spec, verdict: Verdict) -> tuple[Asked, ...]:
     )
 
 
-def _chapter(system: System, judged: Iterable[Judged]) -> Chapter:
+def _chapter(system: System, judged: Iterable[LabelledVerdict]) -> Chapter:
     evidence = Evidence.of(one.verdict for one in judged)
     lines = (rule_line(rule, evidence) for rule in system.spec.all_rules)
     return Chapter(system.spec, topics(lines), document_map(system.spec, evidence))

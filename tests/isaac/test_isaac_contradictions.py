@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from server_history import SERVER, History
 
-from missionfsm.app.conversations import joined
+from missionfsm.app.conversations import verdicts_by_robot
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.oracle.automaton import Automaton
@@ -13,7 +13,7 @@ from missionfsm.oracle.successors import EVENT_BUDGET
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import PATIENCE, Judge
 from missionfsm.tools.check.verdict import Outcome
-from missionfsm.tools.conform.contradiction import together
+from missionfsm.tools.conform.contradiction import irreconcilable
 
 
 def called(word: str) -> list[JSON]:
@@ -32,7 +32,7 @@ def test_what_an_event_that_waits_rules_out_contradicts_as_well(patience: int) -
         assert all(judges[-1].feed(line) for line in called(word))
         assert judges[-1].verdict().conforms
     assert [one.held_back for one in judges] == [patience == 1] * 2
-    found = together(SERVER, judges)
+    found = irreconcilable(SERVER, judges)
     assert found is not None
     assert "AI-02.canceled" in found.observed
 
@@ -47,5 +47,5 @@ def test_conversations_of_which_one_is_undecided_come_to_nothing() -> None:
         for line in called("FAILED_UPSTREAM"):
             judge.feed(line)
         judgements.append((SERVER, None, judge, judge.verdict()))
-    ((_, verdict),) = joined(judgements)
+    ((_, verdict),) = verdicts_by_robot(judgements)
     assert verdict.outcome is Outcome.INCONCLUSIVE

@@ -17,9 +17,9 @@ from missionfsm.systems import system
 from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.plan import FILLS, Plan
-from missionfsm.tools.conform.reach import Candidate
+from missionfsm.tools.conform.reach import Choice
 from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.tour import fill, follow, play
+from missionfsm.tools.conform.tour import fill_gaps, follow, play
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION, STATUS = system("bear.mission"), system("bear.status")
@@ -75,7 +75,7 @@ def test_a_run_asks_everything_in_every_situation() -> None:
     """Before anything is toured or drawn every cell is met three times: all that the page lets one ask, everywhere."""
     run = Run.against(MISSION, ReferenceSubject(MISSION))
     assert run.reach is not None
-    assert fill(run, random.Random(1), FILLS, 40)
+    assert fill_gaps(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
     assert set(itertools.product(MATRIX.ways, columns())) - set(run.reach.times) == set()
     assert run.reach.reached() == MatrixCoverage(len(run.reach.times))
@@ -99,7 +99,7 @@ def test_every_subscription_is_watched_while_everything_changes() -> None:
     """Each subscription to one robot, to several and to a location sees each part that it shows change in every way."""
     run = Run.against(STATUS, ReferenceSubject(STATUS))
     assert run.reach is not None
-    assert fill(run, random.Random(0), FILLS, 40)
+    assert fill_gaps(run, random.Random(0), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
     wholes = {f"{Endpoint.ROBOT.value} to {whom}" for whom in (ONE, SOME, PLACE)}
     parts = {part.replace("_", " ") for part in STATE_PARTS}
@@ -149,7 +149,7 @@ def test_a_mission_server_is_asked_everything_in_every_situation() -> None:
     run = Run.against(SERVER, ReferenceSubject(SERVER))
     assert run.reach is not None
     assert play(run)
-    assert fill(run, random.Random(1), FILLS, 40)
+    assert fill_gaps(run, random.Random(1), FILLS, 40)
     assert {cell for cell, times in run.reach.times.items() if times < OFTEN} == set()
     assert SERVER.matrix is not None
     nameless = {"a name that two connections said"}  # three connections there are, and those have names
@@ -170,7 +170,7 @@ def test_a_robot_is_told_everything_in_every_situation() -> None:
     run = Run.against(CODELET, ReferenceSubject(CODELET))
     assert run.reach is not None
     assert play(run)  # whether a mission outlives its connection has shown then
-    assert fill(run, random.Random(1), FILLS, 40)
+    assert fill_gaps(run, random.Random(1), FILLS, 40)
     again = "the mission that runs arrives again"
     assert set(run.reach.times) == {
         *itertools.product(("idle", "idle again", "running"), {*WHERE_LINES_COME, *TIMES}),
@@ -240,7 +240,7 @@ def test_where_a_situation_is_not_sure_time_passes_once() -> None:
     assert all(follow(run, step) for step in script("mission 1s drops"))
     (pause,) = script("1s")
     chosen = run.reach.choose(run.conversation, 0, random.Random(1))
-    assert chosen == Candidate(pause.method, pause.params, None, (), ())
+    assert chosen == Choice(pause.method, pause.params, None, (), ())
     assert follow(run, pause)
     assert run.reach.choose(run.conversation, 0, random.Random(1)) is None
 

@@ -14,11 +14,11 @@ from commandline import CommandLine
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.transcript import head
-from missionfsm.pages.report import Judged, report
+from missionfsm.pages.report import LabelledVerdict, report
 from missionfsm.systems import system
 from missionfsm.tools.check.judge import check
 from missionfsm.tools.check.narrate import as_mermaid, as_pytest, story
-from missionfsm.tools.check.suspects import suspects, without_effect
+from missionfsm.tools.check.suspects import ineffective_drives, suspects
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.actions import length
 from missionfsm.tools.conform.conform import conform, search
@@ -189,7 +189,7 @@ def test_what_had_no_effect_is_told() -> None:
     robot = system("isaac.robot")
     broken = next(one for one in mutants(robot) if one.name.endswith("a-mission-starts-the-behavior-tree is not run"))
     verdict = conform(robot, broken.subject(robot), drawn=2, tours=8, steps=20, seed=1, advice=False)
-    found = without_effect(robot, history(verdict))
+    found = ineffective_drives(robot, history(verdict))
     assert [(one.says, one.rules) for one in found] == [("a mission arrives on mission", (broken.rule,))]
     assert verdict.violation is not None
     assert [one.id for one in verdict.violation.rules][-1:] == [broken.rule]
@@ -254,7 +254,7 @@ def test_an_implementation_without_a_single_reading_has_both_events_told() -> No
     says = [side.says.partition(": ") for side in verdict.violation.sides]
     assert [letter for letter, _, _ in says] == ["not a, c", "not b"]
     assert ["showed []" in event for _, _, event in says] == [False, True]
-    page = report([Judged(verdict)], system)
+    page = report([LabelledVerdict(verdict)], system)
     # What both begin with is folded away.
     assert page.count('<div class="side">') == 2
     assert (page.count("2 lines that both begin with"), page.count("Here the conversations part:")) == (1, 1)

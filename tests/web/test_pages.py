@@ -20,7 +20,7 @@ from missionfsm.oracle.transcript import head
 from missionfsm.pages.graph import BEYOND, HERE, Graph
 from missionfsm.pages.outline import ClauseLine, Evidence, Section, Standing, document_map
 from missionfsm.pages.render import prose, specification_page
-from missionfsm.pages.report import Judged, report
+from missionfsm.pages.report import LabelledVerdict, report
 from missionfsm.pages.teeth import teeth_page
 from missionfsm.tools.check.experiment import Experiment
 from missionfsm.tools.check.judge import check
@@ -126,10 +126,10 @@ def test_readings_decide_what_is_read_otherwise() -> None:
 
 def test_a_page_fetches_nothing() -> None:
     """There is no address in a page, and a browser is told to fetch nothing whatever it finds."""
-    page = report([Judged(_verdict(*TWICE))], systems.system)
+    page = report([LabelledVerdict(_verdict(*TWICE))], systems.system)
     assert re.findall(r"(?:https?:|//)[a-z]", page) == []
     assert "default-src 'none'" in page
-    assert page == report([Judged(_verdict(*TWICE))], systems.system)
+    assert page == report([LabelledVerdict(_verdict(*TWICE))], systems.system)
 
 
 def test_only_a_single_event_is_marked_as_wrong() -> None:
@@ -137,7 +137,9 @@ def test_only_a_single_event_is_marked_as_wrong() -> None:
     broken = _verdict(*TWICE[:3], {"return": 2, "result": {"missionId": "n"}})
     assert broken.violation is not None
     nowhere = evolve(broken, violation=evolve(broken.violation, at=0))
-    marked = [report([Judged(one)], systems.system).count('class="row answers wrong"') for one in (broken, nowhere)]
+    marked = [
+        report([LabelledVerdict(one)], systems.system).count('class="row answers wrong"') for one in (broken, nowhere)
+    ]
     assert marked == [1, 0]
 
 
@@ -153,7 +155,7 @@ def test_everything_that_a_verdict_carries_is_told() -> None:
         rare={"bear.mission/lifecycle/start": "it needs a rare state"},
         notes=("the time ran out",),
     )
-    page = report([Judged(verdict)], systems.system)
+    page = report([LabelledVerdict(verdict)], systems.system)
     for said in (
         "ruled out by: SkipGoal() was answered OK",
         "a, and not b, would show in",
@@ -179,7 +181,7 @@ def test_a_history_without_its_beginning_is_told() -> None:
         )
     ]
     wrong = ({"call": 300, "method": "SkipGoal", "params": {}}, {"return": 300, "error": {"status": "NOT_FOUND"}})
-    page = report([Judged(_verdict(*pairs, *wrong), "long.jsonl")], systems.system)
+    page = report([LabelledVerdict(_verdict(*pairs, *wrong), "long.jsonl")], systems.system)
     assert "lines before" in page
     assert page.count('class="row answers wrong"') == 1
 

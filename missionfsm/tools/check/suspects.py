@@ -58,7 +58,7 @@ def suspects(
     )
 
 
-def without_effect(
+def ineffective_drives(
     system: System, history: tuple[JSON, ...], readings: Mapping[str, str] | None = None
 ) -> tuple[Suspect, ...]:
     """Drives before the last event without which everything can be explained: perhaps one of those had no effect."""
@@ -143,7 +143,7 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         return violation
     answered, missing = "return" in history[-1], "settled" in history[-1]
     found = [one for one in suspects(system, history, readings) if not (answered or missing) or one.code != OK]
-    idle = without_effect(system, history, readings) if _shows_what_happened(violation) else ()
+    idle = ineffective_drives(system, history, readings) if _shows_what_happened(violation) else ()
     rules = violation.rules
     notes: tuple[str, ...] = ()
     if len(found) in range(1, MAX_SUSPECTS + 1):

@@ -18,7 +18,7 @@ from missionfsm.tools.conform.drawn import draw
 from missionfsm.tools.conform.finding import has_found, verdict_of
 from missionfsm.tools.conform.plan import DRAWN, STEPS, TOURS, Plan
 from missionfsm.tools.conform.run import BOUNDS, Run
-from missionfsm.tools.conform.tour import fill, play, tour
+from missionfsm.tools.conform.tour import fill_gaps, play, tour
 
 AGAIN = 0.6
 """How likely a drive is to be repeated at once: goal after goal, say."""
@@ -125,7 +125,7 @@ def search(run: Run, plan: Plan, seed: int) -> None:
     if (
         play(run, plan.scripts)
         and tour(run, chance, tours, plan.steps, repeats=AGAIN)
-        and fill(run, chance, fills, plan.steps)
+        and fill_gaps(run, chance, fills, plan.steps)
         and plan.drawn
     ):
         draw(run, plan.drawn, plan.steps, seed)

@@ -1,4 +1,4 @@
-"""What is wrong with an implementation that follows one reading now and another later, or several that fit no other."""
+"""What is wrong with an implementation that reads a question differently in different conversations."""
 
 from __future__ import annotations
 
@@ -23,17 +23,19 @@ MAX_KEPT = 1_000_000
 """How many lines of a conversation are kept to be judged again."""
 
 MAX_LED = 1_000
-"""How many lines of a conversation are judged anew, as somebody does who leads it."""
+"""How long a conversation may be, in lines, to be judged again without letting events wait."""
 
 Evidence = Mapping[tuple[str, str], Judge]
-"""Ambiguity id and letter to the judge of a conversation that rules it out."""
+"""For each ambiguity id and letter that was ruled out, the judge of a conversation that did it."""
 
 
 def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]) -> Violation:
-    """The violation of an implementation of which no reading of an ambiguity is left.
+    """The violation of an implementation that follows no single reading of an ambiguity.
 
     Args:
-        evidence: those of the ambiguity's letters that conversations ruled out, each to the judge of one.
+        spec: the system.
+        ambiguity: the ambiguity.
+        evidence: for each letter that was ruled out, the judge of a conversation that did it.
     """
     expected, notes, others, rules = [], [], [], list[str]()
     last: Judge | None = None
@@ -56,7 +58,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
         rules_in_words(spec, list(dict.fromkeys(rules))[:MAX_RULES]),
         f"{ambiguity.question} The implementation follows no single reading of {ambiguity.id}",
         tuple(expected),
-        # Each of several conversations says by itself what it rules out.
+        # With several conversations, each says what it rules out.
         tuple(others if len(sides) > 1 else [*notes, *others]),
         last.history if last else (),
         sides=sides if len(sides) > 1 else (),
@@ -64,7 +66,7 @@ def inconsistent(spec: Spec, ambiguity: Ambiguity, evidence: Mapping[str, Judge]
 
 
 def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
-    """Each conversation once, with all readings that it rules out, by event."""
+    """Each conversation once, with the readings that each of its events rules out."""
     found: dict[int, tuple[Judge, dict[str, list[str]]]] = {}
     for judge, reading, event in ruled_out:
         found.setdefault(id(judge), (judge, {}))[1].setdefault(event, []).append(reading)
@@ -78,7 +80,7 @@ def _sides(ruled_out: Iterable[tuple[Judge, str, str]]) -> tuple[Side, ...]:
 
 
 def _exercised(judge: Judge, elimination: Elimination) -> tuple[str, ...]:
-    """Ids of the rules that a message or a drive exercised which rules something out."""
+    """Ids of the rules that an eliminating message or drive exercised."""
     event = elimination.event
     content = event.content if isinstance(event, Received) else event.event if isinstance(event, Driven) else None
     for symbol, edge in elimination.before.next.items() if elimination.before and content is not None else ():
@@ -88,12 +90,12 @@ def _exercised(judge: Judge, elimination: Elimination) -> tuple[str, ...]:
 
 
 def _about(ambiguity: Ambiguity, evidence: Mapping[tuple[str, str], Judge]) -> dict[str, Judge]:
-    """Which conversation rules out each letter of an ambiguity."""
+    """For each letter of an ambiguity that was ruled out, the judge of the conversation that did it."""
     return {letter: which for (name, letter), which in evidence.items() if name == ambiguity.id}
 
 
-def together(system: System, judges: Sequence[Judge]) -> Violation | None:
-    """What is wrong with conversations each of which is explained, if no choice of readings explains all of them."""
+def irreconcilable(system: System, judges: Sequence[Judge]) -> Violation | None:
+    """The violation of conversations that no choice of readings explains together, although each is explained."""
     judges = [_at_leisure(system, judge) for judge in judges]
     evidence: dict[tuple[str, str], Judge] = {}
     left: dict[str, tuple[str, ...]] = {}
@@ -116,9 +118,9 @@ def together(system: System, judges: Sequence[Judge]) -> Violation | None:
 
 
 def _at_leisure(system: System, judge: Judge) -> Judge:
-    """The judge of a conversation who knows what every event rules out, as whoever led it does, if that can be had.
+    """A judge of the same conversation that knows what every event rules out, if that does not cost too much.
 
-    One who had events wait found one explanation of them, and did not ask which others there are.
+    A judge that let events wait found one explanation of them, and did not look for others.
     """
     whole = len(judge.lines) == judge.read
     if not judge.held_back or not whole or judge.read > MAX_LED or not isinstance(judge.belief, Belief):
@@ -128,7 +130,7 @@ def _at_leisure(system: System, judge: Judge) -> Judge:
 
 
 def under(system: System, judge: Judge, readings: Mapping[str, tuple[str, ...]]) -> Judge:
-    """The judge of the same conversation, of an implementation that follows one of some readings of each question."""
+    """A judge of the same conversation that allows only some readings of each ambiguity."""
     ambiguities = system.spec.ambiguities
     decided = meet(UNCONSTRAINED, (one[readings[one.id]] for one in ambiguities if readings.get(one.id)))
     return _judged_again(system, judge, decided or UNCONSTRAINED)
@@ -144,7 +146,7 @@ def _judged_again(system: System, judge: Judge, assumed: int) -> Judge:
 
 
 def essential(system: System, judge: Judge, readings: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
-    """As few of some decided questions as suffice for a conversation not to be explained."""
+    """A smallest part of some readings under which the conversation cannot be explained either."""
     needed = {
         one.id: readings[one.id]
         for one in system.spec.ambiguities
@@ -161,7 +163,7 @@ def essential(system: System, judge: Judge, readings: Mapping[str, tuple[str, ..
 
 
 def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence: Evidence) -> Violation:
-    """The violation with the conversations that rule out the other readings of the questions that it needs."""
+    """The violation, beside the conversations that rule out the readings which would explain it."""
     ruled_out: list[tuple[Judge, str, str]] = []
     for (name, letter), judge in evidence.items():
         if name in needed and letter not in needed[name]:
@@ -174,9 +176,9 @@ def beside(violation: Violation, needed: Mapping[str, tuple[str, ...]], evidence
 
 
 def recorded(violation: Violation) -> tuple[JSON, ...]:
-    """The lines of a history that shows a violation: one conversation after the other, where it takes several.
+    """The lines of a history that shows a violation: its conversations, one after the other.
 
-    No two calls have one number.
+    Calls are renumbered so that no two have the same number.
     """
     if not violation.sides:
         return violation.history

@@ -1,4 +1,4 @@
-"""What a run has found out so far: the readings that are left, what ruled the others out, and how much was done."""
+"""What the conversations of a run have shown so far: the readings that are left, and what ruled the others out."""
 
 from __future__ import annotations
 
@@ -17,19 +17,23 @@ from missionfsm.tools.conform.conversation import Conversation
 
 @define(eq=False)
 class Ledger:
-    """What all conversations of a run together come to.
+    """What all conversations of a run show together.
 
     Attributes:
-        steps: calls and drives so far; `events` that were observed, `examples` of conversations, and `succeeded` calls.
-        answers: operation to status name to how often it was answered so.
-        oddities: what is explained, and yet belongs to no reading: a line each.
-        readings: the readings that every conversation so far can be explained by.
-        ruled_out_by: ambiguity and letter to the first conversation that ruled it out.
-        eliminations: ambiguity and letter to the event in that conversation.
-        contradiction: the ambiguity whose last reading was ruled out, though each conversation had one.
-        aside: ambiguities of which it is known that no single reading is followed.
-        departing: of each conversation whose every explanation departs from the text somewhere, what these assume.
-        notes: what else there is to know about how the run went.
+        system: the system.
+        steps: how many calls and drives were done.
+        events: how many events were observed.
+        examples: how many conversations were had.
+        succeeded: how many calls were answered OK.
+        answers: for each operation, how often it was answered with each status.
+        oddities: what is explained and belongs to no reading, but is worth a line of the verdict.
+        readings: for each ambiguity that mattered, the readings that explain every conversation so far.
+        ruled_out_by: for each ambiguity id and letter that was ruled out, the first conversation that did it.
+        eliminations: the same, with the event in that conversation.
+        contradiction: the ambiguity of which no reading is left, although each conversation follows one.
+        aside: ambiguities that are known to be read differently in different conversations.
+        departing: for each conversation whose every explanation departs from the text, what its explanations assume.
+        notes: lines for the verdict about how the run went.
     """
 
     system: System
@@ -48,7 +52,7 @@ class Ledger:
     notes: list[str] = field(factory=list)
 
     def note(self, says: str) -> None:
-        """Say something with the verdict, once."""
+        """Add a line to the notes, once."""
         if says not in self.notes:
             self.notes.append(says)
 
@@ -62,7 +66,7 @@ class Ledger:
         self.oddities.update(dict.fromkeys(done.judge.oddities))
 
     def enter(self, done: Conversation) -> list[str]:
-        """Enter the readings of a conversation that is explained; the ambiguities of which none is left by now."""
+        """Enter the readings of an explained conversation. Returns the ambiguities of which no reading is left."""
         contradicted = []
         left = done.judge.belief.readings
         ways = frozenset(one.assumed for one in done.judge.belief.node.explanations)
@@ -87,12 +91,12 @@ class Ledger:
             self.eliminations.setdefault((name, letter), done.judge.eliminations.found[name, letter])
 
     def set_aside(self, name: str) -> None:
-        """An ambiguity is known to be answered now in one way and now in another."""
+        """Look at an ambiguity no longer: it is known to be read differently in different conversations."""
         self.aside.add(name)
         del self.readings[name]
 
     def inconsistency(self) -> Violation:
-        """What is wrong with an implementation that follows no single reading of the contradiction's ambiguity."""
+        """The violation of following no single reading of the contradiction's ambiguity."""
         spec = self.system.spec
         ambiguity = next(one for one in spec.ambiguities if one.id == self.contradiction)
         evidence = {letter: done.judge for (name, letter), done in self.ruled_out_by.items() if name == ambiguity.id}

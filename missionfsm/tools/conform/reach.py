@@ -1,4 +1,4 @@
-"""Where a run has been: in which situations it asked what, and how it goes where it has been too seldom.
+"""Which actions a run has done in which situations, and what it can do where that was too seldom.
 
 A system says what its situations are and which kinds of actions matter (`missionfsm.kernel.matrix`). Every cell of
 situation × kind that comes up in some conversation is to be met `OFTEN` times.
@@ -26,18 +26,25 @@ from missionfsm.tools.conform.guide import Guide, Template, rested, template_of
 from missionfsm.tools.placeholders import is_template, kind_of, ways
 
 ALIKE = 8
-"""In how many explanations the situation has to be the same to be sure of it; nobody looks at more."""
+"""How many explanations are compared at most to be sure of a situation; with more it is not sure."""
 
 Cell = tuple[str, str]
 """A situation and a kind of action."""
 
 Columns = dict[tuple[Request | Incident, Refs], tuple[Cell, ...]]
-"""What is asked where something stands, to the cells that it meets; it is worked out once."""
+"""For each request or event and the places of its names, the cells that it meets."""
 
 
 @frozen
-class Candidate:
-    """Something that could be done now, the cells that it would meet, and of a drive what happens to what."""
+class Choice:
+    """Something that could be done now.
+
+    Attributes:
+        method, params, name, picks: as those of an `Action`.
+        cells: the cells that it would meet.
+        event: the event, if it is a drive.
+        refs: the positions of the event's names among those of the state.
+    """
 
     method: str
     params: JSON
@@ -54,7 +61,7 @@ class Reach:
 
     Attributes:
         matrix: what the system says of its situations.
-        times: cell to how often it was met; those that could have been met and were not stand at 0.
+        times: how often each cell was met; 0 for a cell that could have been met and was not.
         guide: what is worth trying, as large as the matrix says.
     """
 
@@ -76,7 +83,7 @@ class Reach:
         return self._guide
 
     def situation(self, conversation: Conversation) -> tuple[str | None, Explanation]:
-        """The situation in which a conversation stands, as far as that is sure, and how it is explained."""
+        """The situation of a conversation, if that is sure, and its first explanation."""
         judge = conversation.judge
         successors = judge.automaton.successors
         explanations = judge.belief.node.explanations
@@ -92,7 +99,7 @@ class Reach:
         return self.matrix.situation(here.state, opened(here))
 
     def note(self, conversation: Conversation, action: Action) -> None:
-        """An action is about to be done."""
+        """Count the cells that an action is about to meet."""
         if action.method not in (*self.system.codec.methods, "drive", CANCEL.method):
             return
         situation, here = self.situation(conversation)
@@ -109,7 +116,7 @@ class Reach:
             self.times[situation, column] = self.times.get((situation, column), 0) + 1
 
     def _said(self, conversation: Conversation, here: Explanation, action: Action) -> tuple[Request | Incident, Refs]:
-        """The request or event that an action says, and where the things that it names stand."""
+        """The request or event of an action, and the positions of its names among those of the state."""
         if is_template(action.params):
             key = (action.method, repr(action.params))
             if key not in self._templates:
@@ -122,7 +129,7 @@ class Reach:
         return self._what(action), ()
 
     def _what(self, action: Action) -> Request | Incident:
-        """The request or event that an action says, but for the names in it."""
+        """The request or event of an action, without the names in it."""
         key = (action.method, repr(action.params))
         if key not in self._read:
             codec = self.system.codec
@@ -133,20 +140,20 @@ class Reach:
                 self._read[key] = codec.read_request(action.method, rest)
         return self._read[key]
 
-    def choose(self, conversation: Conversation, world: int, draw: random.Random) -> Candidate | None:
+    def choose(self, conversation: Conversation, world: int, draw: random.Random) -> Choice | None:
         """Something to do now in a cell that was met too seldom, one of those that were met least often."""
         situation, here = self.situation(conversation)
         if situation is None:
             return self._pause(conversation)
-        left: list[Candidate] = []
+        left: list[Choice] = []
         for one in self._possible(conversation, here, world, situation):
-            # Whether something happens is dear to tell: it is asked of cells that are new, and of what is chosen.
+            # It costs much to tell whether a drive happens: that is asked only for new cells, and for what is chosen.
             if self.times.keys() >= set(one.cells) or self._happens(here, one):
                 for cell in one.cells:
                     self.times.setdefault(cell, 0)
                 left.append(one)
         while left:
-            # Another stream may make another situation: as long as there is something else to do here, it waits.
+            # Another stream may lead to another situation, so it comes only when nothing else is left to do here.
             here_still = [one for one in left if one.method not in (*self.system.codec.streams, CANCEL.method)] or left
             seldom = min(map(self._least, here_still))
             some = [one for one in here_still if self._least(one) == seldom]
@@ -156,28 +163,26 @@ class Reach:
             left = [one for one in left if one is not chosen]
         return None
 
-    def _pause(self, conversation: Conversation) -> Candidate | None:
-        """What makes sure in which situation everything is, unless that was done just now."""
+    def _pause(self, conversation: Conversation) -> Choice | None:
+        """The pause that makes the situation sure, unless it was made just now."""
         pause = self.matrix.pause
         last = next((one for one in reversed(conversation.actions) if one.method != SETTLE), None)
         if pause is None or (last is not None and last.params == pause.params):
             return None
-        return Candidate(pause.method, pause.params, None, (), ())
+        return Choice(pause.method, pause.params, None, (), ())
 
-    def _happens(self, here: Explanation, one: Candidate) -> bool:
+    def _happens(self, here: Explanation, one: Choice) -> bool:
         event = one.event
         return event is None or bool(tuple(self.system.spec.drives[event.name].steps(here.state, event, one.refs)))
 
-    def _least(self, one: Candidate) -> int:
+    def _least(self, one: Choice) -> int:
         return min(self.times[cell] for cell in one.cells)
 
     def lacks(self, situation: str) -> bool:
-        """Whether a cell of a situation was met too seldom, as far as is known."""
+        """Whether a known cell of a situation was met too seldom."""
         return any(where == situation and times < OFTEN for (where, _), times in self.times.items())
 
-    def _possible(
-        self, conversation: Conversation, here: Explanation, world: int, situation: str
-    ) -> Iterator[Candidate]:
+    def _possible(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Choice]:
         """Everything that could be done now in a cell that was met too seldom."""
         streams = [ref for ref, name in conversation.given.items() if kind_of(name) == "stream"]
         cancels = ((situation, CANCEL.method),)
@@ -185,9 +190,9 @@ class Reach:
         yield from self._events(conversation, here, world, situation)
         yield from self._filled(conversation, here, world, situation)
         if streams and self._lack(cancels):
-            yield Candidate(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cancels)
+            yield Choice(CANCEL.method, CANCEL.params, None, ((0, streams[-1]),), cancels)
 
-    def _calls(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
+    def _calls(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Choice]:
         absent = conversation.partner.absent
         belief, given = conversation.judge.belief, {name: one for one, name in conversation.given.items()}
         known = ((position, given.get(belief.name(number))) for position, number in enumerate(here.names))
@@ -197,17 +202,17 @@ class Reach:
                 for where, name in names if call.named else ((None, None),):
                     cells = self._cells(here, situation, call.request, (where,) if call.named else ())
                     if self._lack(cells):
-                        yield Candidate(method, call.prompt.params, name, (), cells)
+                        yield Choice(method, call.prompt.params, name, (), cells)
 
-    def _events(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
+    def _events(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Choice]:
         explanations = conversation.judge.belief.node.explanations
         for drive, event in itertools.chain.from_iterable(self.guide.events[world].values()):
             cells = self._cells(here, situation, event, ())
             waits = self.system.spec.drives[event.name].waits
             if self._lack(cells) and not any(waits(one.state) for one in explanations):
-                yield Candidate("drive", drive, None, (), cells, event)
+                yield Choice("drive", drive, None, (), cells, event)
 
-    def _filled(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Candidate]:
+    def _filled(self, conversation: Conversation, here: Explanation, world: int, situation: str) -> Iterator[Choice]:
         """What has names in it, with those that were given, each in each place that it may have."""
         absent, naming = conversation.partner.absent, self.system.naming
         belief = conversation.judge.belief
@@ -225,7 +230,7 @@ class Reach:
                 cells = tuple((situation, kind) for kind in kinds)
                 if self._lack(cells):
                     picks = tuple((slot, given[name]) for slot, name in picked.items() if name in given)
-                    yield Candidate(template.method, template.params, None, picks, cells, event, refs)
+                    yield Choice(template.method, template.params, None, picks, cells, event, refs)
 
     def _cells(self, here: Explanation, situation: str, asked: Request | Incident, refs: Refs) -> tuple[Cell, ...]:
         """The cells of the matrix that asking for something meets."""

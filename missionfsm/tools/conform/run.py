@@ -1,4 +1,4 @@
-"""One run against one implementation: what is done in its conversations, and what came of them."""
+"""One run against one implementation: it has conversations, and enters into its ledger what they show."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from missionfsm.tools.conform.narrowing import Narrowing
 from missionfsm.tools.conform.reach import Reach
 
 BOUNDS = Bounds(4, goals=3)
-"""What a run tries, unless it is told otherwise."""
+"""The default bounds of what a run tries."""
 
 
 @define(eq=False)
@@ -31,13 +31,19 @@ class Run:
     """One run against one implementation.
 
     Attributes:
-        progress: told of the run after every conversation.
-        expects: whether a violation is known; the search goes on after such a one, in another conversation.
-        enough: whether no more should be done.
-        without: calls and drives that are left out, though the adapter may have them.
-        last: the conversation that was begun last; `found` the one that could not be explained.
-        reach: in which situations what was asked; None where the system does not say which there are.
-        over: whether the last conversation ended in a violation that is known; what is done in it then is nothing.
+        partner: the implementation.
+        narrowing: the automata in which conversations are judged.
+        bounds: the bounds of what is tried.
+        guide: what proposes the next action.
+        progress: given the run after every conversation.
+        expects: whether a violation is known. After a known one the search goes on, in another conversation.
+        enough: whether the run is to stop.
+        without: calls and drives that are left out, although the adapter may have them.
+        ledger: what all conversations so far have shown.
+        reach: which actions were done in which situations; None if the system has no matrix.
+        last: the conversation that was begun last.
+        found: the conversation that could not be explained, if there is one.
+        over: whether the last conversation ended in a known violation. Nothing more is done in it.
     """
 
     partner: Partner
@@ -74,13 +80,18 @@ class Run:
         without: Collection[str] = (),
         **options: Any,  # noqa: ANN401 - the other attributes
     ) -> Self:
-        """A run against an implementation that nobody knows yet.
+        """A run against an implementation, after a handshake with it.
 
         Args:
+            system: the system.
+            subject: the implementation.
             readings: readings that it has to follow.
-            automaton: the belief automaton to walk, in the place of one of its own.
+            bounds: the bounds of what is tried.
+            automaton: the belief automaton to walk; None makes one for this run.
             no_flagged: whether nothing may depart from the letter of the text.
-            only, without: calls that are to be made, and calls and drives that are to be left out.
+            only: the calls to make; all if there are none.
+            without: calls and drives to leave out.
+            options: other attributes of the run.
 
         Raises:
             SubjectError: the adapter failed.
@@ -111,7 +122,7 @@ class Run:
 
     @property
     def system(self) -> System:
-        """What the implementation has of the system."""
+        """The system, as far as the implementation has it."""
         return self.partner.system
 
     @property
@@ -134,31 +145,31 @@ class Run:
     # Having conversations.
 
     def start(self, world: JSON, *, narrowly: bool = False) -> Conversation:
-        """Begin a new conversation in a world; narrowly: what others have decided is taken for decided."""
+        """Begin a new conversation in a world; narrowly: under the readings that other conversations have left."""
         self.over = False
         automaton = self.narrowing.choose(self.ledger.readings, at_once=narrowly)
         self.last = Conversation(self.partner, world, automaton)
         return self.last
 
     def do(self, method: str, params: JSON = None, name: NameRef | str | None = None, picks: Bindings = ()) -> bool:
-        """Do something in the conversation that was begun last; False once something is found that is not expected."""
+        """Do something in the last conversation. False once a violation is found that is not expected."""
         done = self.conversation.actions
         return self.perform(Action(abs(done[-1].serial) + 1 if done else 1, method, params, name, picks))
 
     def settle(self) -> bool:
-        """Wait until all that was caused has been seen; see `do`."""
+        """Wait until everything has settled; see `do`."""
         return self.do(SETTLE)
 
     def follow(self, proposal: Proposal, *, counts: bool = True) -> bool:
-        """Do what the guide proposed; the guide remembers it if it counts."""
+        """Do what the guide proposed. The guide remembers it if it counts."""
         if counts:
             self.guide.note(proposal)
         return self.do(proposal.method, proposal.params, proposal.name, proposal.picks)
 
     def perform(self, action: Action) -> bool:
-        """Perform an action in the conversation that was begun last; see `do`.
+        """Perform an action in the last conversation; see `do`.
 
-        Where the implementation may have done more by itself than one can follow, it is waited for first.
+        If the implementation may have done more by itself than can be followed, everything has to settle first.
         """
         if action.method != SETTLE and self.narrowing.is_lost_in(self.conversation):
             return self._step(Action(-action.serial, SETTLE)) and self._step(action)
@@ -177,7 +188,7 @@ class Run:
         return self._is_explained_otherwise(last) or self._ends_here()
 
     def _is_explained_otherwise(self, last: Conversation) -> bool:
-        """Judge what cannot be explained, or not cheaply, by the other automaton."""
+        """Judge the last conversation in the other automaton, if it is not explained in this one or costs too much."""
         if last.judge.exhausted:
             before = self.narrowing.current
             after = self.narrowing.choose(self.ledger.readings, at_once=True)
@@ -185,7 +196,7 @@ class Run:
         elif self.narrowing.narrow is not None:
             self.last = last.under(self.narrowing.wide)
             if self.last.right:
-                # Explained by itself, but not together with those before: a contradiction, if one question shows it.
+                # It is explained alone, but not together with those before: a contradiction, if one ambiguity shows it.
                 known = len(self.ledger.aside)
                 if not self.record():
                     return False
@@ -197,7 +208,7 @@ class Run:
         return self.conversation.right
 
     def _ends_here(self) -> bool:
-        """The last conversation cannot be explained: whether that is known, and the search goes on."""
+        """End the last conversation, which cannot be explained. Returns whether that is known and the run goes on."""
         if self.ledger.contradiction is not None:
             return False
         if self.knows(self.conversation):
@@ -215,9 +226,9 @@ class Run:
         return violation is not None and self.expects(violation)
 
     def converse(self, world: JSON, actions: tuple[Action, ...]) -> bool:
-        """Have a whole conversation, judged by all that is known; False once something is found that is not expected.
+        """Have a whole conversation under the readings that others have left. False once a new violation is found.
 
-        It shows more than one that is judged by itself: what others have decided is taken for decided.
+        It shows more than a conversation that is judged by itself.
         """
         self.start(world, narrowly=True)
         for action in actions:
@@ -228,7 +239,7 @@ class Run:
         return self.record()
 
     def record(self) -> bool:
-        """Enter what the last conversation came to; False if it contradicts the readings of those before."""
+        """Enter the last conversation into the ledger. False if it contradicts the readings of those before."""
         done = self.conversation
         self.ledger.count(done)
         self.progress(self)
@@ -244,7 +255,7 @@ class Run:
         return True
 
     def replay(self, world: JSON, actions: tuple[Action, ...], automaton: Automaton | None = None) -> Conversation:
-        """These actions in a new conversation, until it cannot be explained any more, or no more should be done."""
+        """Do these actions in a new conversation, until it cannot be explained any more or the run is to stop."""
         conversation = Conversation(self.partner, world, automaton or self.narrowing.wide)
         for action in actions:
             if self.enough() or not conversation.perform(action):

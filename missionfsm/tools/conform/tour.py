@@ -1,4 +1,4 @@
-"""The systematic conversations of a run: those that are written down, and those that walk where it has been least."""
+"""The systematic conversations of a run: scripts, and tours that go where the run has been least."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from missionfsm.tools.conform.run import Run
 from missionfsm.tools.placeholders import kind_of, slots
 
 Scripts = tuple[tuple[int, tuple[ScriptStep, ...]], ...]
-"""Conversations that are written down, each with the world that it begins in."""
+"""Scripts, each with the number of the world that it begins in."""
 
 SETTLED = 0.6
-"""How often a tour waits for everything to settle after a step."""
+"""How likely a tour is to wait for everything to settle after a step."""
 
 RARE, RAREST = 0.4, 3
-"""How often a tour turns to what the rules have said least in the whole run, and among how many things it draws."""
+"""How likely a tour is to turn to what the rules have said least in the whole run, and among how many it draws."""
 
 FAVOURED = 0.5
-"""How often a tour that has a favourite turns to it."""
+"""How likely a tour that has a favourite is to turn to it."""
 
 
 def written(alphabets: Sequence[Alphabet]) -> Scripts:
-    """Those of the usual world, which is the first, and of each world what is worth having nowhere before it."""
+    """The scripts of the first world, which is the usual one, and those that other worlds have apart from it."""
     found = [(0, script) for script in alphabets[0].scripts]
     apart: list[tuple[ScriptStep, ...]] = []
     for world, alphabet in enumerate(alphabets):
@@ -39,7 +39,7 @@ def written(alphabets: Sequence[Alphabet]) -> Scripts:
 
 
 def some(scripts: Scripts, most: int | None) -> Scripts:
-    """All, or at most so many: from everywhere among those of the usual world, then of the others."""
+    """All scripts, or so many: spread over those of the usual world, and then those of other worlds."""
     if most is None or most >= len(scripts):
         return scripts
     usual = tuple(one for one in scripts if one[0] == 0)
@@ -49,10 +49,11 @@ def some(scripts: Scripts, most: int | None) -> Scripts:
 
 
 def play(run: Run, most: int | None = None) -> bool:
-    """Have the conversations that the alphabets have written down; whether all could be explained.
+    """Have the scripts of the alphabets. Returns whether all could be explained.
 
     Args:
-        most: how many of them, from everywhere among them; all by default.
+        run: the run.
+        most: how many of them, spread over all; None: all of them.
     """
     for world, script in some(written(run.guide.alphabets), most):
         if run.enough():
@@ -69,10 +70,10 @@ def play(run: Run, most: int | None = None) -> bool:
 
 
 def follow(run: Run, line: ScriptStep) -> bool:
-    """Take one step of a script; whether all could be explained."""
+    """Take one step of a script. Returns whether everything could be explained."""
     wanted = slots(line.params)
     picks = tuple(_named(run, wanted, line.picks))
-    # A name without a kind goes where `ANY_NAME` stands, not into a slot.
+    # A pick without a slot of its own is the name that takes the place of `ANY_NAME`.
     name = None if wanted or not line.picks else picks[0][1] if picks else WRONG_NAME
     return run.do(line.method, line.params, name, picks if wanted else ())
 
@@ -84,7 +85,7 @@ def _named(run: Run, wanted: dict[int, str], picks: tuple[tuple[int, int], ...])
             yield slot, known[position]
 
 
-def fill(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
+def fill_gaps(run: Run, draw: random.Random, conversations: int, steps: int) -> bool:
     """Conversations that go where it was asked too seldom, in every world; whether all could be explained.
 
     Each is led into a situation, and goes on as long as there is something to do where it comes to.
@@ -133,7 +134,7 @@ def _filled(
 
 
 def look(run: Run, world: int) -> bool:
-    """Wait for everything to settle and see where things stand."""
+    """Wait for everything to settle, and ask for the state if the system has a call for that."""
     asked = run.guide.alphabets[world].look
     return run.settle() and (asked is None or run.do(asked.method, asked.params))
 
@@ -146,11 +147,15 @@ def tour(
     favour: str | None = None,
     repeats: float = 0.0,
 ) -> bool:
-    """Systematic conversations: every step walks the edge that was walked least, mostly with a stream watched.
+    """Have conversations in which every step walks the edge that was walked least, mostly with a stream open.
 
     Args:
+        run: the run.
+        draw: where chance comes from.
+        conversations: how many conversations.
+        steps: calls and drives in each, at most.
         favour: an operation or drive to turn to again and again.
-        repeats: how often what the surroundings just did happens once more at once, where it leads elsewhere.
+        repeats: how likely a drive is to be repeated at once, if that leads elsewhere.
 
     Returns:
         whether everything could be explained.
@@ -189,7 +194,7 @@ class _Tour:
         return run.settle() and run.record()
 
     def _repeated(self, done: Proposal, world: int, left: Iterator[int]) -> bool:
-        """The same again, as often as chance has it: whether everything could be explained."""
+        """Repeat a drive as often as chance has it. Returns whether everything could be explained."""
         run = self.run
         while self.repeats and self.draw.random() < self.repeats and not run.over:
             more = self._once_more(done, world)
@@ -200,7 +205,7 @@ class _Tour:
         return True
 
     def _once_more(self, done: Proposal, world: int) -> Proposal | None:
-        """The same drive again, if it leads elsewhere: some of what can go wrong is many goals away."""
+        """The same drive again, if it leads elsewhere: some faults show only many goals later."""
         if done.method != "drive":
             return None
         found = self.run.guide.proposals(self.run.conversation, world, done.params["event"])
@@ -219,7 +224,7 @@ class _Tour:
         least = guide.walked[proposals[0].edge]
         equal = [one for one in proposals if guide.walked[one.edge] == least]
         if guide.system.spec.abstraction.idle_search_key is not None and draw.random() < FAVOURED:
-            # Where most of what can be said has no effect, what leads elsewhere comes first.
+            # In a system in which most of what can be said has no effect, what leads elsewhere comes first.
             rare = guide.visited[equal[0].leads_to]
             equal = [one for one in equal if guide.visited[one.leads_to] == rare]
         return equal[draw.randrange(len(equal))]

@@ -122,7 +122,7 @@ def teeth(
         seed: the seed of the conversations.
         only: a text in the names of the mutants to judge; all have the empty text.
         every: take only every so many-th of those, from the first on.
-        part: which part of them, of how many that are judged side by side; `joined` puts the parts together again.
+        part: which part of them, of how many that are judged side by side; `merged_reports` puts them together again.
         progress: given the result of every mutant.
     """
     automaton = Automaton(system.spec, tuple(system.spec.drives))
@@ -143,7 +143,7 @@ def sampled(system: System, only: str, every: int) -> list[Mutant]:
     return [mutant for mutant in mutants(system) if only in mutant.name][::every]
 
 
-def joined(system: System, parts: Iterable[MutationReport]) -> MutationReport:
+def merged_reports(system: System, parts: Iterable[MutationReport]) -> MutationReport:
     """The report on all mutants in the order of the rules, put together from the reports on parts of them."""
     parts = tuple(parts)
     found = {result.mutant: result for part in parts for result in part.results}

@@ -14,7 +14,7 @@ from attrs import evolve
 from busy import Habits, busy
 from traffic import readings_at_random
 
-from missionfsm.app import recorded
+from missionfsm.app import perrobot
 from missionfsm.app.recorded import check_file
 from missionfsm.bear.mission.foresight import foresees, succeeds
 from missionfsm.bear.mission.state import Robot
@@ -243,7 +243,7 @@ def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.Monkey
     wrong = disordered(right)
     monkeypatch.setattr(window, "WINDOW_BUDGET", 1_500)
     led = [judged(tmp_path / "log", lines) for lines in (right, wrong)]
-    as_it_is = recorded.judged_system
+    as_it_is = perrobot.judged_system
 
     def blind(*name: Any, **how: Any) -> Any:
         found = as_it_is(*name, **how)
@@ -251,7 +251,7 @@ def test_foresight_changes_no_verdict(tmp_path: Path, monkeypatch: pytest.Monkey
         blinded = evolve(found.spec, foresees=None, succeeds=None, decided=None, abstraction=remembering)
         return evolve(found, spec=blinded)
 
-    monkeypatch.setattr(recorded, "judged_system", blind)
+    monkeypatch.setattr(perrobot, "judged_system", blind)
     for lines, verdict in zip((right, wrong), led, strict=True):
         other = judged(tmp_path / "log", lines)
         if other.outcome.value != "inconclusive":

@@ -33,14 +33,14 @@ asked for; its title stands here too, so that a list of all systems loads none."
 
 
 def _others() -> dict[str, EntryPoint]:
-    """The systems of other packages; a name that is taken stays what it is."""
+    """The systems of other packages, but for those that have a name of a system of this one."""
     from importlib.metadata import entry_points  # noqa: PLC0415 - it reads mail, and is seldom needed
 
     return {one.name: one for one in sorted(entry_points(group=GROUP)) if one.name not in _SHIPPED}
 
 
 def names() -> tuple[str, ...]:
-    """The names of all systems: those that are here, and those of packages that are installed."""
+    """The names of all systems: those of this package, then those of other installed packages."""
     return (*_SHIPPED, *_others())
 
 

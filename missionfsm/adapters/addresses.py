@@ -12,11 +12,11 @@ _ROBOT = ("robotId", "robot_id")
 
 
 class Addresses:
-    """Tells whose line it is, and checks that ``at`` never goes down for one robot; robots' clocks are independent.
+    """Finds which robot each line is about, and checks that ``at`` never goes down for one robot.
 
     Args:
-        by_params: whether the params of a call may say for which robot it is. Its answer, and what comes on a stream
-            that it opened, are that robot's as well.
+        by_params: whether the params of a call may name its robot. Its answer, and messages of a stream that it opened,
+            are about that robot as well.
 
     Attributes:
         by_call: whether any call said so.

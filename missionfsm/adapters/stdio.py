@@ -1,7 +1,7 @@
 """The adapter protocol over stdin and stdout: the reference as a server, and a child process as a subject.
 
-The protocol is JSON-RPC 2.0, one object a line. Everything that a child may do wrong ends in a `SubjectError` that
-says what it was: it cannot be started, it exits, it hangs, it writes rubbish, it floods.
+The protocol is JSON-RPC 2.0, one object a line. Everything that a child may do wrong ends in a `SubjectError` that says
+what it was: the child cannot be started, exits, hangs, writes rubbish, or writes too much.
 """
 
 from __future__ import annotations

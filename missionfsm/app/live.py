@@ -123,7 +123,7 @@ class Live:
 
         Args:
             listener: is given every message, the first before this returns.
-            spoilt: what the network makes of it, which has no effect.
+            spoilt: how the network fails here, without an effect on the robot.
         """
         with self._lock:
             if spoilt is not None:

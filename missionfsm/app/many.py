@@ -37,7 +37,7 @@ WORTH_A_PROCESS = 2_000_000
 
 @frozen
 class Judged:
-    """What there is to say of one file.
+    """The result for one file.
 
     Attributes:
         path: the file.
@@ -145,7 +145,7 @@ _PLACE = re.compile(r":(\d+): ")
 
 
 def merged_results(cut: Sequence[Piece], parts: Sequence[Judged]) -> Judged:
-    """What there is to say of a file whose pieces were judged: of what is wrong with it the first, as in one piece."""
+    """The result for a file whose pieces were judged. Of several troubles it is the first one, as in one piece."""
     if len(parts) == 1:
         return parts[0]
     path = cut[0].path
@@ -160,13 +160,13 @@ def merged_results(cut: Sequence[Piece], parts: Sequence[Judged]) -> Judged:
 
 
 def _line_of(trouble: str) -> int:
-    """The line that it is about, if it is about one."""
+    """The number of the line that a trouble is about; 0 if it is about none."""
     place = _PLACE.search(trouble)
     return int(place[1]) if place else 0
 
 
 def workers_for(paths: Iterable[str]) -> int:
-    """As many processes as there are cores, as far as each has enough to do."""
+    """How many processes judge some files: as many as there are cores, if each has enough to do."""
     size = sum(Path(path).stat().st_size for path in paths if is_plain_file(path))
     return max(1, min(cores(), size // WORTH_A_PROCESS))
 
@@ -180,13 +180,16 @@ def judge_files(
     tell: Callable[[str], None] | None = None,
     **how: Any,  # noqa: ANN401 - see `missionfsm.app.asked.Asked`
 ) -> Iterator[Judged]:
-    """Judge files, several at a time; what is found comes in their order and does not depend on `jobs`.
+    """Judge files, several at a time. The results come in the order of the files, and do not depend on `jobs`.
 
     Args:
-        jobs: in how many processes; None: as many as there are cores, as far as the files are worth it.
-        progress: called for every file that has been judged, or for a part of one with how much of the file it is.
-        tell: called with what is told on the way, as soon as it is there; None keeps it for `Judged.said`. What several
-            processes are told is kept.
+        paths: the files.
+        readings: the readings to assume.
+        jobs: how many processes judge; None: as many as there are cores, if the files are worth it.
+        progress: given 1 for every file that has been judged, or a part of that for a piece of a file.
+        tell: given what is told on the way, as soon as it is there; None keeps it for `Judged.said`. With several
+            processes it is kept.
+        how: how else the files are to be judged; see `missionfsm.app.asked.Asked`.
     """
     waiting = list(paths)
     jobs = workers_for(waiting) if jobs is None else jobs

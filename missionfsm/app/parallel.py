@@ -48,7 +48,7 @@ def teeth_on(
 def _begun(
     context: SpawnContext, name: str, judge: Callable[..., MutationReport], part: tuple[int, int]
 ) -> Iterator[Connection]:
-    """A process that judges a part, as that which it tells; it ends with this one, however this one ends."""
+    """A process that judges a part: the connection on which it reports. It ends when this process ends."""
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_judge, args=(name, judge, part, theirs), daemon=True)
     process.start()

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 @frozen
 class Cue:
-    """Something that happens by itself, so many seconds after what was before it."""
+    """A drive that happens by itself, so many seconds after the cue before it."""
 
     after: float
     drive: JSON

@@ -139,7 +139,7 @@ class Troubles:
 
 
 def readable(path: str) -> str:
-    """The name of a file as text: one that is not UTF-8 has what no encoding and no JSON has."""
+    """The name of a file as text that can be printed: bytes that are not UTF-8 are replaced."""
     return path.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 

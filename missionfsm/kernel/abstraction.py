@@ -1,4 +1,4 @@
-"""How states are told apart where not all of them can be looked at: by a search, and by an exploration."""
+"""Which states a search and an exploration treat as equal, since not all of them can be looked at."""
 
 from __future__ import annotations
 
@@ -37,43 +37,40 @@ class Compiled(Protocol):
         *,
         forget_ended: bool = False,
     ) -> Shortcut:
-        """The steps that some requests and events take, under some readings.
+        """The steps of some requests and events, under some readings.
 
         Args:
-            requests: each with what may be the name of something there, of each of its names.
-            events: what may happen.
+            requests: each with a flag for each of its names, whether it may be that of something in the state.
+            events: the events.
             assumed: the readings that are possible.
             most: how large a state may be (see `Abstraction.explore_size`).
-            forget_ended: what has ended is only counted.
+            forget_ended: whether ended things are only counted.
         """
 
 
 @frozen
 class Abstraction:
-    """How a search and an exploration look at states: which they tell apart, and how large they take them to be.
+    """Which states a search and an exploration treat as equal, and how large they take states to be.
 
-    It decides where they look; what a system does, it does not change.
+    It decides where they look, and does not change what a system does.
 
     Attributes:
-        enabled_key: state to what of it decides its steps: in states with the same key the same calls have the same
-            outcomes, and the same events happen in the same ways.
-        search_key: state to what a search tells it apart by; coarser than `enabled_key` where that has too many.
-        idle_search_key: the same for what changes nothing; None where it is `search_key`.
-        rules_key: state to what of it decides what the rules say to a call, and whether that changes anything; None
-            where that is `search_key`.
-        phase: state to the phase of its lifecycle that it is in; what is seldom done is counted by phase.
-        name_key: (state, position of a name) to what a search tells it apart by.
-        search_size: state to how large it is for a search, against `Bounds.size`; None where that is the number of its
-            names.
-        explore_size: the same for exploration; None where that is the number of its names.
-        canonical: state to the one that stands for it in exploration: without what it remembers of times, and of
-            readings, since every step may follow any; None where states remember neither.
-        forget_ended: state to the one that stands for it where what has ended is only counted: it goes on in the same
-            ways, but for what is forgotten.
-        indistinct: step that changes the state to one after which nobody can ever tell the difference, the same for all
-            those; None where nothing of a state stays hidden for good.
-        compiled: what makes the steps of the system again, only faster; of states that go on in the same ways it may
-            keep one.
+        enabled_key: state → its key. In states with the same key, the same calls have the same outcomes, and the same
+            events happen in the same ways.
+        search_key: state → its key for a search; coarser than `enabled_key` if that has too many values.
+        idle_search_key: the same for actions that change nothing; None if it is `search_key`.
+        rules_key: state → its key for what the rules say to a call, and whether that changes anything; None if it is
+            `search_key`.
+        phase: state → the phase of its lifecycle; actions that are seldom done are counted by phase.
+        name_key: (state, position of a name) → the key of the name for a search.
+        search_size: state → its size for a search, which `Bounds.size` limits; None if it is the number of its names.
+        explore_size: the same for an exploration.
+        canonical: state → the state that stands for it in an exploration: without the times and the readings that it
+            remembers, since every step may follow any reading. None if states remember neither.
+        forget_ended: state → the state that stands for it if ended things are only counted.
+        indistinct: step → the step that stands for all steps after which nobody can ever tell the difference; None if
+            nothing of a state stays hidden for good.
+        compiled: what computes the steps of the system faster. Of states that go on in the same ways it may keep one.
     """
 
     enabled_key: Callable[[State], Hashable] = lambda state: state

@@ -20,10 +20,10 @@ class Chart(Generic[S]):
     """A finite lifecycle.
 
     Args:
-        name: of what it is the lifecycle, such as ``mission``.
+        name: what has the lifecycle, such as ``mission``.
         initial: the state that it starts in.
         table: every move as (trigger, source, destination). States are enum members or plain text.
-        notes: trigger to what a picture says of its moves, such as the reading under which they happen.
+        notes: trigger → what a picture says of its moves, such as the reading under which they happen.
 
     Raises:
         ValueError: two moves with one trigger leave one state, or a state cannot be reached.

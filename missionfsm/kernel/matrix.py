@@ -17,16 +17,15 @@ Open = tuple[tuple[Topic, ...], ...]
 class Matrix:
     """The situations of a system and the kinds of actions that matter in each.
 
-    It decides where a tester looks and what it says of where it has been; what is right it does not change.
+    It decides where a tester looks, and what the report says of that. It does not change what is right.
 
     Attributes:
-        situation: (state, what is open) to the name of the situation; None for one that nobody counts. What is open
-            are the topics of the channels of each stream or connection.
-        columns: (state, what is open, request or event, positions of its names among those of the state) to the names
-            of the kinds of actions that it is an example of; none for what does not matter.
-        ways: name of a situation to scripts that lead there from the start, in any world.
-        bounds: how large what is asked may be.
-        pause: a step after which a situation that was not sure may be: what a system has yet to do has happened then.
+        situation: (state, open streams and connections) → the name of the situation; None if it is not counted.
+        columns: (state, open streams and connections, request or event, positions of its names among those of the
+            state) → the kinds of actions that it is an example of; none if it does not matter.
+        ways: the name of each situation, with scripts that lead there from the start, in any world.
+        bounds: how large requests may be.
+        pause: a step after which the situation is sure, because the system has done then what it still had to do.
     """
 
     situation: Callable[[State, Open], str | None]

@@ -22,18 +22,18 @@ class System:
     Attributes:
         name: what the command line calls it.
         spec: what it does.
-        codec: how its JSON is read and written; where it names no methods, it has those of the spec.
-        alphabet: (world, bounds) to what is worth trying; by default each call with nothing in it, and each drive.
+        codec: how its JSON is read and written; a codec that names no methods has those of the spec.
+        alphabet: (world, bounds) → what is worth trying; by default each call with nothing in it, and each drive.
         naming: how its names are made up and written.
         message_mutations, step_mutations: how an implementation may break its promises, besides the ways that fit
             any system.
-        reaching: id or name of a rule to the readings under which its condition can come about at all.
+        reaching: for rules by id or name, the readings under which their conditions can come about at all.
         sketches, plans: what of it is drawn besides its charts.
         shapes: the JSON Schemas of what its lines carry; by default they may carry anything.
-        matrix: in which situations what should have been asked; None where nobody says so.
-        minutes_at: the size of states, as `Bounds` has it, from which it takes minutes to visit them all; None where
-            nobody has found one.
-        profiles: choices of readings by name: ambiguity id to the letters that are left.
+        matrix: its situations, and what should be asked in each; None if the system does not say.
+        minutes_at: the size of states, as in `Bounds`, from which it takes minutes to visit all of them; None if no
+            such size is known.
+        profiles: choices of readings by name: for ambiguities by id, the letters that are left.
     """
 
     name: str

@@ -146,7 +146,7 @@ class Doings:
                 yield _Event(event, filled, self.system.spec.describe(event))
 
     def _driven(self, one: _Event, names: int, opened: tuple[str, ...]) -> Doing:
-        """An event. What it names as it stands, and the channels that it opens, are names that it brings along."""
+        """An event. It brings along the names that are written in it, and those of channels that it opens."""
         filled = one.filled
         fixed = [at for at, stands in enumerate(filled.fixed) if stands]
         positions = {at: names + number for number, at in enumerate(fixed)}

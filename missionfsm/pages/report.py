@@ -49,10 +49,13 @@ class LabelledVerdict:
 
 @frozen
 class Answer:
-    """One reading of an ambiguity: what it says, and whether what was observed still fits it.
+    """One reading of an ambiguity.
 
     Attributes:
-        ruled_out_by: the event that does not fit it, in words, where one is known.
+        letter: its letter.
+        says: what it says.
+        possible: whether the observations fit it.
+        ruled_out_by: the event that does not fit it, in words, if one is known.
     """
 
     letter: str
@@ -120,7 +123,7 @@ class Story:
     """A verdict as the page tells it.
 
     Attributes:
-        sides: the conversations that contradict one another, where that is what is wrong.
+        sides: the conversations that contradict one another, if the violation is that.
         earlier: the rows that are folded away.
         history: the history as text, to be copied; `test`: as a pytest module.
     """

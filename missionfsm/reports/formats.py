@@ -23,9 +23,9 @@ class Format:
         module: where its ``written`` is.
         says: what ``--help`` says of its option.
         stdout: whether ``-`` is stdout.
-        advises: whether it tells what would decide between readings, which takes long to find out.
-        several: whether it is one for several verdicts, so that `check` alone has it.
-        library: what has to be installed for it; it comes with the extra that is called like the format.
+        advises: whether it has the experiments that would decide between readings, which take long to find.
+        several: whether it is for several verdicts, so that only `check` has it.
+        library: the library that it needs, which comes with the extra that is called like the format.
     """
 
     module: str

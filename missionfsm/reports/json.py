@@ -1,4 +1,4 @@
-"""Verdicts as JSON: one alone as it is, several as a list."""
+"""Verdicts as JSON: one verdict as an object, several as a list."""
 
 from __future__ import annotations
 

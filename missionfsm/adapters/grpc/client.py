@@ -30,13 +30,13 @@ ENDED = ("STATE_CANCELED", "STATE_SUCCEEDED", "STATE_FAILED")
 """States of missions that need not be ended any more."""
 
 PATIENCE = 10
-"""How many times as long as a silence usually is something is waited for that is missing."""
+"""How many times as long as the usual silence a missing message is awaited."""
 
 MARGIN = 2
-"""How many times as long as the slowest message took the next ones may take."""
+"""How many times as long as the slowest message so far a message may take."""
 
 MAX_ROUNDS = 100
-"""Missions that are cancelled in one reset before it is given up."""
+"""How many missions one reset cancels before it gives up."""
 
 
 @frozen
@@ -56,7 +56,7 @@ class Use:
 
     @property
     def is_shared(self) -> bool:
-        """Whether it is not begun anew."""
+        """Whether a reset leaves what others have alone."""
         return self.shared or self.anywhere
 
 
@@ -66,10 +66,10 @@ class GrpcSubject:
     Args:
         system: ``bear.mission`` or ``bear.status``.
         target: where it is.
-        world: its world, as JSON, where the control service cannot change it.
-        use: who else has it, and what may be done to what is theirs.
-        renewed: the token as it is now; asked at every reset, since tokens expire.
-        tell: takes a line for people: the server sent a field that the table does not know; once for each.
+        world: its world, as JSON, if the control service cannot change it.
+        use: who else uses it, and what may be done to what is theirs.
+        renewed: gives the present token at every reset, since tokens expire.
+        tell: given a line for people about each field that the server sends and the table does not have.
 
     Raises:
         SubjectError: nobody answers there.
@@ -113,15 +113,15 @@ class GrpcSubject:
 
     @property
     def counts(self) -> bool:
-        """Whether the server's control service tells how many messages it sent, so that none is waited for in vain."""
+        """Whether the server's control service says how many messages it sent, so that none is awaited in vain."""
         return self._counts
 
     def settle_within(self, seconds: float) -> None:
-        """From now on so many seconds of silence mean that everything has been seen."""
+        """Take so many seconds of silence for settled from now on."""
         self.target = evolve(self.target, settle=seconds)
 
     def close(self) -> None:
-        """Give up every stream and let go of the connection."""
+        """Cancel every stream and close the connection."""
         self._cancel_all()
         self._channel.close()
 
@@ -201,7 +201,7 @@ class GrpcSubject:
         return found
 
     def _subscribe(self, method: Method, params: JSON) -> Exchange:
-        """Open a stream; it has begun once its initial metadata came, or a message, or no refusal for some time."""
+        """Open a stream. It has begun once initial metadata or a message came, or no refusal came for some time."""
         request = self._encoded(method, params)
         with self._change:
             self._serial += 1
@@ -226,9 +226,9 @@ class GrpcSubject:
         return Exchange({"stream": stream})
 
     def _first_message(self, stream: int) -> None:
-        """Wait for it: every page promises one, and one that is late is none that is missing.
+        """Wait for the first message of a stream, which every page promises, and which may be late.
 
-        Where there is none, which may be right, the next one is waited for half as long.
+        If none comes, which may be right, the first message of the next stream is awaited half as long.
         """
         begun = time.monotonic()
         self._wait(lambda: self._came.get(stream, 1) > 0, self._patience)
@@ -258,7 +258,7 @@ class GrpcSubject:
                 self._change.notify_all()
 
     def _taken(self) -> tuple[Notification, ...]:
-        """What has arrived. Between streams there is no order, so that one is made that is always the same."""
+        """What has arrived, sorted by stream: messages of different streams have no order of their own."""
         with self._change:
             taken = sorted(self._arrived, key=lambda one: int(one.params["stream"]))
             self._arrived.clear()

@@ -18,21 +18,22 @@ from missionfsm.kernel.codec import JSON, UnreadableError
 Line = dict[str, JSON]
 DESCRIBE, DRIVE, RESET = "Describe", "Drive", "Reset"
 PATHS = {f"/{control.SERVICE}/{name}".encode(): name for name in (DESCRIBE, DRIVE, RESET)}
-"""The paths of the calls of the control service that tell something of the robot."""
+"""The paths of those calls of the control service that say something about the robot."""
 REFUSED = ("INVALID_ARGUMENT", "UNIMPLEMENTED", "UNAUTHENTICATED", "PERMISSION_DENIED", "NOT_FOUND")
-"""What a call of it is answered that had no effect; any other error leaves that open."""
+"""Errors of a call of the control service that had no effect; any other error leaves that open."""
 
 
 @frozen
 class Steered:
-    """A call of the control service was asked, or it has ended.
+    """The begin or the end of a call of the control service.
 
     Attributes:
-        call: tells it from others that are under way.
-        name: what was asked.
-        params: with what.
-        ended: whether it has ended; then `result` is its answer, None where it was refused.
-        lost: whether it has ended without an answer, so that nobody knows what became of it.
+        call: identifies the call among those that are under way.
+        name: the name of the call.
+        params: its params.
+        result: its answer, if it has ended; None if it was refused.
+        ended: whether it has ended.
+        lost: whether it has ended without an answer, so that its effect is not known.
     """
 
     call: tuple[int, int]
@@ -57,7 +58,7 @@ class Steers:
 
 @define
 class _Place:
-    """Where a drive or a reset stands among the lines that wait; `lines` once it is known what it makes there."""
+    """The place of a drive or a reset among the lines that wait, with the lines that it makes once they are known."""
 
     name: str
     params: JSON

@@ -22,13 +22,12 @@ class Target:
         certificate: a file in PEM with the authority that the server's certificate is checked against; "" for no TLS,
             ``system`` for the authorities of the machine.
         timeout: seconds that a call may take.
-        settle: seconds of silence after which everything that was caused has been seen; where the control service has
-            ``Settle``, that says so instead.
-        settle_most: seconds after which that is so even without silence.
-        begin: seconds after which a stream that was not refused has begun, where the server does not say so; one whose
-            control service has ``Settle`` does.
-        keepalive: seconds of silence after which a connection is asked whether it is still alive; 0 for never, as gRPC
-            has it: a server that does not permit it ends the connection with ENHANCE_YOUR_CALM, too_many_pings.
+        settle: seconds of silence after which everything has settled. A control service with ``Settle`` says it itself.
+        settle_most: seconds after which everything has settled even without silence.
+        begin: seconds after which a stream that was not refused has begun, if the server does not say so. A server
+            whose control service has ``Settle`` says it.
+        keepalive: seconds of silence after which a connection is asked whether it is still alive; 0 for never, as is
+            the default of gRPC: a server may end the connection for it with ENHANCE_YOUR_CALM, too_many_pings.
     """
 
     address: str

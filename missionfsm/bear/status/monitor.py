@@ -65,14 +65,14 @@ class StreamMonitor:
 
     Args:
         endpoint: the subscription, as an `Endpoint` or by its name.
-        robots: the robots that were selected, where that is known; another one is a problem.
-        strict: whether a message that comes twice is wrong, though it was only delivered twice.
+        robots: the robots that were selected, if that is known; any other one is a problem.
+        strict: whether a message is wrong that was delivered twice.
 
     Attributes:
         messages: how many messages came.
-        redelivered: how many times what is said of a robot was its last, number, timestamp and all.
-        repeats: how many times a robot's payload was that of its message before: tolerated in event mode, but counted;
-            of whole states, which come again by design, pose and velocity are not compared.
+        redelivered: how often the last message about a robot came again, with its number and timestamp.
+        repeats: how often a robot's payload equalled that of the message before, which is tolerated. Pose and velocity
+            of whole states are not compared, since those come again by design.
     """
 
     def __init__(
@@ -247,7 +247,7 @@ class StreamMonitor:
 
 
 def _came_twice(track: _Track, metadata: JSON, payload: JSON) -> bool:
-    """Whether the last message about a robot has come again: its number has, but is everything else as it was."""
+    """Whether a message with a robot's last number is that message again, rather than another one."""
     given = track.given
     if track.number is None or track.timestamp != metadata.get("timestamp"):
         return False

@@ -66,11 +66,14 @@ MEMBERS = frozenset((Tie.NAMED, Tie.STAYED, Tie.GONE))
 
 @frozen(cache_hash=True)
 class About:
-    """What an emission is about: one robot, where it is, and which streams show it.
+    """The topic of an emission: one part of one robot.
 
     Attributes:
+        endpoint: the subscription that shows the part.
+        robot: the id of the robot.
+        location: the location where the robot is.
         left: the locations that the robot has left.
-        ties: how it belongs to the streams that show it.
+        ties: which streams show it, by how the robot belongs to them.
     """
 
     endpoint: Endpoint
@@ -105,7 +108,7 @@ class View:
     Attributes:
         value: the part that the stream is about, the whole state, or the network (None: it has none).
         unheard: any value may have been reported; `value` is None.
-        unlinked: of a network, why it is open what is told of it; None where the robot is known to be connected.
+        unlinked: for a network: the ambiguity about it if the robot is not known to be connected, else None.
         got: it is what GetRobotStatus answers, and no message.
     """
 

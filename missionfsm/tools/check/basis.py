@@ -1,4 +1,4 @@
-"""What a verdict rests on: what was not put to the test, and the three lines in which a person is told."""
+"""What a verdict rests on: what was flagged, and what was not put to the test."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ MAX_NAMED = 4
 
 
 class Flagged(str):
-    """A line about something that is explained, and yet departs from the letter of the text, or from itself.
+    """A line about something that is explained, but departs from the letter of the text or is incoherent.
 
     Attributes:
-        reading: what departs from the text, as ``AM-09=b``; empty where it is something else.
-        about: what such lines are told apart and counted by: the ambiguity that is read so, or the pair.
+        reading: the reading that departs from the text, as ``AM-09=b``; empty if it is something else.
+        about: what such lines are counted by: the ambiguity, or the pair of ambiguities.
     """
 
     __slots__ = ("about", "reading")
@@ -26,7 +26,7 @@ class Flagged(str):
     about: str
 
     def __new__(cls, says: str, reading: str = "", about: str = "") -> Self:
-        """A line that says so; what it is about is by default its ambiguity, or its words before the first comma."""
+        """A line; by default it is about the ambiguity of its reading, or about its words before the first comma."""
         line = super().__new__(cls, says)
         line.reading, line.about = reading, about or reading.partition("=")[0] or says.partition(",")[0]
         return line
@@ -34,18 +34,18 @@ class Flagged(str):
 
 @frozen
 class Untested:
-    """What a judgement says nothing of.
+    """What a verdict says nothing of.
 
     Attributes:
-        calls: name of an operation to why nothing is known of it.
-        rules: id of a rule to why it was not put to the test.
+        calls: for operations by name, why nothing is known of them.
+        rules: for rules by id, why they were not put to the test.
         drives: names of the drives that nobody commanded.
-        refusals: ids of the refusals that could be missed for want of those drives: what they do by themselves may
-            have come between, unseen.
-        promises: ids of other rules that nothing but those drives leads to.
-        unseen: whether something that those drives do may also happen by itself.
-        operations: how many operations the system has; `all_drives`: how many drives.
-        shown: whether a stream showed what the system did meanwhile.
+        refusals: ids of refusals that could be missed because of that: such a drive may have happened unseen before.
+        promises: ids of other rules that only those drives lead to.
+        unseen: whether some of those drives may also happen by themselves.
+        operations: how many operations the system has.
+        all_drives: how many drives the system has.
+        shown: whether a stream showed what the system did.
     """
 
     calls: Mapping[str, str] = field(factory=dict)

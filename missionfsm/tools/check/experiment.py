@@ -1,4 +1,4 @@
-"""What would tell readings apart that a judgement leaves open."""
+"""Experiments that would tell apart the readings which a verdict leaves open."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from missionfsm.kernel.codec import JSON
 
 @frozen
 class Experiment:
-    """What would tell readings apart that are still open.
+    """A conversation that would tell open readings apart.
 
     Attributes:
-        ambiguity: the id of the question.
-        follows: the letter of the reading that it shows.
-        against: the letters that it rules out if the implementation follows that one.
-        says: what to do and what is then seen, line by line.
-        history: the same as lines of the history format, as the reference answers under `follows`.
+        ambiguity: the id of the ambiguity.
+        follows: the letter of the reading that it would show.
+        against: the letters that it would rule out then.
+        says: what to do and what is seen then, line by line.
+        history: the same as lines of the history format, answered by the reference under `follows`.
     """
 
     ambiguity: str

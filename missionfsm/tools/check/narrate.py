@@ -73,7 +73,7 @@ def _events(system: System, history: Iterable[JSON]) -> Iterator[Event]:
 
 
 def _lines_of(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
-    """The lines of a story; time that passes stands before what comes next, unless that is that all has settled."""
+    """The lines of a story. Time that passes is told with the next event, unless that is more time or settling."""
     passing: Driven | None = None
     for words, event in _lines(system, history):
         later = _later(system, passing) if passing is not None else ""
@@ -88,13 +88,13 @@ def _lines_of(system: System, history: tuple[JSON, ...]) -> Iterator[str]:
 
 
 def _later(system: System, event: Event) -> str:
-    """Time that passes, in words that stand before what comes next; empty for all other events."""
+    """The words for time that passes, before what comes next; empty for all other events."""
     later = system.spec.drives[event.event.name].later if isinstance(event, Driven) else None  # type: ignore[attr-defined]
     return later(event.event) if later is not None and isinstance(event, Driven) else ""
 
 
 def _lines(system: System, history: tuple[JSON, ...]) -> Iterator[tuple[str, Event]]:
-    """A line for each event but those answers that come at once: they share the line of their call."""
+    """A line for each event; an answer that comes at once shares the line of its call."""
     asked: Called | None = None
     spec = system.spec
     known: dict[Name, int] = {}

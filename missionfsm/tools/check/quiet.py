@@ -1,4 +1,4 @@
-"""When everything has settled, told by the time: nothing has happened for so long that what is outstanding is late."""
+"""Settling by time: nothing has happened for so long that messages which have not come yet are late."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ _SETTLED = Settled()
 
 
 class Quiet:
-    """Says of one conversation when it has been quiet for long enough.
+    """Finds when a conversation has been quiet for long enough.
 
-    A message that says again what its stream showed last is no cause of anything, so that it breaks no silence.
+    A message that only repeats what its stream showed last causes nothing, so it does not end a silence.
 
     Args:
-        seconds: how long (of `at`) after its cause something is late.
+        seconds: how many seconds (of `at`) after its cause a message is late.
 
     Attributes:
-        timed: whether any line has said when it was.
+        timed: whether any line had a time.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -29,10 +29,11 @@ class Quiet:
         self._shown: dict[Hashable, Hashable] = {}
 
     def settling(self, at: float | None, events: tuple[Event, ...]) -> tuple[Event, ...]:
-        """The events of a line, after a `Settled` where everything had settled before it.
+        """The events of a line, after a `Settled` if everything had settled before it.
 
         Args:
-            at: when the line was, in seconds; None if it does not say.
+            at: the time of the line, in seconds; None if it does not say.
+            events: its events.
         """
         before: tuple[Event, ...] = ()
         if at is not None:
@@ -45,7 +46,7 @@ class Quiet:
         return (*before, *events)
 
     def _note(self, event: Event) -> bool:
-        """Note what an event shows: whether something may come of it."""
+        """Note what an event shows. Returns whether it may cause something."""
         if type(event) is not Received:
             return True
         key = (event.channel, *(track for track, _ in event.marks))

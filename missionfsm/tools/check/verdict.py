@@ -111,7 +111,7 @@ class Violation:
 
     @property
     def sent(self) -> str:
-        """The request as it was sent, as JSON, where it is in doubt whether it is one; else empty."""
+        """The request as it was sent, as JSON, if it is in question whether it was valid; else empty."""
         doubtful = not self.sides and any(f"/{INVALID_ARGUMENT}/" in rule.id for rule in self.rules)
         answered = self.history[-1].get("return") if doubtful and self.history else None
         calls = (line for line in reversed(self.history) if answered is not None and line.get("call") == answered)
@@ -131,7 +131,7 @@ class Violation:
 
     @property
     def _allowed(self) -> list[str]:
-        """What could have come; rules that all of it would have come by stand before it."""
+        """What could have come; rules that justify all of it are named once, before it."""
         if not self.expected:
             return ["  nothing was allowed here"]
         common = self.expected[0].rules if len({one.rules for one in self.expected}) == 1 < len(self.expected) else ()

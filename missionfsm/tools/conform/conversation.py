@@ -38,12 +38,14 @@ _Read = TypeVar("_Read")
 
 @define(eq=False)
 class Partner:
-    """An implementation, as one converses with it.
+    """An implementation, as a conversation partner.
 
     Attributes:
-        system: what of the system it has.
+        system: the system, as far as the implementation has it.
+        subject: the implementation.
+        info: what it said of itself.
         absent: the calls that turned out not to be there; they are not asked again.
-        names: what it has named so far, where that lives on over a reset; None where a reset forgets it.
+        names: the names that it has given so far, if they survive a reset; None if a reset forgets them.
     """
 
     system: System
@@ -53,7 +55,7 @@ class Partner:
     names: dict[Name, None] | None = None
 
     def remember(self, names: Iterable[Name]) -> None:
-        """Note names that live on."""
+        """Note names that survive a reset."""
         if self.names is not None:
             self.names.update(dict.fromkeys(names))
 

@@ -27,7 +27,7 @@ def open_questions(run: Run) -> list[tuple[Ambiguity, tuple[str, ...]]]:
 
 
 def lab_of(run: Run, effort: int = EFFORT) -> Lab:
-    """A lab that takes what a run has found out as decided."""
+    """A lab that assumes the readings that a run has left."""
     decided = (
         one[run.ledger.readings[one.id]] for one in run.system.spec.ambiguities if run.ledger.readings.get(one.id)
     )

@@ -284,7 +284,7 @@ class Guide:
         *,
         exact: bool = False,
     ) -> tuple[Edge, Hashable]:
-        """The edge of a drive: where the model says that it cannot happen, the edge stays where it is."""
+        """The edge of a drive; that of a drive which cannot happen leads back to where it begins."""
         key = (here.state if exact else search_key, "drive", event, self._places(here, refs))
         if key not in self._edges:
             steps = [

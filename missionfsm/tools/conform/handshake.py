@@ -27,15 +27,15 @@ class AdapterInfo:
     """What an adapter said of itself.
 
     Attributes:
-        name: the implementation's, with its version.
-        drives: those of the system that it has.
-        methods: the documented calls that it has; None where it has not said, which means all.
-        world: the one world that it has; None where it takes any.
-        soft_reset: whether ids, numbers and what was before live on over a reset.
+        name: the name of the implementation, with its version.
+        drives: the drives of the system that it has.
+        methods: the documented calls that it has; None if it did not say, which means all.
+        world: the only world that it has; None if it takes any.
+        soft_reset: whether ids, numbers and things survive a reset.
         binary: whether requests travel as binary protobuf.
-        silences: whether a silence is all that tells it that everything has been seen. Then something may still be on
-            its way, and it takes ``"patiently": true`` with ``settle``.
-        unknown: what it declared that the system does not have, each in words, with what may be meant.
+        silences: whether it takes a silence for a sign that everything has settled. Then messages may still be on their
+            way, and it understands ``"patiently": true`` with ``settle``.
+        unknown: calls and drives that it declared and the system does not have, in words, with what may be meant.
     """
 
     name: str
@@ -114,8 +114,10 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
     """The system with no more in its alphabet than an adapter has.
 
     Args:
-        only: calls that are to be made, and no others; all by default.
-        without: calls and drives that are to be left out.
+        system: the system.
+        info: what the adapter said of itself.
+        only: the calls to make; all if there are none.
+        without: calls and drives to leave out.
     """
     methods = tuple(
         one
@@ -151,13 +153,13 @@ def offered(system: System, info: AdapterInfo, only: Collection[str] = (), witho
 
 
 Has = Callable[[str, JSON], bool]
-"""A call and its params to whether an adapter has it."""
+"""(call, params) → whether an adapter has it."""
 
 
 def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Has) -> Matrix | None:
-    """The matrix with the ways that an adapter has; None where it moves by itself."""
+    """The matrix, with the ways that an adapter can go; None if the implementation moves by itself."""
     if any(drive.by_itself and name not in drives for name, drive in system.spec.drives.items()):
-        return None  # in which situation it is, is seldom sure while it moves by itself
+        return None  # while it moves by itself, its situation is seldom sure
     ways = {
         situation: tuple(way for way in ways if _possible(way, drives, has) == way)
         for situation, ways in matrix.ways.items()
@@ -167,7 +169,7 @@ def _reached(matrix: Matrix, system: System, drives: tuple[str, ...], has: Has) 
 
 
 def _possible(script: tuple[ScriptStep, ...], drives: tuple[str, ...], has: Has) -> tuple[ScriptStep, ...]:
-    """A script up to the first thing that an adapter does not have."""
+    """A script up to the first step that an adapter does not have."""
     done = []
     for line in script:
         if line.method == "drive":

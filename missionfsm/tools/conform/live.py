@@ -1,4 +1,4 @@
-"""Judge an implementation in real time: every conversation takes as long as it takes, so there are few.
+"""Judges an implementation in real time, with few conversations: each of them takes long.
 
 The drawing of examples and the shortening of what was found are left to implementations whose time is not real.
 """

@@ -1,4 +1,4 @@
-"""The belief automata that a run walks: one that assumes nothing, and one of what the run has found out so far."""
+"""The belief automata of a run: one that assumes nothing, and one that assumes the readings that are left."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ from missionfsm.oracle.automaton import Automaton
 from missionfsm.tools.conform.conversation import Conversation
 
 WIDE = 48
-"""How many explanations of a conversation are so many that the next one assumes what is known."""
+"""With more explanations than that, the next conversation assumes the readings that are left."""
 
 
 @define(eq=False)
 class Narrowing:
-    """Which automaton judges.
+    """Which automaton judges a conversation.
 
-    Where the explanations of a conversation become many, the ones after it are judged by an automaton that assumes what
-    has been found out. What cannot be explained there may still be explained by itself.
+    If a conversation has many explanations, those after it are judged by an automaton that assumes the readings that
+    are left. A conversation that is not explained there may still be explained by itself.
 
     Attributes:
-        wide: the automaton that assumes no more than was asked for; `narrow` the other, once there is one.
+        wide: the automaton that assumes no more than was asked for.
+        narrow: the automaton that assumes the readings that are left, if there is one.
         widest: the most explanations that a conversation has had since the automaton was chosen.
     """
 
@@ -38,7 +39,7 @@ class Narrowing:
 
     @property
     def asked_for(self) -> dict[str, str]:
-        """The letters that were left open from the start, of each question that was not left open whole."""
+        """The letters that were left at the start, for each ambiguity of which some were excluded then."""
         left = {one: one.possible(self.wide.assumed) for one in self.wide.spec.ambiguities}
         return {one.id: "".join(letters) for one, letters in left.items() if len(letters) < len(one.readings)}
 
@@ -47,7 +48,7 @@ class Narrowing:
         self.widest = max(self.widest, len(conversation.judge.belief.node.explanations))
 
     def is_lost_in(self, conversation: Conversation) -> bool:
-        """Whether an implementation that also moves by itself has more explanations than one can follow at a pace."""
+        """Whether an implementation that moves by itself has too many explanations to be followed further."""
         driven = self.wide.successors.driven
         return len(conversation.judge.belief.node.explanations) > WIDE and not driven.issuperset(self.wide.spec.drives)
 
@@ -68,7 +69,7 @@ class Narrowing:
         return self.current
 
     def drop(self) -> None:
-        """Assume nothing any more of what was found out; what was exercised still counts."""
+        """Give up the narrow automaton. The rules that were exercised in it still count."""
         if self.narrow is not None:
             self._before = _added(self._before or {}, self.narrow.exercised())
             self.narrow = None

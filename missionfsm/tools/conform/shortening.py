@@ -17,8 +17,8 @@ from missionfsm.tools.conform.shortest import everything, shortest
 from missionfsm.tools.conform.shrink import shrink, unexplained
 
 TRIES = 4
-"""How often a violation is tried again to say how often it is seen; how often a step of shortening one that comes and
-goes is tried before it counts as one that does not show it."""
+"""How often a violation is tried again, to say how often it is seen. If it is not seen every time, each step of
+shortening is tried as often before it counts as one that does not show it."""
 
 
 def shorten(run: Run) -> None:

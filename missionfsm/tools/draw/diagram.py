@@ -68,8 +68,8 @@ class Diagram:
         stays: what is told beside it.
         remarks: what is said below it.
         versus: the two readings that are told apart, if it shows two.
-        machine: whether the nodes are states; else they are things that wait for one another.
-        sure: whether what is told of a node always happens there; a node that is many states can do more.
+        machine: whether the nodes are states; if not, they are things that wait for one another.
+        sure: whether a node shows everything that can happen there; a node that stands for many states may do more.
     """
 
     title: str
@@ -237,7 +237,7 @@ def _stays(stays: Mapping[tuple[Side, str, str], set[str]], nodes: tuple[Node, .
 
 
 def _printable(text: str) -> str:
-    """A name as one line, whatever a mission file has in it."""
+    """A name on one line, without control characters."""
     return "".join(one if one.isprintable() else " " for one in text)
 
 

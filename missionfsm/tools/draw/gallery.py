@@ -25,9 +25,9 @@ class Picture:
         subject: the lifecycle, sketch or plan that it shows.
         name: the same with the readings that it is drawn under; its files are named after it.
         table: the same in words, as Markdown.
-        chart: what it shows, where that is a lifecycle.
-        whole: the name of the picture that this is a part of; empty where it is none.
-        divided: whether it is too much for one picture, so that there are parts of it.
+        chart: the lifecycle, if it shows one.
+        whole: the name of the picture that this is a part of; empty if it is not a part.
+        divided: whether it is too large for one picture, so that there are parts of it.
     """
 
     system: str

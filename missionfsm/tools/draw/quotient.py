@@ -27,9 +27,9 @@ class Move:
 
     Attributes:
         label: what is done.
-        code: what is answered to it, or nothing where it is no call that is answered.
-        shows: what is sent for it, in order.
-        refused: whether the answer is no success and nothing changes.
+        code: the code of the answer; empty if it is no call.
+        shows: the messages that it causes, in order.
+        refused: whether it is a call that is refused, and changes nothing.
     """
 
     source: str

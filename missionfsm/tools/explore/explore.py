@@ -261,17 +261,19 @@ def explore(
     invariants: tuple[Invariant, ...] | None = None,
     forget_ended: bool = False,
 ) -> Exploration:
-    """Every state that a system can reach within bounds, with every step tried in each.
+    """Visit every state that a system can reach within bounds, and try every step in each.
 
-    What is tried to get around are the plain inputs and drives of the alphabet; which rules fire is then asked for
-    every input, in one state of every situation.
+    The core inputs and core drives of the alphabet lead from state to state. Which rules fire is then asked for every
+    input, in one state of every situation.
 
     Args:
-        world: the world that it starts in; the usual one by default.
+        system: the system.
+        bounds: how large states may be.
+        world: the world that it starts in; by default the usual one.
         assumed: the readings that are possible (see `missionfsm.kernel.readings`); by default all, at every step.
-        invariants: what has to hold; the spec's own by default.
-        forget_ended: only count what has ended, where the system can: far fewer states, in which the same can be done.
-            Possibilities are not looked at then, since some of them are about what is forgotten.
+        invariants: what has to hold; by default the spec's own.
+        forget_ended: whether ended things are only counted, if the system allows that: that makes far fewer states, in
+            which the same can be done. Possibilities are not looked at then, since some are about what is forgotten.
     """
     bounds = bounds or Bounds()
     spec = system.spec

@@ -1,7 +1,7 @@
-"""The deterministic reference of a spec: what one implementation does that follows one choice of readings.
+"""The deterministic reference of a spec: an implementation that follows one choice of readings.
 
-A `Snapshot` is an immutable value: a state, the names it has given out, its open channels. A `Reference` computes from
-a snapshot and what is asked of it the next snapshot and everything that an observer sees. It keeps nothing but a memo.
+A `Snapshot` is an immutable value: a state, the names it has given out, its open channels. From a snapshot and a call
+or a drive a `Reference` computes the next snapshot, and everything that an observer sees. It keeps nothing but a memo.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from missionfsm.kernel.system import System
 from missionfsm.kernel.terms import Incident, Refs, State, View
 
 MAX_STEPS = 1_000
-"""How many steps a model remembers; states that list all that has ended are large."""
+"""How many steps a reference remembers. States may be large: some list everything that has ended."""
 _UNKNOWN = Step(None)
-"""Stands for what was not asked yet; None is a step that no reading allows."""
+"""What the memo has for a question that was not asked yet; None stands for a step that no reading allows."""
 
 
 @frozen
@@ -46,14 +46,15 @@ class Sent:
 
 @frozen
 class Snapshot:
-    """Where the reference stands.
+    """The state of a reference, with everything that it has to remember.
 
     Attributes:
-        names: those of the state, in its order.
+        state: the state.
+        names: the names of the state, in its order.
+        channels: the open channels.
         minted: how many names have been given out.
-        numbered: the number of the last event; 1 is that of the beginning. Every stream that shows an event shows it
-            under its number.
-        gone: those that the state has no more, if it matters (see `Spec.recalls`).
+        numbered: the number of the last event; the beginning has 1. Every stream shows an event under its number.
+        gone: names that the state no longer has, if that matters (see `Spec.recalls`).
     """
 
     state: State
@@ -150,7 +151,7 @@ class Reference:
         return tuple(self._mint(minted + 1 + index) for index in range(count)), minted + count
 
     def call(self, here: Snapshot, request: object, names: tuple[Name, ...] = ()) -> tuple[Snapshot, Reply]:
-        """Ask something: the snapshot after it and what comes of it."""
+        """Answer a call: the snapshot after it, and the reply."""
         step = self.outcome(here.state, request, tuple(map(here.ref, names)))
         after, sent, mentioned = self._take(here, step, ())
         after, sent = self._settle(after, sent)
@@ -159,7 +160,7 @@ class Reference:
     def outcome(self, state: State, request: object, refs: Refs = ()) -> Step:
         """What the reference answers in a state: the first outcome that its readings allow."""
         key = (state, request, refs)
-        step = self._chosen.get(key)  # what is known is found without a detour: every call comes by here
+        step = self._chosen.get(key)  # inlined, since every call comes by here
         if step is None:
             step = self._remembered(key, self.system.spec.outcomes, state, request, refs)
         if step is None:
@@ -178,7 +179,7 @@ class Reference:
         return after, Reply(None, names, tuple(sent), step.rules)
 
     def _brought(self, here: Snapshot, step: Step, names: tuple[Name, ...]) -> tuple[Snapshot, tuple[Name, ...]]:
-        """The names that an event brings along; those of channels that it opens are made up where it was not told."""
+        """The names that an event brings along. Names of channels that it opens are made up if they are missing."""
         kinds = {opening.ref: opening.kind for opening in step.opens if opening.ref < 0}
         while -len(names) - 1 in kinds:
             here = evolve(here, minted=here.minted + 1)
@@ -266,7 +267,7 @@ class Reference:
         *,
         passing: bool,
     ) -> Snapshot:
-        """Show the last event on channels, under its number; what a reading repeats comes under the next one."""
+        """Show the last event on channels under its number; repeat it under the next one if a reading says so."""
         names = here.names if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
         if emission.only and not meet(self.choice, (emission.only,)):
             return here

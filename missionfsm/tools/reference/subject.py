@@ -17,12 +17,13 @@ class ReferenceSubject:
 
     Args:
         system: the system.
-        choice, mutate_step: the readings that it follows, and what is broken; see `Reference`.
-        mutate_message: a message to the one that is sent in its place; for one that is broken.
-        seconds: the number of an event to its timestamp, in seconds since the epoch.
+        choice: the readings that it follows; see `Reference`.
+        mutate_step: how its steps are broken; see `Reference`.
+        mutate_message: message → the message that is sent instead, for a broken one.
+        seconds: number of an event → its timestamp, in seconds since the epoch.
 
     Attributes:
-        rules: the ids of the rules that the last call was answered by.
+        rules: the ids of the rules that justify the last answer.
     """
 
     def __init__(

@@ -114,8 +114,9 @@ class Drive:
         later: for a drive that only lets time pass: event → the words before what comes next ("2 s later").
         unwatched: how it may happen unseen in logs of somebody who does not command it; None: only as `by_itself` says.
         undriven: for a drive that nobody commands: world → the same world, in which it may happen unseen at any time.
-        elapses: for a drive that lets time pass: seconds between two lines of a log (None if the log does not say) →
-            the event that this much time passed although nobody let it pass.
+        elapses: for a drive that lets time pass: (seconds between two lines of a log, None if the log does not say;
+            after how many something is late, None if nobody knows) → the event that this much time passed although
+            nobody let it pass.
     """
 
     name: str
@@ -130,7 +131,7 @@ class Drive:
     later: Callable[[Incident], str] | None = None
     unwatched: Unwatched | None = None
     undriven: Callable[[World], World] | None = None
-    elapses: Callable[[float | None], Incident] | None = None
+    elapses: Callable[[float | None, float | None], Incident] | None = None
 
 
 @frozen

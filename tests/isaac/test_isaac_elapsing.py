@@ -78,3 +78,24 @@ def test_what_comes_on_a_connection_shows_that_it_has_not_dropped() -> None:
     """A line on a connection contradicts that the connection dropped before."""
     history = _sent("connect", "line", "advance").settles.shows("FAILED_DISCONNECTED").reports(1, 1, "running")
     assert history.judged().outcome is Outcome.VIOLATES
+
+
+def test_a_limit_that_ran_out_long_ago_by_the_times_of_the_lines_was_noticed() -> None:
+    """Whoever says after how long something is late is told of a limit that nobody keeps to."""
+    late = _sent(*SEEN).at(0).shows("STARTED").at(600)
+    assert late.judged(no_flagged=True).outcome is Outcome.CONFORMS
+    assert late.judged(no_flagged=True, settled_after=5).outcome is Outcome.VIOLATES
+    assert late.judged(no_flagged=True, settled_after=1000).outcome is Outcome.CONFORMS
+    runs = _sent(*SEEN, timeout=60).at(0)
+    for second in range(1, 100):
+        runs.reports(1, 1, "running").at(second)
+    still, over = History(*SEEN), History(*SEEN)
+    still.lines, still.calls, over.lines, over.calls = list(runs.lines), runs.calls, list(runs.lines), runs.calls
+    assert still.shows("RUNNING").at(100).judged(settled_after=5).outcome is Outcome.VIOLATES
+    assert over.shows("FAILED_TIMEDOUT").at(100).judged(settled_after=5).outcome is Outcome.CONFORMS
+
+
+@pytest.mark.parametrize(("seconds", "outcome"), [(30, Outcome.CONFORMS), (7200, Outcome.VIOLATES)])
+def test_a_mission_that_is_never_sent_is_late_by_the_times_of_the_lines(seconds: float, outcome: Outcome) -> None:
+    history = History(*SEEN).submit(1).at(0).robot(1).at(1).shows("QUEUED").at(seconds)
+    assert history.judged(settled_after=60).outcome is outcome

@@ -22,6 +22,7 @@ from missionfsm.adapters.stdio import Child
 from missionfsm.isaac.wire.framing import encode
 from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
 from missionfsm.kernel.subject import Exchange
+from missionfsm.tools.check.verdict import Verdict
 
 FOLDER = Path(__file__).parent.parent / "strangers" / "isaac.server"
 
@@ -137,7 +138,9 @@ TRIPLES = tuple(random.Random(13).sample(list(combined(3)), 60))
 
 
 class Life(History):
-    """Leads their server and writes down what it does."""
+    """Leads their server and writes down what it does; with a `step`, at least each so many seconds."""
+
+    step = 0.0
 
     def __init__(self, subject: Child) -> None:
         super().__init__()
@@ -166,6 +169,9 @@ class Life(History):
 
     def goes_on(self, seconds: float) -> Life:
         """Time passes, and the statuses are looked at."""
+        while self.step and seconds > self.step:
+            self._drives(event="advance", seconds=self.step)
+            seconds = round(seconds - self.step, 6)
         self._drives(event="advance", seconds=seconds)
         self._asks("statuses", {})
         return self
@@ -291,6 +297,38 @@ def test_two_choices_about_limits_are_accepted_together_on_random_lives(pair: tu
     for seed in range(3):
         for life in lives(*pair):
             assert random_life(life, random.Random(f"{pair} {seed}")).judged().conforms
+
+
+def timed_lives(*choices: str) -> Iterator[Life]:
+    """Their server with some choices, looked at often enough for a log to say when its lines were."""
+    for life in lives(*choices):
+        life.step = 0.5
+        yield life
+
+
+def by_the_clock(life: Life, late: float) -> Verdict:
+    """The verdict on a life as a log that only tells when its lines were, and after how long something is late."""
+    log, now = History("connect", "line", "disconnect"), 0.0
+    for line in life.goes_on(20).lines:
+        drive = line.get("drive", {})
+        now += drive.get("seconds", 0)
+        if drive.get("event") != "advance" and line != SETTLED:
+            log.lines.append({**line, "at": now})
+    return log.judged(settled_after=late)
+
+
+@pytest.mark.parametrize("choice", LIMITS)
+def test_nothing_that_is_right_is_late_by_the_times_of_the_lines(choice: str) -> None:
+    """Whoever looks at limits now and then is no later than that, and what was due is known to have happened."""
+    for lead in (watched, waited):
+        for life in timed_lives(choice):
+            assert by_the_clock(lead(life), 2.5).conforms
+
+
+def test_a_limit_that_is_ignored_is_late_by_the_times_of_the_lines() -> None:
+    """What has to be aborted by then is not under way."""
+    for life in timed_lives("run-limit-ignored"):
+        assert not by_the_clock(watched(life), 2.5).conforms
 
 
 def test_a_fault_about_limits_is_not_accepted() -> None:

@@ -328,7 +328,7 @@ def _served(move: Move, link: Link) -> Moves:
     move = move.with_link(link.slot, serves=True, early=())
     there = shared(move.state, link, found.name)
     for index, mission in enumerate(move.state.missions):
-        over = any(one.since == "connect" and one.hi is None for one in mission.clocks)
+        over = any(one.since == "connect" and (one.hi is None or one.hi < 0) for one in mission.clocks)
         if not (there or over) and mission.robot == found.name and mission.status is Status.QUEUED:
             move = started(move, index, START, "connect")
     moves = list(back(move, found.name))

@@ -225,7 +225,7 @@ def _advance(server: Server, event: Passes | Elapsed, _: Refs) -> tuple[Step, ..
     if server.over:
         return (Step(server),)
     if isinstance(event, Elapsed):
-        return (_step(server, Move(elapsed(server, event.time))),)
+        return tuple(_step(server, move) for move in elapsed(server, event.time, event.late))
     return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
 
 

@@ -23,15 +23,21 @@ class Passes:
 
 @value(cache_hash=True)
 class Elapsed:
-    """Time has passed that nobody let pass: at most so many microseconds, or any number where it is None."""
+    """Time has passed that nobody let pass: at most so many microseconds, or any number where it is None.
+
+    What is due for longer than `late` microseconds has happened by then; None: nothing has to have happened.
+    """
 
     time: int | None
+    late: int | None = None
     name: str = "advance"
 
 
-def elapses(given: float | None) -> Elapsed:
-    """The event of so many seconds between two lines of a log, or of any number."""
-    return Elapsed(None if given is None else in_microseconds(given, "at"))
+def elapses(given: float | None, late: float | None) -> Elapsed:
+    """The event of so many seconds between two lines of a log, or of any number; after how many something is late."""
+    if given is None:
+        return Elapsed(None)
+    return Elapsed(in_microseconds(given, "at"), None if late is None else in_microseconds(late, "--settled-after"))
 
 
 def later(event: Passes | Elapsed) -> str:

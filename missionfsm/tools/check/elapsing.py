@@ -21,8 +21,9 @@ class Elapsing:
         at: the time of the next line, in seconds; None if it does not say.
     """
 
-    def __init__(self, drive: Drive) -> None:
+    def __init__(self, drive: Drive, late: float | None) -> None:
         self._drive = drive
+        self._late = late
         self._last: float | None = None
         self._told = False
         self.at: float | None = None
@@ -42,16 +43,16 @@ class Elapsing:
         if passed == 0 or (passed is None and not any(type(one) in _SEEN for one in events)):
             return ()
         assert self._drive.elapses is not None, "such a drive lets time pass"  # noqa: S101
-        return (Driven(self._drive.elapses(passed)),)
+        return (Driven(self._drive.elapses(passed, self._late)),)
 
     def _lets_pass(self, event: Driven) -> bool:
         return bool(event.event.name == self._drive.name)  # type: ignore[attr-defined]
 
 
-def elapsing(drives: tuple[Drive, ...]) -> Elapsing | None:
+def elapsing(drives: tuple[Drive, ...], late: float | None = None) -> Elapsing | None:
     """What inserts the time that passes by itself; None if none of these drives, which nobody commands, does that."""
     found = [one for one in drives if one.elapses is not None]
-    return Elapsing(found[0]) if found else None
+    return Elapsing(found[0], late) if found else None
 
 
 __all__ = ["Elapsing", "elapsing"]

@@ -105,7 +105,7 @@ class Judge:
         self.transcript = Transcript(system.codec, fingerprint, lost, anywhere=head.anywhere)
         self.quiet = None if settled_after is None else Quiet(settled_after)
         undriven = (one for name, one in system.spec.drives.items() if name not in self.automaton.successors.driven)
-        self._elapsing = elapsing(tuple(undriven))
+        self._elapsing = elapsing(tuple(undriven), settled_after)
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0

@@ -75,7 +75,7 @@ def wrong_line(path: str, number: int, says: object) -> UnreadableError:
 
 @contextlib.contextmanager
 def placed(path: str, number: int) -> Iterator[None]:
-    """Says where it is what is wrong with a line."""
+    """Within it an UnreadableError names the file and the line."""
     try:
         yield
     except UnreadableError as error:
@@ -145,7 +145,7 @@ class Lines:
             raise UnreadableError(message) from None
 
     def parsed(self, numbered: Iterator[tuple[int, bytes]]) -> Iterator[tuple[int, JSON]]:
-        """The JSON of lines with their numbers. Raises UnreadableError, which says where and what is wrong."""
+        """The JSON of lines, with their numbers. Raises UnreadableError, which names the file and the line."""
         for number, text in numbered:
             try:
                 yield number, self.json(text)
@@ -154,7 +154,7 @@ class Lines:
 
 
 def lines(source: IO[bytes], path: str) -> Iterator[tuple[int, JSON]]:
-    """The JSON of every line with its number. Raises UnreadableError, which says where and what is wrong."""
+    """The JSON of every line, with its number. Raises UnreadableError, which names the file and the line."""
     found = Lines(source, path)
     return found.parsed(iter(found))
 

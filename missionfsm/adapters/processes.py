@@ -33,6 +33,6 @@ def signal_group(process: subprocess.Popen[bytes], number: int) -> None:
 
 
 def end_group(process: subprocess.Popen[bytes]) -> None:
-    """End such a program and all that it has started, whether it lives or not."""
+    """End a program and every process that it has started, also if the program itself has ended."""
     signal_group(process, signal.SIGKILL)
     process.wait()

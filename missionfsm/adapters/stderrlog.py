@@ -1,4 +1,4 @@
-"""What a child process writes to stderr: kept while it lives, and the lines of it that say why it died."""
+"""What a child process writes to stderr: its beginning and end are kept, and the lines found that say why it died."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Log:
         return bytes(self._head + gap + self._tail).decode(errors="replace")
 
     def complaint(self) -> str:
-        """Why the child failed, as far as it says, in one line; empty if it says nothing."""
+        """Why the child says it failed, in one line; empty if it says nothing."""
         lines = [line.rstrip() for line in self.text.splitlines() if line.strip()]
         if not lines:
             return ""

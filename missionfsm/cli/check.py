@@ -129,11 +129,13 @@ def check(
 
 @define(eq=False)
 class _Telling:
-    """What has been judged so far, each told as it comes, or all summed up in the end.
+    """Tells the verdicts as they come, or sums them up in the end.
 
     Attributes:
-        sums_up: whether all is summed up; where `may_sum_up`, also from the first file on that has too many robots.
-        json: ``-`` where a report goes to stdout, so that nothing is told there.
+        known: the violations that are expected.
+        sums_up: whether all verdicts are summed up.
+        may_sum_up: whether they are also summed up from the first file on that has too many robots.
+        json: ``-`` if a report goes to stdout, so that nothing else may.
     """
 
     known: Baseline

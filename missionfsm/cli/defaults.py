@@ -1,7 +1,7 @@
 """Defaults of options from the table ``[tool.missionfsm]`` of the pyproject.toml of the folder, or of one above it.
 
-An option that stands in the table itself is one of every command that has it; one in ``[tool.missionfsm.conform]`` is
-one of that command alone. What is said on the command line counts more.
+An option in the table itself is a default of every command that has it; an option in ``[tool.missionfsm.conform]`` is a
+default of that command alone. Options on the command line take precedence.
 """
 
 from __future__ import annotations

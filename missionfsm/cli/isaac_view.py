@@ -166,7 +166,7 @@ class TableView:
         return Group(Text(self._title), robots, missions, Text(total))
 
     def _most_telling(self, room: int) -> list[int]:
-        """The missions to show where not all have room: what runs, then what waits, then what has ended."""
+        """The missions to show if not all have room: running ones first, then waiting ones, then ended ones."""
         statuses = self._progress.statuses
         if len(statuses) <= room:
             return list(range(len(statuses)))

@@ -83,7 +83,7 @@ def wrapped(line: str, columns: int) -> list[str]:
 
 
 def in_github(wanted: bool | None) -> bool:
-    """Whether annotations for GitHub are written: where it is said, or else in a workflow."""
+    """Whether annotations for GitHub are written: as the option says, by default in a workflow."""
     return os.environ.get("GITHUB_ACTIONS") == "true" if wanted is None else wanted
 
 
@@ -103,11 +103,11 @@ class Result(Protocol):
     """What a command has found: a text for people, and JSON."""
 
     def to_json(self) -> JSON:
-        """As it is written for programs."""
+        """The result as JSON."""
 
 
 def print_result(found: Result, json: str | None) -> Troubles:
-    """Print what was found and write it as JSON; what went wrong with either is kept."""
+    """Print a result and write it as JSON. Troubles with either are returned."""
     troubles = Troubles()
     with troubles.kept():
         say_verdict(str(found), json=json)

@@ -45,9 +45,9 @@ class Interruption:
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Within it whoever is told to end once only notes it, so that what was found until then can be told.
+    """Within it a first signal to end is only noted, so that what was found until then can be told.
 
-    It is for what looks at the note often; told a second time, it ends like anything else.
+    It is for work that looks at the note often. A second signal ends it at once.
     """
     noted = Interruption()
     if threading.current_thread() is not threading.main_thread():

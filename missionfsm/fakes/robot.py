@@ -334,7 +334,7 @@ class Robot:
         return rendered(view, tuple(map(str, names)), self._model.choice)
 
     def _deliver(self, reply: Reply, opened: Updates | None = None) -> None:
-        """Hand out what was sent; what a callback causes comes after what caused it."""
+        """Hand the messages to subscribers, in order: messages that a callback causes come after all others."""
         for sent in reply.sent:
             updates = self._subscriptions.get(sent.channel, opened)
             if updates is not None:

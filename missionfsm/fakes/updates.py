@@ -10,13 +10,13 @@ T = TypeVar("T")
 
 
 class Updates(Generic[T]):
-    """A subscription: a ``for`` over it takes what has come since the last one.
+    """A subscription: a ``for`` loop over it takes the updates since the last loop.
 
     The first updates are the latest known states when the subscription was made; every change adds one. Updates are
     values.
 
     Args:
-        callback: takes every update as it comes, in the place of keeping it to be taken.
+        callback: is given every update as it comes; then none is kept for a loop.
     """
 
     def __init__(self, callback: Callable[[T], object] | None = None) -> None:

@@ -16,7 +16,7 @@ from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.terms import State
 
 StepMutator = Callable[[State, Step], Step | None]
-"""A state and a step from there to the wrong step; None for none at all."""
+"""(state, step from there) → the wrong step; None if the step is not taken at all."""
 
 Which = Callable[[Emission], bool]
 

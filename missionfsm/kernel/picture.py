@@ -34,18 +34,17 @@ class Sketch:
     Attributes:
         name: what it shows, in a word.
         title: the same in a few words.
-        node: state to what its node is called, which is what all of its states have in common; None for one that is
+        node: state → the name of its node, which says what all states of the node have in common; None if the state is
             not in the picture.
-        label: (state, request or event, refs) to what doing that there is called; None for what is not shown.
-        within: whether exploration goes on from a state.
-        simple: (state, the readings that are followed) to the state that stands for it: under these readings the same
-            can be done there, with the same names.
-        shows: a view to what its being sent is called; None for what is not shown.
+        label: (state, request or event, refs) → the label of the arrow for doing that there; None if it is not shown.
+        within: state → whether the exploration goes on from there.
+        simple: (state, readings that are followed) → the state that stands for it: under these readings the same can
+            be done there, with the same names.
+        shows: view → the label for sending it; None if it is not shown.
         inputs, drives: what is tried.
-        world: the one that it starts in.
-        contrasts: choices of a reading, such as ``AM-09=b``, that are worth a picture beside the reference's reading.
-        parts: how it is divided where it is too much for one picture; where nothing is said, what ends everything is
-            drawn apart.
+        world: the world that it starts in.
+        contrasts: readings, such as ``AM-09=b``, that are worth a picture beside that of the reference's reading.
+        parts: how it is divided if it is too large for one picture. By default what ends everything is drawn apart.
     """
 
     name: str
@@ -63,10 +62,11 @@ class Sketch:
 
 
 def every_state(spec: Spec, inputs: tuple[Input, ...] | None = None) -> Sketch:
-    """A picture in which each state is a node, of a system that has few of them.
+    """A picture in which each state is a node, for a system with few states.
 
     Args:
-        inputs: what is asked; every operation with nothing in its params where it is not said.
+        spec: the system.
+        inputs: what is asked; by default every operation with empty params.
     """
     return Sketch(
         "states",
@@ -88,7 +88,7 @@ class Plan:
         name: what the files of the picture are called.
         title: what it shows, in a few words.
         missions: each in a few lines.
-        upstream: of each the indices of those that it waits for.
+        upstream: for each mission, the indices of the missions that it waits for.
     """
 
     name: str

@@ -21,7 +21,7 @@ class Made:
     command: str
 
     def to_json(self) -> JSON:
-        """As it stands in what is written as JSON."""
+        """The stamp as JSON files have it."""
         return {"version": self.version, "date": self.date, "command": self.command}
 
     def __str__(self) -> str:
@@ -33,9 +33,9 @@ class Finding:
     """A verdict, and what it is about.
 
     Attributes:
-        file: the history that was read; empty where an implementation was talked to.
-        robot: the one of a file that is meant, if the file names any.
-        seconds: how long the file took to judge, all its robots together.
+        file: the history that was read; empty if an implementation was judged.
+        robot: the robot that it is about, if the file names robots.
+        seconds: how long it took to judge the file, all its robots together.
     """
 
     verdict: Verdict

@@ -282,7 +282,7 @@ class GrpcSubject:
             self._change.wait_for(holds, seconds)
 
     def _all_came(self) -> bool:
-        """Wait until all has come that was sent, as the control service counts it; False where it does not."""
+        """Wait for as many messages as the control service counts. False if it does not count."""
         if not self._counts:
             return False
         if not self._came:
@@ -324,7 +324,7 @@ class GrpcSubject:
             time.sleep(rest)
 
     def _settle_patiently(self) -> None:
-        """Wait much longer for something that is missing; where it comes, from now on all are waited for so long."""
+        """Wait much longer for a missing message. If it comes, messages are awaited as long from now on."""
         caused = self._last
         with self._change:
             self._change.wait_for(lambda: self._arrived, self.target.settle * PATIENCE)
@@ -368,10 +368,10 @@ class GrpcSubject:
         self._taken()
 
     def _end_missions(self) -> None:
-        """Cancel what is under way until nothing is, then clear the list; of what others began only as far as allowed.
+        """Cancel missions until none is left, then clear the list. Missions of others are spared as `Use` says.
 
-        Where a conversation begins with whatever there is, missions of others are left alone, and own ones that wait
-        behind them, which nothing can end.
+        If conversations begin with whatever there is, missions of others stay, and so do own missions that wait behind
+        them, which nothing can end.
         """
         for _ in range(MAX_ROUNDS):
             listed = self._listed()
@@ -406,7 +406,7 @@ class GrpcSubject:
 
     @staticmethod
     def _active(listed: Iterable[dict[str, JSON]]) -> str:
-        """The mission to cancel: the one that runs, else the first that waits; "" where all have ended."""
+        """The id of the mission to cancel: the running one, or else the first waiting one; "" if all have ended."""
         open_ones = [one for one in listed if one.get("state") not in ENDED]
         running = [one for one in open_ones if one.get("state") in ("STATE_RUNNING", "STATE_PAUSED")]
         return str((running or open_ones or [{}])[0].get("missionId", ""))

@@ -19,10 +19,10 @@ WINDOW_BITS = {b"gzip": 16 + zlib.MAX_WBITS, b"deflate": zlib.MAX_WBITS}
 
 @define
 class Messages:
-    """The messages in one direction of a call, of which bytes come as they like.
+    """The messages in one direction of a call, whose bytes may come in any pieces.
 
     Attributes:
-        encoding: how those are encoded that say that they are.
+        encoding: how the messages are encoded that are marked as encoded.
     """
 
     encoding: bytes = b"identity"

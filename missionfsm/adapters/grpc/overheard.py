@@ -1,9 +1,9 @@
-"""What is said on connections that somebody stands beside, as the lines of a history.
+"""The traffic on connections through a proxy, as the lines of a history.
 
-Bytes are read after they were passed on, elsewhere: see `Overheard`. A call is noted where its request was whole, a
-message where it was whole, the end of a call where its trailers were: each before the other end can have seen it, so
-that what one end did because of what it saw is noted later than what it saw. What a tester does through the control
-service is noted as well (`missionfsm.adapters.grpc.steering`).
+Bytes are read after they were passed on, elsewhere: see `Overheard`. A call is noted when its request is complete, a
+message when it is complete, and the end of a call when its trailers are. Each is noted before the other end can have
+seen it, so that what an end does in response is noted later. What a tester does through the control service is noted as
+well (`missionfsm.adapters.grpc.steering`).
 """
 
 from __future__ import annotations
@@ -294,10 +294,12 @@ class _Connection:
             call.result = message
 
     def _ended(self, stream: int, status: str, message: str, *, made: bool = False) -> Iterator[Line]:
-        """A call is over.
+        """Note the end of a call.
 
         Args:
-            made: whether its status is one that the client makes, as it has none of the robot.
+            stream: its HTTP/2 stream.
+            status, message: its status.
+            made: whether the client made the status itself, since the robot sent none.
         """
         call = self._calls.pop(stream, None)
         if call is None or not call.number:
@@ -315,7 +317,7 @@ class _Connection:
 
 
 def _json(name: str, message: bytes | str) -> JSON:
-    """The protobuf JSON of a message; of what is none a text that says so."""
+    """The protobuf JSON of a message; for bytes that are no message, a text that says so."""
     try:
         if isinstance(message, str):
             raise NotOnTheWireError(message)

@@ -177,7 +177,7 @@ class _Pair:
             self._close(self.other(side))
 
     def lost(self, side: _Side) -> None:
-        """One side is gone for good: the other one goes as well, once it has what was sent."""
+        """End the other side as well, once it has been sent everything: this one is gone for good."""
         self._say_gone(side)
         side.gone = True
         if side is self.client and not self.robot.connected and self._connecting is not None:

@@ -40,7 +40,7 @@ from missionfsm.kernel.terms import Refs
 
 
 def reported(fleet: Fleet, event: Event, _: Refs, alone: str | None = None) -> tuple[Step, ...]:
-    """A robot reports the value of a part; without a robot: nobody knows what robots report, or what this one does."""
+    """A robot reports the value of a part. Without a robot: nobody knows what all robots, or this one alone, report."""
     if not event.robot:
         return () if fleet.unheard else (_forgotten(fleet, alone),)
     robot = fleet.robot(event.robot)
@@ -192,11 +192,11 @@ _FOLLOWED: tuple[tuple[tuple[str, ...], frozenset[Tie], frozenset[Tie]], ...] = 
     # It may have left before the stream began, and never have come.
     (("d",), MEMBERS | {Tie.COME}, frozenset((Tie.PASSED,))),
 )
-"""By the letters of AS-25: how a robot that has moved belongs to the streams that follow it, and to those that may."""
+"""Letters of AS-25, with the ties by which a stream follows a robot that has moved, and those by which it may."""
 
 
 def _offered(message: Emission, about: About, question: Ambiguity) -> Iterator[Emission]:
-    """A message that may be left out: on which streams it may come, and which letters of AS-25 that takes."""
+    """A message that may be left out, for each tie of a stream on which it may come, with the letters of AS-25."""
     for tie in Tie:
         letters = tuple(one for letters, owed, offered in _FOLLOWED if tie in owed | offered for one in letters)
         only = question[letters] if len(letters) < len(question.readings) else None
@@ -314,7 +314,7 @@ def restarted(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
 
 
 def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
-    """A robot is at another location from now on; it may join the streams of that one (AS-25)."""
+    """A robot moves to another location, whose streams it may join (AS-25)."""
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()

@@ -190,7 +190,7 @@ class Twist:
 
 @frozen
 class TrayState:
-    """One tray of a Servi: what lies on it, in kilograms and as a share of what it carries."""
+    """One tray of a Servi, with its load in kilograms and as a share of the most that it carries."""
 
     tray_name: str = ""
     load_state: LoadState = LoadState.LOAD_STATE_UNKNOWN

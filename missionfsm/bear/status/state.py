@@ -311,9 +311,9 @@ class Request:
     """One call of one operation, well-formed or not.
 
     Attributes:
-        ids: the robot ids that it names, in order, each once; () where it names none.
-        by_ids: the list of robot ids is set.
-        location: the location that it names, None where it is not set.
+        ids: the robot ids that it names, in order, each once.
+        by_ids: whether the list of robot ids is set.
+        location: the location that it names; None if that is not set.
         repeated: an id is named twice.
         bare: the list of robot ids stands where the message that holds it should stand.
         unknown_fields: where it has fields that are not documented: `request`, `selector`, `ids`.

@@ -36,7 +36,8 @@ Timestamp = NewType("Timestamp", str)
 
 _TIME = r"[Tt](?:[01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9](?:\.[0-9]{1,9})?(?:[Zz]|[+-][0-9]{2}:[0-9]{2})"
 USUAL_TIMESTAMP = r"(?!0000)[0-9]{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|1[0-9]|2[0-8])" + _TIME
-"""A regular expression for timestamps of days that every month has: what it does not know has to be read."""
+"""A regular expression for timestamps on days that every month has. Other texts have to be parsed."""
+
 _ANY_TIMESTAMP = re.compile(
     r"([0-9]{4}-[0-9]{2}-[0-9]{2})[Tt]([0-9]{2}:[0-9]{2}):([0-9]{2})(?:\.[0-9]{1,9})?(?:[Zz]|[+-][0-9]{2}:[0-9]{2})"
 )
@@ -218,7 +219,7 @@ def _is_tuple(declared: object) -> bool:
 
 
 MAX_KNOWN = 5_000
-"""How many of the messages in lists are known again: a list that grows has the same ones in it again and again."""
+"""How many messages in lists are remembered, since a list that grows has the same ones in it again and again."""
 
 
 def _tuple_hook(declared: Declared) -> Callable[[object, object], tuple[Any, ...]]:

@@ -1,6 +1,6 @@
-"""What has made a message due: the rules of the step that owes it, found among the last events.
+"""Why a message is due: the rules of the step that owes it, which is found among the last events.
 
-A rule about how messages come is broken where one does not; the rule of what happened says which message that was.
+A message that does not come breaks a rule about messages. The rules of the step say which message that was.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation
 
 MAX_LOOKED_AT = 20
-"""In how many explanations of each event it is looked for."""
+"""How many explanations of each event are searched."""
 
 
 def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | None:
-    """Ids of the rules of the latest step that owes a view to a topic and says why; None where none is known to owe it.
+    """Ids of the rules of the latest step that owes a view to a topic and says why; None if no step is known to owe it.
 
-    A step that only says that the view is sent, as it is again and again, does not say why.
+    A step whose rules only say that the view is sent, as it is again and again, does not say why.
     """
     found = False
     for symbol, node in belief.walked:
@@ -39,14 +39,14 @@ def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | No
 
 
 def delivering(spec: Spec, step: Step) -> set[str]:
-    """Ids of the rules that say that something is sent, and not what has made it due."""
+    """Ids of the rules of a step that only say that its messages are sent."""
     return {rule for one in step.emits for rule in spec.undelivered(one.view)} if spec.undelivered else set()
 
 
 def latest(belief: Belief) -> tuple[str, ...]:
-    """Ids of the rules of what has happened last since things settled.
+    """Ids of the rules that the last event since things settled has exercised.
 
-    Those of messages are left out, and those of refusals: a refusal changes nothing that could be shown.
+    Rules of messages are left out, and so are refusals: a refusal changes nothing that could be shown.
     """
     known = belief.spec.rules_by_id
     for (kind, *_), exercises in belief.exercised_last:

@@ -33,14 +33,15 @@ class Outcome(enum.Enum):
 
 
 MAX_LINE = 300
-"""How many characters of what came, and of what could have come, a person is shown; all of it is in the JSON."""
+"""How many characters of the event, and of what was allowed, a person is shown; the JSON has all of it."""
+
 MAX_SHOWN = 5
-"""How much of what could have come a person is shown."""
+"""How many of the allowed events a person is shown."""
 
 
 @frozen
 class CitedRule:
-    """A rule in question, as a person is told it."""
+    """A rule as a verdict cites it."""
 
     id: str
     says: str
@@ -52,7 +53,7 @@ class CitedRule:
 
 @frozen
 class Allowed:
-    """Something that would have been right in the place of what was observed."""
+    """Something that was allowed instead of what was observed."""
 
     what: str
     rules: tuple[CitedRule, ...] = ()
@@ -66,7 +67,7 @@ class Allowed:
 
 @frozen
 class Side:
-    """One of the conversations that together fit no single reading: what it shows, and its lines."""
+    """One of several conversations that contradict one another: what it shows, and its lines."""
 
     says: str
     history: tuple[JSON, ...]
@@ -80,11 +81,11 @@ class Violation:
         rules: the rules that it breaks.
         observed: the event, for people.
         expected: what would have been right.
-        notes: why explanations died, one line each.
+        notes: reasons why no explanation is left, a line each.
         history: the shortest history known that shows it, as lines of the history format.
-        at: the number of the line of a file where it is (see `line`), else of the event, from 1.
-        where: what stands before `observed`: the line of the file; empty where there is no file.
-        sides: the conversations that contradict one another, where no single one of them is wrong.
+        at: the number of the line of a file where it is (see `line`), or else of the event, from 1.
+        where: the words before `observed` that name the line of the file; empty if there is no file.
+        sides: the conversations that contradict one another, if no single one of them is wrong.
         listed: ids of the rules by which a list of known violations knows it, if those are not its own: a search meets
             it in a conversation that is longer than the one that is shown, and that may break other rules as well.
     """
@@ -157,8 +158,8 @@ class Verdict:
     Attributes:
         outcome: how it came out.
         system: the name of the system that was judged.
-        implementation: what the adapter says it is, or what was judged in the place of one.
-        seed: from which random conversations were drawn; None where nothing was.
+        implementation: what the adapter says it is, or what was judged instead of an implementation.
+        seed: the seed of the random conversations; None if there were none.
         examples: how many conversations were had; 0 for a recorded history.
         events: how many events were judged.
         violation: what is wrong, if anything is.
@@ -255,7 +256,7 @@ class Verdict:
 
     @property
     def headline(self) -> str:
-        """The outcome in a few words: one that conforms says whether it does so whole, and by the text."""
+        """The outcome in a few words: also whether it conforms only in part, or with something flagged."""
         if not self.conforms:
             return self.outcome.value
         part = " in part" if self.untested.something else ""
@@ -303,7 +304,7 @@ class Verdict:
         return "\n".join(lines)
 
     def _head(self, *, verbose: bool) -> Iterator[str]:
-        """What was judged, what it came to and what that rests on."""
+        """The headline, and the lines about what the verdict rests on."""
         about = f"{self.system}{' ' + printable(self.implementation) if self.implementation else ''}"
         counted = f"{self.events} events" + (f" in {self.examples} examples" if self.examples else "")
         yield f"{self.headline}: {about}, {counted}" + (f", seed {self.seed}" if self.seed is not None else "")

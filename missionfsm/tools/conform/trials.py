@@ -28,23 +28,23 @@ from missionfsm.tools.reference.model import Reference, Reply, Snapshot
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 EFFORT = 8_000
-"""How many steps of references the search on one ambiguity may take where its experiments are to be tried."""
+"""How many steps the references may take in the search for experiments about one ambiguity, if they are to be tried."""
 
 ASIDE = 2
-"""How many steps one counts for that is not among those that bring the system on."""
+"""How many steps an action counts for that does not bring the system on."""
 
 DOUBTFUL = 25
-"""How many conversations are judged in vain for one reading before it counts as one that cannot be told."""
+"""How many conversations are judged in vain for a reading before it counts as one that cannot be shown."""
 
 Naming = list[tuple[tuple[Name, ...], NameRef | str | None]]
-"""Names that a call may be about, and how an action refers to them."""
+"""Names that a call may be about, each with how an action refers to them."""
 
 _NAMELESS: Naming = [((), None)]
 
 
 @frozen(eq=False)
 class Trial:
-    """An experiment as something that can be done: the actions, in a world."""
+    """An experiment as actions in a world."""
 
     ambiguity: Ambiguity
     follows: str
@@ -61,7 +61,7 @@ class Trial:
 
 @frozen(eq=False)
 class _Node:
-    """Where the references stand, one for each reading, and how they came there."""
+    """The snapshots of the references, one for each reading, and the actions that led to them."""
 
     world: int
     here: tuple[Snapshot, ...]
@@ -75,7 +75,7 @@ class _Node:
 
 @frozen(eq=False)
 class _Move:
-    """Something that can be asked or made happen at a node: what it says, its names, and how it is done."""
+    """A call or a drive that can be done at a node."""
 
     what: Any
     names: tuple[Name, ...]
@@ -192,9 +192,9 @@ class _Search:
                     heapq.heappush(todo, (far + (1 if move.plain else ASIDE), next(serial), after))
 
     def _root(self, world: int) -> tuple[_Node, bool]:
-        """A fresh instance in a world; where there is one stream, with somebody who watches it.
+        """A fresh instance in a world, with a subscription if the system has just one stream.
 
-        Whoever watches sees more; what is not needed is left out in the end.
+        A subscriber sees more; if that was not needed, the subscription is left out in the end.
         """
         streams = self.system.codec.streams
         params = self.lab.guide.worlds[world]
@@ -208,7 +208,7 @@ class _Search:
     # What can be done.
 
     def _moves(self, node: _Node) -> Iterator[_Move]:
-        """What is worth trying: everything where such a situation is met first, else what brings things on."""
+        """What is worth trying: everything in a situation that is met first, else only what brings the system on."""
         keys = (node.world, *(self.system.spec.abstraction.enabled_key(one.state) for one in node.here))
         everything = keys not in self._thorough
         self._thorough.add(keys)

@@ -14,6 +14,7 @@ from missionfsm.kernel.subject import Exchange, Notification, Subject
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.verdict import Outcome
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 ALPHABET = SYSTEM.alphabet({}, Bounds())
@@ -193,3 +194,41 @@ def report(robot: str, part: str, value: Any) -> Any:
 
 
 SETTLED = {"settled": True}
+
+
+# Histories written by hand.
+
+BATTERY, ONLINE, ROBOT = "SubscribeBatteryStatus", "SubscribeOnlineStatus", "SubscribeRobotStatus"
+ERRORS = "SubscribeErrorCodes"
+R1 = WORLDS[0]["robots"][0]
+FIRST = R1["state"]["battery"]
+SECOND = WORLDS[0]["robots"][1]["state"]["battery"]
+UNPLUGGED = battery(77, "STATE_DISCHARGING", "CHARGE_METHOD_NONE")
+SUBSCRIBED = [*opened(1, BATTERY, by_ids("r1")), battery_message(1, "r1", 5, FIRST)]
+BOTH = [
+    *opened(1, BATTERY, by_ids("r1", "r2")),
+    battery_message(1, "r2", 7, SECOND),
+    battery_message(1, "r1", 5, FIRST),
+]
+
+
+def conforms(*lines: Any, **options: Any) -> bool:
+    return judge(lines, **options).verdict().outcome is Outcome.CONFORMS
+
+
+def broken(*lines: Any, **options: Any) -> list[str]:
+    """The names of the rules that a history breaks; at least it must break some."""
+    found = judge(lines, **options)
+    assert found.violation is not None
+    return [one.id.rpartition("/")[2] for one in found.violation.rules]
+
+
+def readings_of(found: Judge, entry: str) -> tuple[str, ...]:
+    """What is left of the one part of an entry that mattered."""
+    assert found.violation is None
+    [letters] = [left for one, left in found.verdict().readings.items() if f"{one}.".startswith(f"{entry}.")]
+    return letters
+
+
+def errors_message(stream: int, robot: str, number: int, codes: Any) -> Any:
+    return {"stream": stream, "message": {"errorCodes": {robot: {"metadata": metadata(number), "codes": codes}}}}

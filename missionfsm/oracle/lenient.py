@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from attrs import evolve
+
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import FAILED_PRECONDITION
 from missionfsm.kernel.spec import Failure, Spec
@@ -78,8 +80,13 @@ def restarted(
         taken = step and successors.advance(explanation.replace(assumed=assumed), step)
         if taken:
             after = taken[0]
-            channels = tuple(Channel(one.name, one.topic, None, one.owed[-1:]) for one in after.channels)
-            yield tidy(after.replace(channels=channels))
+            yield tidy(after.replace(channels=tuple(map(_renewed, after.channels))))
+
+
+def _renewed(channel: Channel) -> Channel:
+    """The channel, whose last message shows the restart; what was on its way before that may still come."""
+    *before, last = channel.owed
+    return Channel(channel.name, channel.topic, None, (*(evolve(one, passing=True) for one in before), last))
 
 
 def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:

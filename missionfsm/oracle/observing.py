@@ -40,6 +40,9 @@ class Observing:
         successors: what one explanation can become.
         level: how much of what only a transport does is thought of: 0 nothing, 1 that streams end and messages are
             lost, 2 that the robot has restarted as well.
+
+    Attributes:
+        receiving: what becomes of them when a message comes.
     """
 
     def __init__(self, successors: Successors, level: int) -> None:
@@ -47,10 +50,11 @@ class Observing:
         self._spec = successors.spec
         self._level = level
         self._unsaid = Unsaid(successors, level)
+        self.receiving = Receiving(successors, level, self._unsaid)
         self._observers: dict[type, Observer[Iterator[Successor]]] = {
             Called: self._called,
             Returned: Answering(successors, level).returned,
-            Received: Receiving(successors, level, self._unsaid).received,
+            Received: self.receiving.received,
             Ended: self._ended,
             Cancelled: self._cancelled,
             Driven: self._driven,

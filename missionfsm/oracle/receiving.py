@@ -66,6 +66,20 @@ class Receiving:
                 to_show.append(Successor(start))
         yield from self._shown_at_last(to_show, arrival)
 
+    def received_at_once(
+        self,
+        explanations: Iterable[Explanation],
+        content: Hashable,
+        names: Names,
+        relations: tuple[str, ...],
+        channel: int,
+    ) -> Iterator[Successor]:
+        """The explanations in which a message comes that is owed already; see `received`."""
+        for explanation in explanations:
+            start = self._numbered(explanation, relations, echoes=False)
+            if start is not None:
+                yield from self._showings(Successor(start), None, Arrival(channel, content, names), echo=False)
+
     def _redelivered(self, explanations: Iterable[Explanation], channel: int) -> Iterator[Successor]:
         """The explanations in which a message came twice that was sent once."""
         # One that may send a message again under its number has said it twice.

@@ -17,14 +17,16 @@ from attrs import define, field
 
 from missionfsm.kernel.history import Received
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
-from missionfsm.kernel.transport import REDELIVERED
+from missionfsm.kernel.transport import REDELIVERED, TR_05
 from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
 from missionfsm.oracle.coming import Excerpt, Horizon
 from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, bytes_besides
+from missionfsm.oracle.restarts import NONE, Restarts, apparent_restarts
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight
+from missionfsm.oracle.symbols import Observer
 from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")
@@ -55,6 +57,9 @@ FIRST_LOOK = 3
 
 NO_FURTHER = 300
 """How many explanations are looked at without coming any further, where more events will come that tell more."""
+
+CHEAP = 16
+"""Which part of the budget goes into explaining events without the restarts that they seem to show."""
 
 PUT_OFF = 64
 """How many explanations under unusual readings are put off at once."""
@@ -120,6 +125,7 @@ class Search:
         calls_alone: whether it looks at nothing but which calls took effect (see `missionfsm.oracle.calls`).
         beyond: the positions of events that the system itself does not explain; what lies between it and the recording
             is asked for them.
+        restarts: those that are taken for granted.
     """
 
     def __init__(
@@ -150,6 +156,7 @@ class Search:
         self._explained: int | None = None
         self.reached = 0
         self.beyond: set[int] = set()
+        self.restarts = NONE
         self._rules: dict[int, tuple[str, ...]] = {}
         self._alone = self._stopped = False
         self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
@@ -229,7 +236,7 @@ class Search:
         before, self._explained = self._explained, None
         anew = before is None or before > horizon or self._built & ~self._required or self._alone
         last = self.whole and (self._alone or horizon == len(self._symbols))
-        known = Horizon(horizon, last, self.beyond)
+        known = Horizon(horizon, last, self.beyond | self.restarts.shown)
         self._ahead = ahead = Lookahead(self.transitions.spec, self._excerpt, known, self._rules)
         self._horizon, self._built = horizon, self._required
         self.successors.reset()
@@ -378,11 +385,19 @@ class Search:
         """Look at the next event from the beginning."""
         here.begun = True
         kind, *what = self._symbols[position]
-        explains = self.transitions.beyond if position in self.beyond else self.transitions.explained
+        explains = self._explaining(position)
         before = [one for one in here.explanations if not self._ahead.withholds(one.assumed)]
         here.more = self._usual_first(before, explains(before, kind, *what))
         if self._reckons_at(position):
             here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
+
+    def _explaining(self, position: int) -> Observer[Iterator[Successor]]:
+        """What explains the event in a place."""
+        if position in self.beyond:
+            return self.transitions.beyond
+        if position not in self.restarts:
+            return self.transitions.explained
+        return functools.partial(self.transitions.restarting, surely=position in self.restarts.surely)
 
     def _usual_first(self, before: Sequence[Explanation], found: Iterable[Successor]) -> Iterator[Successor]:
         """What was found, but first what every ambiguity may be read in its default way for, as far as before.
@@ -419,7 +434,8 @@ class Search:
     def _reckons_at(self, position: int) -> bool:
         """Whether something besides the system itself is asked for an event."""
         spec, (kind, *what) = self.transitions.spec, self._symbols[position]
-        return position in self.beyond or spec.anywhere or spec.others or (kind is Received and REDELIVERED in what[2])
+        aside = position in self.beyond or position in self.restarts
+        return aside or spec.anywhere or spec.others or (kind is Received and REDELIVERED in what[2])
 
     def _outdone(self, tried: dict[Place, list[_Tried]], explanation: Explanation) -> bool:
         """Whether it leads nowhere since another one at the same point does not; notes it otherwise.
@@ -452,6 +468,49 @@ class Search:
         Raises:
             ExhaustedError: it costs more than the budget.
         """
+        restarts = apparent_restarts(self._symbols, self._excerpt.latest) if self.transitions.spec.transport else NONE
+        if not restarts.shown:
+            return self._first_unexplained_leniently()
+        if not self.restarts.shown and self._explains_without_restarts():
+            return None
+        supposed = self._first_unexplained_after(restarts)
+        if supposed is not None and supposed == len(self._symbols):
+            return None
+        self._suppose(NONE)
+        found = self._first_unexplained_leniently()
+        if found is None or supposed is None or supposed <= found:
+            return found
+        self._suppose(restarts)
+        self._explain_alone(supposed)
+        return supposed
+
+    def _explains_without_restarts(self) -> bool:
+        """Whether all events are explained by the system itself, as far as that is cheap to find out."""
+        horizon, budget, required = len(self._symbols), self.budget // CHEAP, self._required
+        found = self._explains_under(required, horizon, budget) or self._explains_under(0, horizon, budget)
+        self._required = required
+        return found is True
+
+    def _first_unexplained_after(self, restarts: Restarts) -> int | None:
+        """The position of the first event that nothing explains where a robot has restarted; None if that is too dear.
+
+        It is that behind the last one where everything is explained.
+        """
+        self._suppose(restarts)
+        try:
+            found = self._first_unexplained_leniently()
+        except ExhaustedError:
+            return None
+        return len(self._symbols) if found is None else found
+
+    def _suppose(self, restarts: Restarts) -> None:
+        if restarts != self.restarts:
+            self.restarts, self._explained, self.reached = restarts, None, 0
+            self._required &= ~TR_05["b"].group
+            self.beyond.clear()
+
+    def _first_unexplained_leniently(self) -> int | None:
+        """The same where what lies between the system and the recording is asked where the system does not explain."""
         found = self._first_unexplained()
         while found is not None and found not in self.beyond and self.transitions.reckons:
             if self.transitions.is_hopeless(*self._symbols[found], leniently=True):

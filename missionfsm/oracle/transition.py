@@ -13,11 +13,12 @@ from collections.abc import Iterable, Iterator
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Received, Returned
 from missionfsm.kernel.transport import REDELIVERED
-from missionfsm.oracle import middle
+from missionfsm.oracle import lenient, middle
 from missionfsm.oracle.explanation import Explanation
 from missionfsm.oracle.focusing import after_event
 from missionfsm.oracle.observing import Observing
 from missionfsm.oracle.receiving import numbered_so
+from missionfsm.oracle.restarts import shows_restart
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import Successor, Successors
 from missionfsm.oracle.symbols import Arrival, Part
@@ -85,6 +86,31 @@ class TransitionFunction:
         """Explanations of an event that the system itself does not explain, one by one; see `step`."""
         return itertools.chain.from_iterable(found for _, found in self._beyond(tuple(explanations), kind, *what))
 
+    def restarting(
+        self, explanations: Iterable[Explanation], kind: type, *what: Part, surely: bool = False
+    ) -> Iterator[Successor]:
+        """Explanations of an event before which the robot may have restarted, one by one.
+
+        What is shown after that is owed then, and need not be looked for any further.
+
+        Args:
+            surely: whether those come first where it has restarted just before.
+        """
+        before = tuple(explanations)
+        if kind is Received:
+            after = self._restarted(before)
+            yield from self._observing.receiving.received_at_once((*before, *after), *what)
+            return
+        if surely:  # what is silent may have come before it
+            for one in self.successors.closure(before):
+                yield from self._observing.explained(self._restarted((one.explanation,)), kind, *what)
+        yield from self._observing.explained(before, kind, *what)
+        if not surely:
+            yield from self._observing.explained(self._restarted(before), kind, *what)
+
+    def _restarted(self, explanations: Iterable[Explanation]) -> tuple[Explanation, ...]:
+        return tuple(lenient.restarted(self.successors, self.spec, explanations))
+
     def _beyond(
         self,
         explanations: tuple[Explanation, ...],
@@ -103,9 +129,14 @@ class TransitionFunction:
         yield False, unforeseen or self._unforeseen(explanations, kind, *what)
 
     def _eagerly(self, explanations: tuple[Explanation, ...], kind: type, *what: Part) -> Iterator[Successor]:
-        """What may have become of messages, or what somebody not in the log did that only later messages show."""
+        """What may have become of messages, or what somebody not in the log did that only later messages show.
+
+        Where a list is empty and the number is 0, a restart may have made it so, whatever else may have.
+        """
         if self.spec.transport:
             yield from self._lenient[0].explained(explanations, kind, *what)
+            if kind is Received and shows_restart((kind, *what)):
+                yield from self.restarting(explanations, kind, *what)
         if kind is Returned:
             yield from self._unforeseen(explanations, kind, *what)
 

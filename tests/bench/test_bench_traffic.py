@@ -111,6 +111,23 @@ def test_bench_traffic_share_decided(clients: int, seeds: int, tmp_path: Path) -
     print(f"\n{clients} clients, {seeds} logs of 100 lines: {dict(outcomes)}; the slowest took {slowest:.1f} s")
 
 
+@pytest.mark.parametrize("many", [2, 4, 8])
+def test_bench_traffic_restart(tmp_path: Path, many: int) -> None:
+    """A robot restarts while calls are on their way, all of which it refuses behind it."""
+    log = Recorder(drives=False)
+    log.call(SUBSCRIBE)
+    log.call("CreateMission", delivery("table-1", "table-2"))
+    calls = [("SkipGoal", {}), ("CreateMission", navigate("table-2")), ("CreateMission", delivery("table-3"))]
+    asked = [calls[number % len(calls)] for number in range(many)]
+    sent = [{"call": 10 + at, "method": method, "params": params} for at, (method, params) in enumerate(asked)]
+    metadata = {"timestamp": "2026-05-01T10:00:00Z", "sequenceNumber": 0}
+    message = {"metadata": metadata, "missionStates": {"missions": [], "currentMissionIndex": -1}}
+    refused = {"status": "FAILED_PRECONDITION", "message": ""}
+    answers = [{"return": 10 + at, "error": refused} for at in range(many)]
+    lines = [*log.history, *sent, {"stream": log.streams[0], "message": message}, *answers, {"settled": True}]
+    shown(f"a restart while {many} calls wait", written(tmp_path / "log.jsonl", lines))
+
+
 def unanswered(many: int, methods: tuple[str, ...]) -> Recorder:
     """Many calls of some operations behind a mission that runs, each with its answer and what it makes seen."""
     log = Recorder()

@@ -3,7 +3,7 @@
 Whatever happens to a robot:
 
 - Missions keep their order in the list.
-- Ended missions are forgotten together, by a call that clears the list or makes missions.
+- Ended missions are forgotten together, by a call that makes missions, or clears and empties the list.
 - Waiting missions vanish together, where a mission has failed or was cancelled, or where a workflow takes their place.
 - A new mission is made by a call and comes last; a charge may come before waiting missions, never before a started one.
 - No call makes a mission that is there already, or moves one that has ended.
@@ -35,6 +35,8 @@ def foresees(
     """Whether the robot may come to be shown as the content, by calls of some operations; see `Spec.foresees`."""
     if isinstance(content, Malformed) or not all(content.named):
         return True
+    if not shown:
+        return not names or _CLEARS in calls
     later = _Later(robot, names, content.states.missions, shown, calls)
     forgets = not calls.isdisjoint(_FORGETS)
     if robot.assigned:
@@ -52,7 +54,7 @@ def succeeds(
     if operation in ("SkipGoal", "UpdateMission"):
         ended = names[: len(robot.done)]
         return not any(name in ended for name in (*args, *answered))
-    return operation != "ClearMissionStatus" or _may_clear(robot, names, answered)
+    return operation != _CLEARS or _may_clear(robot, names, answered)
 
 
 def _may_clear(robot: Robot, names: tuple[int, ...], cleared: tuple[int, ...]) -> bool:
@@ -74,7 +76,10 @@ def _may_clear(robot: Robot, names: tuple[int, ...], cleared: tuple[int, ...]) -
 _MAKES = frozenset(ADDING)
 """Operations that are answered with the names of new missions."""
 
-_FORGETS = frozenset({"ClearMissionStatus", *AM_13})
+_CLEARS = "ClearMissionStatus"
+"""The operation that may leave the list empty."""
+
+_FORGETS = frozenset({_CLEARS, *AM_13})
 """Operations that may make a robot forget missions that have ended."""
 
 

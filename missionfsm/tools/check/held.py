@@ -128,6 +128,7 @@ class Held:
             before.add(line.event)
         again = before.search(lost)
         again.beyond = {position for position in search.beyond if position < found}
+        again.restarts = search.restarts
         again.explain(len(before.positions))
         before.close(again)
         self._belief.broken = True

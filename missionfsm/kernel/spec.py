@@ -120,7 +120,7 @@ class Drive:
     """
 
     name: str
-    steps: Callable[[State, Incident, Refs], tuple[Step, ...]]
+    steps: Callable[[State, Incident, Refs], Iterable[Step]]
     by_itself: tuple[Hashable, ...] = ()
     cite: Citation | None = None
     renumbers: Callable[[Incident], tuple[Hashable, ...]] | None = None

@@ -146,7 +146,10 @@ class Observing:
 
         for successor in self._successors.closure(explanations, focus=before_drive(self._successors, event, names)):
             here = successor.explanation
-            for step in drive.steps(here.state, event, tuple(here.ref(name) for name in names)):
+            steps = drive.steps(here.state, event, tuple(here.ref(name) for name in names))
+            for number, step in enumerate(steps):
+                if number:  # the first is paid for with the explanation; what is worked out one by one may be many
+                    self._successors.spend()
                 taken = self._successors.advance(here, step, names)
                 if taken:
                     yield Successor(tidy(taken[0]), successor.rules + step.rules)

@@ -105,7 +105,7 @@ class Doings:
         for asked in self._asked[kinds]:
             yield Tried(asked.doing, spec.outcomes(here, asked.request, asked.doing.refs), asked.method)
         for one in self._events[kinds]:
-            steps = spec.drives[one.event.name].steps(here, one.event, one.filled.refs)
+            steps = tuple(spec.drives[one.event.name].steps(here, one.event, one.filled.refs))
             opened = {opening.ref: opening.kind for step in steps for opening in step.opens if opening.ref < 0}
             brought = tuple(opened[ref] for ref in sorted(opened, reverse=True))
             if brought not in one.made:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import attrs
@@ -310,3 +310,66 @@ def test_the_full_exploration_is_another_one() -> None:
             costs.append(automaton.successors.spent)
         spent[name] = max(costs)
     assert spent["full"] > 4 * spent["focused"]
+
+
+def in_pairs(count: int, *, chain: bool = False, start: float = 5, tick: float = 1) -> History:
+    """Missions of one robot, and as many of another that wait for one each; a server that looks once a second."""
+    history = History()
+    for number in range(1, count + 1):
+        history.submit(number, start_timeout=start)
+    for number in range(1, count + 1):
+        upstream = [number, count + number - 1] if chain and number > 1 else [number]
+        history.submit(count + number, robot="q", upstream=upstream, start_timeout=start)
+    history = history.robot(1).robot(2, "q").settles
+    for number in range(1, count + 2):
+        history.waits(tick)
+        under_way = [(1, number)] if number <= count else []
+        under_way += [(2, count + number - 1)] if number > 1 else []
+        for link, mission in under_way:
+            history.sends(link, mission)
+        for status in ("running", "success"):
+            for link, mission in under_way:
+                history.reports(link, mission, status)
+            history.waits(tick)
+    return history.settles
+
+
+def looked_at(history: History, monkeypatch: pytest.MonkeyPatch) -> int:
+    """How many ways are looked at in which times pass, until it is known that a history conforms."""
+    count = 0
+
+    def passes(state: Server, time: int) -> Iterator[Any]:
+        nonlocal count
+        for move in passing.passes(state, time):
+            count += 1
+            yield move
+
+    spec._advance.cache_clear()
+    monkeypatch.setattr(spec, "passes", passes)
+    assert history.judged().conforms
+    return count
+
+
+def test_missions_in_pairs_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of pairs of missions each may time out or be cancelled at one moment: it is left open which of them do."""
+    for options in ({}, {"chain": True}, {"tick": 0.9}, {"start": 4.5}):
+        assert looked_at(in_pairs(8, **options), monkeypatch) < 3_000, options
+
+
+def test_robots_whose_times_are_over_at_one_moment_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Eight robots with four missions each, whose times to start are over at one moment: one by one, they are few."""
+    history, robots = History(), range(1, 9)
+    for number in range(32):
+        history.submit(number + 1, robot=f"r{number // 4}", start_timeout=5)
+    for robot in robots:
+        history = history.robot(robot, f"r{robot - 1}")
+    history = history.settles
+    for turn in range(4):
+        history.waits(1)
+        for robot in robots:
+            history.sends(robot, 4 * robot - 3 + turn)
+        for status in ("running", "success"):
+            for robot in robots:
+                history.reports(robot, 4 * robot - 3 + turn, status)
+            history = history.settles.waits(1) if status == "running" else history
+    assert looked_at(history.settles, monkeypatch) < 3_000

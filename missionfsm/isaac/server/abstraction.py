@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status
+from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server
 
 
 def search_key(server: Server) -> object:
@@ -20,7 +20,7 @@ def _of_robot(server: Server, robot: str | None) -> object:
         for one in own
         if one.status in UNDER_WAY
     )
-    queue = _queue([one for one in own if one.status is Status.QUEUED])
+    queue = _queue([one for one in own if one.queued])
     lingers = any(one.lingers for one in own)
     ended = tuple(sorted({one.status.value for one in own if one.status in ENDED}))
     links = tuple(one.serves for one in server.links if one.name == robot)

@@ -39,7 +39,6 @@ from missionfsm.isaac.server.state import (
     Move,
     Report,
     Server,
-    Status,
 )
 from missionfsm.kernel.readings import Ambiguity
 
@@ -53,7 +52,7 @@ def connects(move: Move) -> Move:
 
 def drops(move: Move, link: Link, *, seen: bool = False) -> Moves:
     """A connection drops, or is ended by the server; `seen`: what is sent on it all the same may be seen."""
-    waiting = any(one.robot == link.name and one.status is Status.QUEUED for one in move.state.missions)
+    waiting = any(one.robot == link.name and one.queued for one in move.state.missions)
     because = (rules.DROPPED.id,) if link.serves and waiting else ()
     for after in closed(move.to(move.state, *because), link, seen=seen):
         yield from _succeeded(after, link)
@@ -329,7 +328,7 @@ def _served(move: Move, link: Link) -> Moves:
     there = shared(move.state, link, found.name)
     for index, mission in enumerate(move.state.missions):
         over = any(one.since == "connect" and (one.hi is None or one.hi < 0) for one in mission.clocks)
-        if not (there or over) and mission.robot == found.name and mission.status is Status.QUEUED:
+        if not (there or over) and mission.robot == found.name and mission.queued:
             move = started(move, index, START, "connect")
     moves = list(back(move, found.name))
     for report in found.early:

@@ -5,6 +5,7 @@ A clock that no reading that is left looks at runs no more: what differs only in
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator
 
 from attrs import evolve
@@ -144,6 +145,12 @@ def _either(moves: list[Move], name: str, rest: Left) -> Move:
 
 
 _QUESTIONS = {one.id: one for one in AMBIGUITIES}
+
+
+@functools.lru_cache(maxsize=20_000)
+def unusual(left: Left) -> int:
+    """How many questions cannot be read in their usual way any more, of those of which some readings are left."""
+    return sum(_QUESTIONS[name].default not in letters for name, letters in left)
 
 
 def assumed(before: Server, after: Server) -> tuple[Assumption, ...]:

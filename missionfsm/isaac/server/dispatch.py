@@ -14,7 +14,15 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
-from missionfsm.isaac.server.lifecycle import becomes, cancellations, ends, failures_that_cancel, forgotten, sent_again
+from missionfsm.isaac.server.lifecycle import (
+    becomes,
+    cancellations,
+    ends,
+    failures_that_cancel,
+    forgotten,
+    sent_again,
+    settled,
+)
 from missionfsm.isaac.server.readings import (
     AI_03,
     AI_03_WHEN,
@@ -36,6 +44,7 @@ from missionfsm.isaac.server.readings import (
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.state import (
+    DOOM,
     HEARD,
     RUN,
     SENT,
@@ -53,8 +62,29 @@ from missionfsm.isaac.server.state import (
 
 
 def lapses(state: Server, link: Link) -> list[Move]:
-    """AI-03.when p: what becomes of a doomed mission that a scheduling pass finds first in an idle robot's queue."""
-    return _lapsed(Move(state), link) if state.letters(AI_03_WHEN) == "p" else []
+    """AI-03.when p, h: what becomes of a doomed mission that a scheduling pass finds first in an idle robot's queue.
+
+    Whichever is the first, where those before it may have ended; under h a pass is needed for no other.
+    """
+    letters = state.letters(AI_03_WHEN)
+    if letters not in ("p", "h", "ph"):
+        return []
+    first = _maybe_first(state, link)
+    sure = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued][:1]
+    return [one for at in first if letters == "p" or [at] != sure for one in _lapsed(Move(state), link, at)]
+
+
+def _maybe_first(state: Server, link: Link) -> list[int]:
+    """The doomed missions that may be the first in a robot's queue, since those before them may have ended."""
+    found = []
+    for index, mission in enumerate(state.missions):
+        if mission.robot != link.name or not mission.queued:
+            continue
+        if mission.doomed:
+            found.append(index)
+        if not any(one.lo <= 0 for one in mission.clocks) and not upstream_overdue(state.missions, index):
+            break
+    return found
 
 
 def _lapsing(move: Move, part: Part) -> Moves:
@@ -62,7 +92,7 @@ def _lapsing(move: Move, part: Part) -> Moves:
     if "h" not in move.state.letters(AI_03_WHEN):
         return
     for link in move.state.links:
-        if link.serves and link.slot in part.slots and (lapsed := _lapsed(move, link)):
+        if link.serves and link.slot in part.slots and (lapsed := _lapsed(move, link, None)):
             _, passes = split(move, AI_03_WHEN, "h")
             yield from (here for one in lapsed if (here := split(one, AI_03_WHEN, "h")[0]) is not None)
             if passes is not None:
@@ -70,17 +100,18 @@ def _lapsing(move: Move, part: Part) -> Moves:
             return
 
 
-def _lapsed(move: Move, link: Link) -> list[Move]:
+def _lapsed(move: Move, link: Link, index: int | None) -> list[Move]:
+    """A doomed mission is cancelled that is the first in the queue of an idle robot; None: whichever is."""
     state = move.state
-    own = [index for index, one in enumerate(state.missions) if one.robot == link.name]
-    queue = [index for index in own if state.missions[index].status is Status.QUEUED]
-    if not queue or not state.missions[queue[0]].doomed or busy(state, link):
+    if index is None:
+        index = next((at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued), None)
+    if index is None or not state.missions[index].doomed or busy(state, link):
         return []
-    head = state.missions[queue[0]]
+    head = state.missions[index]
     here, _ = split(move, AI_03, failures_that_cancel(head))
     if here is not None and head.waits:
         here, _ = split(here, AI_36, "a")
-    return [] if here is None else [ends(here, queue[0], "cancel", rules.CANCELED.id)]
+    return [] if here is None else [ends(here, index, "cancel", rules.CANCELED.id)]
 
 
 def busy(state: Server, link: Link) -> set[str]:
@@ -197,7 +228,7 @@ def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple
 def _queue(state: Server, link: Link) -> list[int]:
     """The missions that wait for the robot of a connection, or (AI-19 b) for any."""
     whose = (link.name, None) if "b" in state.letters(AI_19) else (link.name,)
-    return [index for index, one in enumerate(state.missions) if one.robot in whose and one.status is Status.QUEUED]
+    return [index for index, one in enumerate(state.missions) if one.robot in whose and one.queued]
 
 
 def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
@@ -209,25 +240,84 @@ def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
 
 
 def makes_no_difference(state: Server, index: int, clock: Clock, until: int) -> bool:
-    """Whether nothing that may happen by then depends on whether a clock aborts a queued mission before it or after.
+    """Whether nothing that may happen by then depends on whether a clock ends a queued mission before it or after.
 
-    Nobody waits for the mission, it does not hold up others of its robot, and would not be the first to be sent.
-    What is cancelled, is sent again or is anybody's is left as it comes.
+    It would not be the first to be sent, or nothing is sent to its robot; and those that wait for it, who may be
+    cancelled, hold nobody up. What is sent again or is anybody's is left as it comes.
     """
     missions, mission = state.missions, state.missions[index]
-    if mission.status is not Status.QUEUED or clock.kind not in (START, RUN) or mission.robot is None:
+    if not mission.queued or clock.kind not in (START, RUN, DOOM) or mission.robot is None or mission.sent:
         return False
-    if mission.sent or mission.doomed or any(index in one.waits for one in missions):
-        return False
-    if any(other.lo <= until for one in mission.waits for other in missions[one].ticking):
-        return False
-    queue = [at for at, one in enumerate(missions) if one.robot == mission.robot and one.status is Status.QUEUED]
-    return not any(index in _foremost(missions, lane) for lane in (queue, *_lanes(missions, queue)))
+    if not _is_blocked(state, mission.robot, mission.channel, until):
+        queue = [at for at, one in enumerate(missions) if one.robot == mission.robot and one.queued]
+        if any(index in _first_ready(missions, lane) for lane in (queue, *_lanes(missions, queue))):
+            return False
+        if _holds_up(state, index):
+            return False
+    return not any(_holds_up(state, one) for one in downstream(missions, index))
 
 
-def _foremost(missions: tuple[Mission, ...], lane: list[int]) -> tuple[int, ...]:
-    """The first mission of a queue, and the first that is ready."""
-    return (*lane[:1], *[index for index in lane if missions[index].ready][:1])
+def downstream(missions: tuple[Mission, ...], index: int) -> list[int]:
+    """The missions that wait for one, and those that wait for them, in the order of submission."""
+    found: list[int] = []
+    upstream = {index}
+    for at in range(index + 1, len(missions)):  # what waits for a mission was submitted later
+        if not upstream.isdisjoint(missions[at].waits):
+            upstream.add(at)
+            found.append(at)
+    return found
+
+
+def upstream_overdue(missions: tuple[Mission, ...], index: int) -> list[int]:
+    """Those among the missions for which one waits, and for which they wait, that have ended, nobody knows how."""
+    found = [index]
+    for at in found:
+        found += [one for one in missions[at].waits if one not in found]
+    return sorted(one for one in found[1:] if missions[one].overdue)
+
+
+def _holds_up(state: Server, index: int) -> bool:
+    """Whether it may make a difference to others of its robot whether a mission that waits has been cancelled."""
+    missions, robot = state.missions, state.missions[index].robot
+    if not missions[index].queued or not any(one.name == robot for one in (*state.links, *state.gone)):
+        return robot is None
+    return "b" in state.letters(AI_12) and any(one.robot == robot and one.ready for one in missions[index:])
+
+
+def _is_blocked(state: Server, robot: str, channel: str, until: int) -> bool:
+    """Whether nothing is sent to a robot on a channel by then: it is busy for longer, or not there."""
+    links = [one for one in (*state.links, *state.gone) if one.name == robot]
+    if any(one.over is not None or one.slot < 0 or one in state.gone for one in links):
+        return False
+    return all(_is_kept_busy(state, one, channel, until) for one in links if one.serves)
+
+
+def _is_kept_busy(state: Server, link: Link, channel: str, until: int) -> bool:
+    letters = state.letters(AI_11)
+    if "b" in letters:
+        return False
+    return any(
+        one.status in UNDER_WAY
+        and (one.channel == channel or "c" not in letters)
+        and all(clock.lo > until for clock in one.clocks)
+        for one in _given(state, link)
+    )
+
+
+def _settling(move: Move, part: Part) -> Moves:
+    """How missions have ended of which that was left open, once it may make a difference to the queue of a robot."""
+    missions = move.state.missions
+    for index in part.missions:
+        if missions[index].queued and missions[index].waits and _holds_up(move.state, index):
+            open_ones = upstream_overdue(missions, index)
+            if open_ones:
+                yield from settled(move, open_ones[0])
+                return
+
+
+def _first_ready(missions: tuple[Mission, ...], lane: list[int]) -> list[int]:
+    """The first mission of a queue that is ready."""
+    return [index for index in lane if missions[index].ready][:1]
 
 
 def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
@@ -308,7 +398,7 @@ def sends(move: Move, link: Link, index: int) -> Moves:
 
 def urgent(move: Move, part: Part) -> tuple[Move, ...]:
     """What follows from where things stand in a part of the server, one thing at a time."""
-    due = tuple(cancellations(move, part)) or tuple(_lapsing(move, part))
+    due = tuple(_settling(move, part)) or tuple(cancellations(move, part)) or tuple(_lapsing(move, part))
     return due or tuple(dispatches(move, part))
 
 

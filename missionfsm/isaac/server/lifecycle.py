@@ -6,6 +6,8 @@ in its state.
 
 from __future__ import annotations
 
+import functools
+
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
@@ -62,7 +64,7 @@ def becomes(move: Move, index: int, trigger: str) -> Move:
 
 def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
     """A mission ends; those that wait for it wait no longer, or are doomed."""
-    move = becomes(move, index, trigger).with_mission(index, clocks=())
+    move = becomes(move, index, trigger).with_mission(index, clocks=(), overdue=False)
     status = move.state.missions[index].status
     for other, mission in enumerate(move.state.missions):
         if index in mission.waits:
@@ -82,13 +84,14 @@ def cancellations(move: Move, part: Part) -> Moves:
     They make no difference to one another: the first comes first.
     """
     for index in part.missions:
-        due = tuple(_cancellation(move, index))
+        due = () if move.state.missions[index].overdue else tuple(cancellation(move, index))
         if due:
             yield from due
             return
 
 
-def _cancellation(move: Move, index: int) -> Moves:
+def cancellation(move: Move, index: int) -> Moves:
+    """A doomed mission is cancelled, or is found to wait (AI-03, AI-36)."""
     mission = move.state.missions[index]
     if mission.status is not Status.QUEUED or not mission.doomed or any(one.kind == DOOM for one in mission.clocks):
         return
@@ -106,12 +109,30 @@ def _doomed(move: Move, before: Move, index: int) -> Moves:
     """A mission is to be cancelled: at once, when a pass notices it, or when it comes to the front of its queue."""
     at_once, noticed = split(move, AI_03_WHEN, "n")
     if at_once is not None:
-        yield ends(at_once, index, "cancel", rules.CANCELED.id)
+        yield _cancelled(at_once, index)
     soon, waits = (None, None) if noticed is None else split(noticed, AI_03_WHEN, "q")
     if soon is not None:
         yield _to_be_noticed(soon, index, DOOM)
     if waits is not None and waits is not before:
         yield waits
+
+
+def _held(move: Move, index: int, kind: str) -> Move:
+    """A mission that was queued has ended, and it is left open how."""
+    after = move.with_mission(index, overdue=True)
+    return after.to(after.state, _because(kind))
+
+
+def _because(kind: str) -> str:
+    return {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE, DOOM: rules.CANCELED}[kind].id
+
+
+def _cancelled(move: Move, index: int) -> Move:
+    """A mission is cancelled, unless it timed out before: where it may have, that is left open."""
+    mission = move.state.missions[index]
+    if not mission.overdue and any(one.kind in (START, RUN) and one.lo <= move.at[1] for one in mission.clocks):
+        return _held(move, index, DOOM)
+    return ends(move, index, "cancel", rules.CANCELED.id)
 
 
 def failures_that_cancel(mission: Mission) -> str:
@@ -121,15 +142,18 @@ def failures_that_cancel(mission: Mission) -> str:
     return "a" + ("b" if reported else "") + ("c" if direct else "")
 
 
-def strikes(move: Move, index: int, clock: Clock, *, due: bool) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
+def strikes(
+    move: Move, index: int, clock: Clock, *, due: bool, held: bool = False
+) -> tuple[tuple[Move, ...], tuple[Move, ...]]:
     """Where a clock that is over aborts its mission, and where it does not: it means nothing, or strikes later.
 
-    Where it is not `due`, it may as well strike later as it is, and only the first are asked for.
+    Where it is not `due`, it may as well strike later as it is, and only the first are asked for. Where it is `held`,
+    the mission has ended, and it is left open how.
     """
     if clock.kind == DROP:
         return tuple(_drop_noticed(move, index)), ()
     if clock.kind == DOOM:
-        return (ends(move, index, "cancel", rules.CANCELED.id),), ()
+        return (_held(move, index, DOOM) if held else ends(move, index, "cancel", rules.CANCELED.id),), ()
     alike: Move | None = move
     unlike: Move | None = None
     if clock.kind != SILENT:
@@ -138,14 +162,66 @@ def strikes(move: Move, index: int, clock: Clock, *, due: bool) -> tuple[tuple[M
         return (), (move,)
     aborting, meaningless = _aborting(alike, index, clock)
     noticed = [_noticed(way, clock) if due else (way, None) for way in aborting]
+    if held:
+        over = tuple(_held(at_once, index, clock.kind) for at_once, _ in noticed)
+    else:
+        over = tuple(one for at_once, _ in noticed for one in aborted(at_once, index, clock.kind))
     return (
-        tuple(one for at_once, _ in noticed for one in aborted(at_once, index, clock.kind)),
+        over,
         (
             *(stopped(way, index, (clock.kind, clock.since)) for way in meaningless),
             *(with_later_clocks(later) for _, later in noticed if later is not None),
             *filter(None, (unlike,)),
         ),
     )
+
+
+def settled(move: Move, index: int) -> Moves:
+    """How a mission has ended of which that was left open: each way, with what follows for those that wait for it."""
+    now, mission = move.at, move.state.missions[index]
+    for clock in mission.clocks:
+        if clock.lo <= now[1]:
+            when = (clock.lo, now[1] if clock.hi is None else max(clock.lo, min(clock.hi, now[1])))
+            for one in strikes(evolve(move, at=when), index, clock, due=False)[0]:
+                yield from (evolve(after, at=now) for after in _with_cancellations(one))
+    if mission.doomed:
+        for one in (*cancellation(move, index), *_cancelled_in_its_turn(move, index)):
+            if not one.state.missions[index].overdue:
+                yield from _with_cancellations(one)
+
+
+def _cancelled_in_its_turn(move: Move, index: int) -> Moves:
+    """AI-03.when p, h: a doomed mission may have been cancelled before it timed out, had its turn come."""
+    mission = move.state.missions[index]
+    here, _ = split(move, AI_03_WHEN, "ph")
+    here, _ = (None, None) if here is None else split(here, AI_03, failures_that_cancel(mission))
+    if here is not None and mission.waits:
+        here, _ = split(here, AI_36, "a")
+    if here is not None and any(one.name == mission.robot for one in here.state.links):
+        yield ends(here, index, "cancel", rules.CANCELED.id)
+
+
+def _with_cancellations(move: Move) -> Moves:
+    """The move, with what it cancels."""
+    everything = Part(tuple(range(len(move.state.missions))), ())
+    todo = [move]
+    while todo:
+        here = todo.pop()
+        due = list(cancellations(here, everything))
+        todo += reversed(due)
+        if not due:
+            yield here
+
+
+@functools.lru_cache(maxsize=20_000)
+def all_settled(server: Server) -> tuple[Server, ...]:
+    """The server where no end is left open: what may have timed out has, under each reading that makes a difference."""
+    index = next((at for at, one in enumerate(server.missions) if one.overdue), None)
+    if index is None:
+        return (server,)
+    ends_so = list(dict.fromkeys(one.state for one in settled(Move(server), index)))
+    timed_out = [one for one in ends_so if one.missions[index].status is Status.ABORTED]
+    return tuple(dict.fromkeys(after for one in timed_out or ends_so for after in all_settled(one)))
 
 
 def _noticed(move: Move, clock: Clock) -> tuple[Move, Move | None]:
@@ -200,9 +276,8 @@ def _drop_noticed(move: Move, index: int) -> Moves:
 
 def aborted(move: Move, index: int, kind: str) -> Moves:
     """A mission is aborted; its robot is not told, or loses its connection (AI-08 c), or stays busy (d, e)."""
-    because = {START: rules.ABORTED, RUN: rules.OVERRUN, SILENT: rules.SILENCE}[kind].id
     mission = move.state.missions[index]
-    after = ends(move, index, "time out", because)
+    after = ends(move, index, "time out", _because(kind))
     link = None if mission.sent_on is None else move.state.link_at(mission.sent_on)
     if link is None and mission.status in UNDER_WAY:
         link = move.state.serving(mission.robot)
@@ -289,7 +364,7 @@ def unconnected(move: Move, link: Link) -> Move:
     if not link.serves or shared(move.state, link, link.name):
         return move
     for index, mission in enumerate(move.state.missions):
-        if mission.robot == link.name and mission.status is Status.QUEUED:
+        if mission.robot == link.name and mission.queued:
             clocks = (
                 evolve(one, hi=None) if (one.kind, one.since) == (START, "connect") else one
                 for one in mission.clocks

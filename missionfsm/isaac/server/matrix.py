@@ -46,7 +46,7 @@ def situation(server: Server, _: object = ()) -> str | None:
 
 
 def _of_missions(server: Server) -> str:
-    queued = [one for one in server.missions if one.status is Status.QUEUED]
+    queued = [one for one in server.missions if one.queued]
     if any(_robot(server, one.robot) == FREE for one in queued if one.waits):
         return "waiting for an upstream"
     at = {one.status for one in server.missions if one.status in UNDER_WAY}

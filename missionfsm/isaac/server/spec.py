@@ -6,7 +6,7 @@ The names of a state are, for each mission, its handle and its identifier, and t
 from __future__ import annotations
 
 import functools
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -57,6 +57,7 @@ from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer
+from missionfsm.kernel.lazily import Lazily
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption
 from missionfsm.kernel.rules import OK, Operation, decide
 from missionfsm.kernel.spec import Delivery, Drive, Spec
@@ -221,12 +222,12 @@ def _disconnect(server: Server, _: Drops, refs: Refs) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=20_000)
-def _advance(server: Server, event: Passes | Elapsed, _: Refs) -> tuple[Step, ...]:
+def _advance(server: Server, event: Passes | Elapsed, _: Refs) -> Iterable[Step]:
     if server.over:
         return (Step(server),)
     if isinstance(event, Elapsed):
         return tuple(_step(server, move) for move in elapsed(server, event.time, event.late))
-    return tuple(_step(server, _with_silence(server, move)) for move in merged(passes(server, event.time)))
+    return Lazily(_step(server, _with_silence(server, move)) for move in passes(server, event.time))
 
 
 def _with_silence(before: Server, move: Move) -> Move:
@@ -323,7 +324,7 @@ def _may_strike(server: Server, mission: Mission) -> bool:
 
 def _may_be_late(server: Server, part: Part) -> bool:
     """Whether a mission that is about to be sent may have timed out before that."""
-    waiting = (server.missions[index] for index in part.missions if server.missions[index].status is Status.QUEUED)
+    waiting = (server.missions[index] for index in part.missions if server.missions[index].queued)
     return any(clock.lo <= 0 for one in waiting for clock in one.ticking)
 
 
@@ -378,7 +379,7 @@ def _not_queued(meant: list[Mission]) -> Unowed:
 
 def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...] | Unowed:
     """Why none of these missions is due on a connection."""
-    queued = [one for one in meant if one.status is Status.QUEUED]
+    queued = [one for one in meant if one.queued]
     own = [one for one in queued if link.serves and one.robot == link.name]
     if own:
         return _waits(own)

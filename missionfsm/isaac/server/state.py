@@ -124,6 +124,8 @@ class Mission:
         was: what it was before its robot reported something that a pass may have yet to look at (AI-39.reports b), for
             how many microseconds that may be, and whether no time has passed; None where there is no such thing.
         depends: whether it has upstreams at all.
+        overdue: whether it has ended for certain while it was queued, and how is left open: it timed out, or was
+            cancelled before. Its clocks say when it may have timed out. Nothing but its status depends on that.
     """
 
     robot: str | None
@@ -141,6 +143,7 @@ class Mission:
     depends: bool = False
     fated: tuple[int, ...] = ()
     lingers: str = ""
+    overdue: bool = False
     was: tuple[Status, int, bool] | None = None
 
     @property
@@ -151,9 +154,14 @@ class Mission:
         return tuple(one for one in self.clocks if one.since != WAITS)
 
     @property
+    def queued(self) -> bool:
+        """Whether it may still be sent."""
+        return self.status is Status.QUEUED and not self.overdue
+
+    @property
     def ready(self) -> bool:
         """Whether nothing but its robot keeps it from being sent."""
-        return self.status is Status.QUEUED and not self.waits and not self.doomed
+        return self.queued and not self.waits and not self.doomed
 
 
 NOBODYS = -1

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.deciding import assumed as decided_between
+from missionfsm.isaac.server.lifecycle import all_settled
 from missionfsm.isaac.server.readings import (
     AI_02_ABORTED,
     AI_02_CANCELED,
@@ -74,7 +76,14 @@ def _called(server: Server, mission: Mission) -> Called:
 
 def status_answers(server: Server) -> Iterator[Step]:
     """The answers to ``statuses``, one for each way in which the readings name what is there."""
-    found: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {((), UNCONSTRAINED): ()}
+    for base in all_settled(nothing_open_happened(server)):
+        yield from _answers(server, base)
+
+
+def _answers(before: Server, server: Server) -> Iterator[Step]:
+    """The answers where things stand so, and what has been decided about a server as it was before."""
+    before_it = decided_between(before, server)
+    found: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {((), UNCONSTRAINED): before_it}
     for mission in server.missions:
         longer: dict[tuple[tuple[str, ...], int], tuple[Assumption, ...]] = {}
         for (words, assumed), assumes in found.items():
@@ -86,9 +95,8 @@ def status_answers(server: Server) -> Iterator[Step]:
         found = longer
     handles = tuple(handle_ref(index) for index in range(len(server.missions)))
     promised = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
-    quiet = nothing_open_happened(server)
     for (words, _), assumes in found.items():
-        yield Step(quiet, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
+        yield Step(server, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
 
 
 def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
@@ -171,5 +179,5 @@ def sequence(relation: str) -> tuple[Assumption, ...]:
 
 def may_be_called(server: Server, index: int, word: object) -> bool:
     """Whether a mission is called so under some reading as things stand."""
-    words = {one for one, _ in _called(server, server.missions[index])}
+    words = {word for one in all_settled(server) for word, _ in _called(one, one.missions[index])}
     return word in words or ("lost" in words and word in _LOST_IS_CALLED)

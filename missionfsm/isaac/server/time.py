@@ -11,17 +11,28 @@ they are unless AI-39 is read as b, nothing is left open but what falls on the v
 from __future__ import annotations
 
 import functools
+import heapq
+import itertools
 import math
 import operator
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from attrs import evolve
+from attrs import define, evolve, field
 
 from missionfsm.isaac.server.connections import drops, inherited
-from missionfsm.isaac.server.deciding import merged, split, ways
-from missionfsm.isaac.server.dispatch import in_vain, lapses, makes_no_difference, possible, sends, urgent
+from missionfsm.isaac.server.deciding import merged, split, unusual, ways
+from missionfsm.isaac.server.dispatch import (
+    downstream,
+    in_vain,
+    lapses,
+    makes_no_difference,
+    possible,
+    sends,
+    upstream_overdue,
+    urgent,
+)
 from missionfsm.isaac.server.independence import Part, parts
-from missionfsm.isaac.server.lifecycle import forgotten, strikes, untimed
+from missionfsm.isaac.server.lifecycle import forgotten, settled, strikes, untimed
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
 from missionfsm.isaac.server.state import DROP, ENDED, PASS_PERIOD, Clock, Link, Mission, Move, Server
 from missionfsm.isaac.shared.line import MICROSECONDS
@@ -29,6 +40,12 @@ from missionfsm.kernel.values import value
 
 EVER = 10**15
 """Longer ago than anything happened, in microseconds."""
+
+FEW = 8
+"""Of so many ways, what falls on the very end of a time has happened rather than not; of more, it is left open."""
+
+MANY = 64
+"""More than so many ways in which time may pass are worked out one by one."""
 
 ABOUT = MICROSECONDS
 """By how much the times that a log tells of its lines may be off, in microseconds. The tester's choice."""
@@ -49,19 +66,44 @@ class _Moment:
     awaited: tuple[tuple[int, int, int], ...]
 
 
-def passes(state: Server, time: int) -> tuple[Move, ...]:
-    """Everything that may have become of a server when so many microseconds have passed."""
+def passes(state: Server, time: int) -> Iterable[Move]:
+    """Everything that may have become of a server when so many microseconds have passed.
+
+    Where that is much, it is worked out as it is asked for, with what is read in its usual way first.
+    """
     begins = [Move(state)]
     for part in parts(state):
         begins = [other for move in begins for after in _followed(move, part) for other in _in_order(after, part)]
-    moves = _all_until(begins, state, time, due=False)
+    moves = _all_until(begins, state, time, due=False, most=MANY)
+    if moves is None:
+        return _one_by_one(begins, state, time)
     if any(_falls_on(move.state, time) for move in moves):  # it has happened rather than not
-        moves = _all_until(begins, state, time, due=True) + moves
-    found: dict[object, Move] = {}
+        moves = (_all_until(begins, state, time, due=True, most=FEW) or []) + moves
+    return merged(_apart(moves, time))
+
+
+def _one_by_one(begins: list[Move], state: Server, time: int) -> Iterator[Move]:
+    """The same where it is much, one after the other."""
+
+    def onwards(move: Move, left: tuple[Part, ...]) -> Iterator[Move]:
+        if not left:
+            yield move
+            return
+        for after in _until(move, left[0], time, due=False, usual_first=True):
+            yield from onwards(after, left[1:])
+
+    moves = (after for move in sorted(begins, key=_unusual) for after in onwards(move, parts(state)))
+    yield from _apart(moves, time)
+
+
+def _apart(moves: Iterable[Move], time: int) -> Iterator[Move]:
+    """The moves at the end of a time, each once."""
+    found: set[object] = set()
     for move in moves:
         after = _shifted(move, time)
-        found.setdefault((after.state, after.sent), after)
-    return tuple(found.values())
+        if (after.state, after.sent) not in found:
+            found.add((after.state, after.sent))
+            yield after
 
 
 def _in_order(move: Move, part: Part) -> list[Move]:
@@ -72,16 +114,29 @@ def _in_order(move: Move, part: Part) -> list[Move]:
     return [way for _, way in ways(move, AI_39_ORDER, "n", "s")] if held else [move]
 
 
-def _all_until(begins: list[Move], state: Server, time: int, *, due: bool) -> list[Move]:
+def _all_until(
+    begins: list[Move], state: Server, time: int, *, due: bool, most: int | None = None
+) -> list[Move] | None:
+    """What may have become of all parts at a time; None where that is more than `most`."""
     moves = begins
     for part in parts(state):
-        moves = list(merged(after for move in moves for after in _until(move, part, time, due=due)))
+        found = itertools.chain.from_iterable(_until(move, part, time, due=due) for move in moves)
+        few = list(found if most is None else itertools.islice(found, most + 1))
+        if most is not None and len(few) > most:
+            return None
+        moves = list(merged(few))
     return moves
 
 
 def _falls_on(state: Server, time: int) -> bool:
     """Whether a clock that has not struck is due at this very moment at the latest."""
-    return any(clock.hi == time for mission in state.missions for clock in mission.ticking)
+    return any(clock.hi == time for index in range(len(state.missions)) for clock in _counting(state, index))
+
+
+def _counting(state: Server, index: int) -> tuple[Clock, ...]:
+    """The clocks of a mission that may bring about anything yet."""
+    mission = state.missions[index]
+    return () if mission.overdue else mission.ticking
 
 
 def _followed(move: Move, part: Part) -> list[Move]:
@@ -107,20 +162,16 @@ def _tidy(move: Move) -> Move:
     return evolve(move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0])))
 
 
-def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
+def _until(move: Move, part: Part, time: int, *, due: bool, usual_first: bool = False) -> Iterator[Move]:
     """What may have become of a part at a time, with all decided that must have happened by then.
 
     Args:
         due: whether a clock that must have struck by that very moment has; passes have come.
+        usual_first: whether what is read in its usual way comes first.
     """
-    start = _moment(evolve(move, at=(0, 0)), -EVER, part, ())
-    seen: set[_Moment] = set()
-    todo = [start]
-    while todo:
-        here = todo.pop()
-        if here in seen:
-            continue
-        seen.add(here)
+    todo = _ToDo(usual_first)
+    todo.add([_moment(evolve(move, at=(0, 0)), -EVER, part, ())])
+    for here in todo:
         strike, comes = _latest(here, part)
         if comes > time and (strike > time or (strike == time and not due)):
             since = {slot: first for slot, first, _ in here.awaited if first <= time}
@@ -131,7 +182,39 @@ def _until(move: Move, part: Part, time: int, *, due: bool) -> Iterator[Move]:
                     after = after.with_link(slot, pass_since=since.get(slot))
             yield evolve(after, at=(0, 0))
             continue
-        todo += reversed(list(_next(here, part, int(min(strike, comes)))))
+        todo.add(list(_next(here, part, int(min(strike, comes)))))
+
+
+@define(eq=False)
+class _ToDo:
+    """Moments to go on from, each once: the first of those that were found last.
+
+    Attributes:
+        usual: whether those come before that which leave most questions to be read in their usual way.
+    """
+
+    usual: bool
+    seen: set[_Moment] = field(factory=set)
+    heap: list[tuple[int, int, _Moment]] = field(factory=list)
+    added: int = 0
+
+    def add(self, found: list[_Moment]) -> None:
+        for one in reversed(found):
+            order = _unusual(one.move) if self.usual else 0
+            self.added += 1
+            heapq.heappush(self.heap, (order, -self.added, one))
+
+    def __iter__(self) -> Iterator[_Moment]:
+        while self.heap:
+            _, _, here = heapq.heappop(self.heap)
+            if here not in self.seen:
+                self.seen.add(here)
+                yield here
+
+
+def _unusual(move: Move) -> int:
+    """How many questions cannot be read in their usual way any more."""
+    return unusual(move.state.left)
 
 
 def _moment(move: Move, low: int, part: Part, awaited: tuple[tuple[int, int, int], ...]) -> _Moment:
@@ -199,7 +282,7 @@ def _overlooked(state: Server, part: Part) -> list[tuple[Link, Link]]:
 def _latest(here: _Moment, part: Part) -> tuple[float, float]:
     """Until when a clock has to have struck in a part, and a pass to have come, at the latest."""
     state = here.move.state
-    due = (clock.hi for index in part.missions for clock in state.missions[index].ticking if clock.hi is not None)
+    due = (clock.hi for index in part.missions for clock in _counting(state, index) if clock.hi is not None)
     looks = [_pass(state, slot, last) for slot, _, last in here.awaited]
     looks += [gone.fresh for gone in _in_vain(state, part)]
     looks += [link.fresh for _, link in _overlooked(state, part)]
@@ -209,18 +292,18 @@ def _latest(here: _Moment, part: Part) -> tuple[float, float]:
 def _next(here: _Moment, part: Part, until: int) -> Iterator[_Moment]:
     """Everything that may happen next in a part, no later than `until`.
 
-    What aborts a mission and makes no difference to anything else until then may as well happen later: it is left open,
-    and where it must have happened by then it does in the order of submission.
+    What ends a mission and makes no difference to anything else until then may as well happen later: it is left open.
+    Where it must have happened by then it comes first of all.
     """
-    due: int | None = None
-    for index in part.missions:
-        for clock in here.move.state.missions[index].ticking:
-            if clock.lo > until:
-                continue
-            if makes_no_difference(here.move.state, index, clock, until):
-                if clock.hi is None or clock.hi > until or due not in (None, index):
-                    continue
-                due = index
+    state = here.move.state
+    found = [(index, one) for index in part.missions for one in _counting(state, index) if one.lo <= until]
+    idle = [(index, one) for index, one in found if makes_no_difference(state, index, one, until)]
+    for index, clock in idle:
+        if clock.hi is not None and clock.hi <= until:
+            yield from _ends_quietly(here, part, index, clock)
+            return
+    for index, clock in found:
+        if (index, clock) not in idle:
             yield from _strike(here, part, index, clock, until)
     yield from _passes(here, part, until)
     yield from _unnoticed(here, part, until)
@@ -300,6 +383,16 @@ def _strike(here: _Moment, part: Part, index: int, clock: Clock, until: int) -> 
             yield from (_moment(after, here.low, part, here.awaited) for after in _followed(one, part))
 
 
+def _ends_quietly(here: _Moment, part: Part, index: int, clock: Clock) -> Iterator[_Moment]:
+    """A clock has struck that makes no difference; how a mission has ended is left open where others are about it."""
+    state = here.move.state
+    mission = state.missions[index]
+    held = bool(mission.waits or mission.doomed or downstream(state.missions, index))
+    move = evolve(here.move, at=(clock.lo, clock.hi if clock.hi is not None else clock.lo))
+    for one in (*(both := strikes(move, index, clock, due=True, held=held))[0], *both[1]):
+        yield from (_moment(after, here.low, part, here.awaited) for after in _followed(one, part))
+
+
 def _shifted(move: Move, time: int) -> Move:
     """The end of it: clocks say how much is left from here on."""
     missions = tuple(_with_clocks_shifted(one, time) for one in move.state.missions)
@@ -328,8 +421,9 @@ def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
         mission = evolve(mission, was=(status, left - time, fresh and not time) if left > time else None)
     if not mission.clocks:
         return mission
+    least = -EVER if mission.overdue else 0
     clocks = (
-        evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(0, clock.hi - time))
+        evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(least, clock.hi - time))
         for clock in mission.clocks
     )
     return evolve(mission, clocks=tuple(clocks))
@@ -406,7 +500,7 @@ def _late(here: Move, part: Part, late: int) -> Iterator[Move]:
     due = [
         (index, clock)
         for index in part.missions
-        for clock in state.missions[index].ticking
+        for clock in _counting(state, index)
         if clock.hi is not None and clock.hi <= -late
     ]
     matters = [(index, clock) for index, clock in due if not makes_no_difference(state, index, clock, 0)]
@@ -486,12 +580,23 @@ def _unsaid(state: Server, part: Part, asked: frozenset[int] | None) -> Iterator
 
 def _struck(state: Server, part: Part, asked: frozenset[int] | None) -> Iterator[Move]:
     """A clock has struck by now."""
+    yield from _told_apart(state, part, asked)
     for index in part.missions:
         anyway = asked is None or index in asked
-        for clock in state.missions[index].ticking:
+        for clock in _counting(state, index):
             if clock.lo <= 0 and (anyway or not makes_no_difference(state, index, clock, 0)):
                 for one in strikes(Move(state, at=(clock.lo, 0)), index, clock, due=False)[0]:
                     yield from inherited(state, one)
+
+
+def _told_apart(state: Server, part: Part, asked: frozenset[int] | None) -> Iterator[Move]:
+    """How the first mission has ended of those of which that was left open and which tell something of the others."""
+    missions = state.missions
+    about = [index for index in part.missions if asked is None or index in asked]
+    ended = {at for index in about for at in ((index,) if missions[index].overdue else ())}
+    ended |= {at for index in about for at in upstream_overdue(missions, index)}
+    if ended:
+        yield from settled(Move(state), min(ended))
 
 
 def _pass_possible_since(move: Move, part: Part) -> Move:
@@ -539,7 +644,7 @@ def nothing_open_happened(state: Server, only: tuple[Part, ...] | None = None) -
 
 def _none_struck(mission: Mission) -> Mission:
     """The mission of which no clock has struck before now."""
-    if mission.status in ENDED or not any(_may_have_struck(clock) for clock in mission.clocks):
+    if mission.status in ENDED or mission.overdue or not any(_may_have_struck(clock) for clock in mission.clocks):
         return mission
     clocks = (evolve(clock, lo=0) if _may_have_struck(clock) else clock for clock in mission.clocks)
     return evolve(mission, clocks=tuple(clocks))

@@ -122,7 +122,7 @@ class Census:
                 yield self._possible(spec.outcomes(here, request, refs))
         for event, free in actions.events:
             for refs in bindings(spec, here, free):
-                yield self._possible(spec.drives[event.name].steps(here, event, refs))
+                yield self._possible(tuple(spec.drives[event.name].steps(here, event, refs)))
         yield self._possible((*spec.urgent(here), *spec.spontaneous(here)))
 
     def _possible(self, steps: tuple[Step, ...]) -> list[Step]:

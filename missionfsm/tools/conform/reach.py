@@ -109,7 +109,7 @@ class Reach:
             columns: tuple[str, ...] = (CANCEL.method,)
         else:
             what, refs = self._said(conversation, here, action)
-            if action.method == "drive" and not self.system.spec.drives[what.name].steps(here.state, what, refs):
+            if action.method == "drive" and not tuple(self.system.spec.drives[what.name].steps(here.state, what, refs)):
                 return  # it cannot happen there
             columns = self.matrix.columns(here.state, opened(here), what, refs)
         for column in columns:

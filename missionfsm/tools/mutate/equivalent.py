@@ -248,7 +248,7 @@ class _Explorer:
         yield from self._asked_all(here, actions)
         for event, free in actions.events:
             for refs in bindings(self.spec, here, free):
-                allowed = self.spec.drives[event.name].steps(here, event, refs)
+                allowed = tuple(self.spec.drives[event.name].steps(here, event, refs))
                 own = next((one for one in allowed if meet(self.model.choice, one.assumes)), None)
                 self.came_up = self.came_up or (own is not None and self.rule in own.rules)
                 happened = self.model.mutate_step(here, own)

@@ -7,7 +7,7 @@ or a drive a `Reference` computes the next snapshot, and everything that an obse
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any
 
 from attrs import evolve, frozen
@@ -200,7 +200,7 @@ class Reference:
         return evolve(here, channels=tuple(one for one in here.channels if one.name != channel))
 
     def _remembered(
-        self, key: tuple[Hashable, ...], steps: Callable[..., tuple[Step, ...]], *arguments: object
+        self, key: tuple[Hashable, ...], steps: Callable[..., Iterable[Step]], *arguments: object
     ) -> Step | None:
         """The first of some steps that the readings allow; `key` begins with the state, and says which steps."""
         step = self._chosen.get(key, _UNKNOWN)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
+from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
@@ -57,9 +57,9 @@ def _arrives(given: JSON) -> tuple[Arrives, tuple[Name, ...]]:
         numeric,
         channel=channel,
         untyped=is_untyped(raw),
-        garbled=is_garbled(raw),
+        garbled=is_garbled(raw) or _is_missing(given),
         misplaced=given is not None and not (isinstance(given, dict) and _is_text(given.get("serialized", ""), given)),
-        nodes=kind == USABLE and bool(strictjson.parse(message.payload.config)),
+        nodes=kind == USABLE and not _is_missing(given) and bool(strictjson.parse(message.payload.config)),
     )
     return arrives, names
 
@@ -72,7 +72,8 @@ def _garbled(line: str) -> tuple[Arrives, tuple[Name, ...]]:
     header, payload = raw.get("header"), raw.get("payload")
     if not (isinstance(header, dict) and isinstance(payload, dict) and isinstance(header.get("channel"), str)):
         return Arrives(), ()
-    if str(header.get("proto")) not in _MISSION_TYPES and "config" not in payload:
+    untyped = header.get("proto") is None and not {"text", "missionStatus"} & payload.keys()
+    if not untyped and str(header.get("proto")) not in _MISSION_TYPES and "config" not in payload:
         return Arrives(), ()
     return Arrives(USABLE, channel=header["channel"], garbled=True), ()
 
@@ -85,11 +86,17 @@ def _is_text(serialized: JSON, config: JSON) -> bool:
     return isinstance(serialized, str | None) and ("serialized" in config or not config)
 
 
+def _is_missing(config: JSON) -> bool:
+    """Whether a mission has no configuration, which every mission needs."""
+    return config is None or config == {} or (isinstance(config, dict) and config.get("serialized", 0) is None)
+
+
 def _configuration(raw: JSON, mission: MissionProto) -> str:
-    """Of which kind a configuration is; one that is missing or empty is none, like null."""
-    given = raw["payload"].get("config")
-    if given is None or not mission.config or (isinstance(given, dict) and given.get("serialized", 0) is None):
-        return NULL
+    """Of which kind a configuration is."""
+    if _is_missing(raw["payload"].get("config")):
+        return USABLE
+    if not mission.config:
+        return BLANK
     value = strictjson.parse(mission.config)
     if value is None:
         return NULL
@@ -105,7 +112,7 @@ def _is_node(value: JSON) -> bool:
     return isinstance(value, dict) and all(isinstance(component, dict) for component in value.values())
 
 
-_CONFIGURATIONS = {USABLE: "{}", NULL: "null", SHALLOW: '{"node":1}', ODD: "1", UNUSABLE: "no json"}
+_CONFIGURATIONS = {USABLE: "{}", NULL: "null", BLANK: "", SHALLOW: '{"node":1}', ODD: "1", UNUSABLE: "no json"}
 
 
 def _essence(event: Arrives, names: tuple[Name, ...]) -> dict[str, JSON]:

@@ -14,6 +14,7 @@ _CONFIGURED = dict(
         (
             "a mission",
             "a mission with the configuration null",
+            "a mission with an empty text as configuration",
             "a mission with a configuration in which something is no node",
             "a mission with a configuration that is no object",
             "a mission with a configuration that is no JSON",

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.inputs import NULL, ODD, SHALLOW, UNUSABLE, Arrives
+from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, Arrives
 from missionfsm.isaac.robot.state import (
     NAME_BOUND,
     RUNNING_BOUND,
@@ -227,6 +227,7 @@ class Doubt:
 
 _CONFIGURED: dict[str, Doubt] = {
     NULL: Doubt(readings.AI_33_NULL, readings.AI_33_PREEMPTS_NULL),
+    BLANK: Doubt(readings.AI_33_BLANK, readings.AI_33_PREEMPTS_BLANK),
     SHALLOW: Doubt(readings.AI_33_NODE, readings.AI_33_PREEMPTS_NODE),
     ODD: Doubt(readings.AI_33_VALUE, readings.AI_33_PREEMPTS_VALUE, "b", "a"),
     UNUSABLE: Doubt(readings.AI_33_UNUSABLE, readings.AI_33_PREEMPTS, "b", "a"),

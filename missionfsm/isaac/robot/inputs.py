@@ -7,8 +7,15 @@ from attrs import frozen
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.codec import Happening
 
-USABLE, NULL, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = ("usable", "null", "shallow", "odd", "unusable")
-"""What a configuration is: an object of nodes; ``null``, or none at all; an object in which something is no node with
+USABLE, NULL, BLANK, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = (
+    "usable",
+    "null",
+    "blank",
+    "shallow",
+    "odd",
+    "unusable",
+)
+"""What a configuration is: an object of nodes; ``null``; an empty text; an object in which something is no node with
 components; any other JSON; no JSON."""
 
 
@@ -21,8 +28,9 @@ class Arrives:
         foreign: whether it is a message of another type.
         untyped: whether its header has no type id, or an unsigned one.
         misplaced: whether its configuration is no text that holds JSON, but the JSON itself.
-        garbled: whether something else in it is not written as documented: a field that nobody knows, a number with
-            leading zeros, a value of another type or out of range. It is a mission, or nothing.
+        garbled: whether something else in it is not written as documented: a field that nobody knows, no
+            configuration, a number with leading zeros, a value of another type or out of range. It is a mission, or
+            nothing.
         nodes: whether its configuration says something of nodes, of which nobody knows whether the robot has them.
     """
 

@@ -127,6 +127,14 @@ AI_33_NULL = Ambiguity(
     flagged=frozenset("c"),
     rule="an-unusable-configuration-fails-the-mission",
 )
+AI_33_BLANK = Ambiguity(
+    "AI-33.blank",
+    "What is a configuration that is an empty text?",
+    {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
+    default="a",
+    flagged=frozenset("c"),
+    rule="an-unusable-configuration-fails-the-mission",
+)
 AI_33_VALUE = Ambiguity(
     "AI-33.value",
     "What is a configuration that is JSON, but no object?",
@@ -194,6 +202,14 @@ AI_33_PREEMPTS = Ambiguity(
 AI_33_PREEMPTS_NULL = Ambiguity(
     "AI-33.preempts-null",
     "What becomes of a mission that runs when one comes that does not run since its configuration is null?",
+    _PREEMPTS,
+    default="a",
+    alike="AI-33.preempts",
+    rule="a-new-mission-preempts",
+)
+AI_33_PREEMPTS_BLANK = Ambiguity(
+    "AI-33.preempts-blank",
+    "What becomes of a mission that runs when one comes that does not run since its configuration is an empty text?",
     _PREEMPTS,
     default="a",
     alike="AI-33.preempts",

@@ -138,6 +138,12 @@ BUSY = shown(4211, ("X", "SUCCEEDED"), ("Y", "RUNNING"))
 FIRST = [*call(1, "SubscribeMissionStatus", {}, {"result": {"stream": 1}}), shown(1)]
 MINE = [*call(2, "CreateMission", navigate("table-1"), {"result": {"missionId": "A"}}), shown(2, ("A", "RUNNING"))]
 THEIRS = shown(3, ("A", "SUCCEEDED"), ("T", "RUNNING"))
+
+
+def cleared(*missions: str) -> list[Any]:
+    return call(1, "ClearMissionStatus", {}, {"result": {"missionIds": list(missions)}})
+
+
 RIGHT = {
     "nothing is known, so that any answer may be right": (ANYWHERE, call(1, "SkipGoal", {}, REFUSED), ""),
     "the state is shown and goes on": (ANYWHERE, [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "SUCCEEDED"))], ""),
@@ -149,6 +155,12 @@ RIGHT = {
     ),
     "a stream from before": (ANYWHERE, [BUSY, shown(7, ("X", "SUCCEEDED"), ("Y", "RUNNING"), stream=2)], ""),
     "a stream from before ends": (ANYWHERE, [BUSY, {"stream": 5, "closed": True}], ""),
+    "what had its way before the list was shown": (
+        ANYWHERE,
+        [*told(1, "FINISH", {"result": {}}, "X")[:1], BUSY, {"return": 1, "result": {}}],
+        "",
+    ),
+    "a mission ends unseen and is cleared": (ANYWHERE, [BUSY, *cleared("X", "Y")], ""),
     "others create": (
         OTHERS,
         [*FIRST, *MINE, THEIRS, *call(3, "CreateMission", navigate("table-2"), REFUSED)],
@@ -184,6 +196,12 @@ WRONG = {
         ANYWHERE,
         [BUSY, SETTLED, shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), ("Z", "DEFAULT"))],
     ),
+    "what has ended is cleared while another mission runs": (ANYWHERE, [BUSY, *cleared("X")]),
+    "not all that has ended is cleared": (
+        ANYWHERE,
+        [BUSY, shown(4212, ("X", "SUCCEEDED"), ("Y", "SUCCEEDED")), *cleared("Y")],
+    ),
+    "a mission that has ended is told to finish": (ANYWHERE, [BUSY, *told(1, "FINISH", {"result": {}}, "X")]),
     "a mission that we paused goes on by itself": (
         ANYWHERE,
         [BUSY, SETTLED, *told(1, "PAUSE", {"result": {}}, "Y"), SETTLED],

@@ -16,6 +16,7 @@ from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer, Driven, Received, Returned, Settled
 from missionfsm.kernel.middle import ANY, LOG_01, LOG_02, Unknown, imaginable
 from missionfsm.kernel.readings import Assumption, meet
+from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Glimpses, Spec, Things
 from missionfsm.kernel.step import Match, Mismatch
 from missionfsm.kernel.terms import Content, State
@@ -278,10 +279,20 @@ def _brought_about(successors: Successors, here: Explanation, kind: type, *what:
     elif kind is Returned:
         answer, names, call = what
         place = here.place_of(call)
-        if place is not None:
+        if place is not None and _may_succeed(successors.spec, here, here.calls[place], answer, names):
             yield from answered(successors, here, place, answer, names)
     elif kind is Driven or (kind is Settled and successors.spec.anywhere):
         yield Successor(_lost_sight(successors, here))
+
+
+def _may_succeed(spec: Spec, here: Explanation, call: InFlight, answer: Answer, names: Names) -> bool:
+    """Whether a call may be answered so in a state that the one which is known can become, whoever does what.
+
+    A call that was sent before that state was known may have taken effect before it.
+    """
+    if answer.code != OK or spec.succeeds is None or WILD in call.ready:
+        return True
+    return spec.succeeds(here.state, here.names, call.request, call.args, names)
 
 
 def _late(here: Explanation, name: int, content: Content) -> Iterator[Successor]:

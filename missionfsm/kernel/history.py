@@ -54,13 +54,18 @@ class Returned:
 
 @value
 class Received:
-    """A message arrives on a stream, or a line on a connection; it `repeats_last` if it says the same."""
+    """A message arrives on a stream, or a line on a connection.
+
+    It `repeats_last` if it says the same as the last one, and is `stale` if all that it says came on the stream before,
+    by its numbers: also where this event is only a part of the message.
+    """
 
     channel: Name
     content: Hashable
     names: tuple[Name, ...] = ()
     marks: tuple[Mark, ...] = ()
     repeats_last: bool = False
+    stale: bool = False
 
 
 @value

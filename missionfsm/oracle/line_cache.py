@@ -86,7 +86,10 @@ class Texts:
             if answer is None:
                 answer, names = self._answered.find(waiting[0], rest)
             return None if answer is None else self._answers_to(number, answer, names)
-        return self._others.get(text)
+        events = self._others.get(text)
+        if events and type(events[0]) is Driven:
+            self._transcript.drives()
+        return events
 
     def _message(self, text: bytes) -> tuple[Event, ...] | None:
         end = text.find(b",")
@@ -107,7 +110,9 @@ class Texts:
                 return None
         repeats_last = self._latest.get(number) == text
         self._latest[number] = text
-        return (Received(("stream", number), content, names, marks, repeats_last),)
+        channel = "stream", number
+        stale = self._transcript.is_stale(channel, marks)
+        return (Received(channel, content, names, marks, repeats_last, stale),)
 
     def _name(self, written: bytes) -> Name | None:
         """The name that is written so; None unless it is written just as it is."""

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Hashable, Iterable, Mapping
 
 from missionfsm.kernel.history import Called, Cancelled, Driven, Ended, Event, Name, Received, Returned, Settled
-from missionfsm.kernel.sequence import relation
+from missionfsm.kernel.sequence import STALE, relation
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.terms import Incident
 from missionfsm.kernel.transport import REDELIVERED
@@ -22,6 +22,7 @@ from missionfsm.oracle.symbols import Observer, Symbol
 
 _NO_MARKS: dict[Hashable, int] = {}
 _LARGER = ("larger",)
+_STALE = (STALE,)
 _SHOWN_AGAIN, _STARTED_OVER = frozenset({"equal"}), frozenset({"equal", "smaller"})
 """How a number may compare with its predecessor because of something that has happened since."""
 NOBODY = -sys.maxsize
@@ -134,6 +135,8 @@ class Numbering:
             channel = self._number_anew(event.channel, new)
         args = self._number(event.names, new) if event.names else ()
         relations = self._relations(event.channel, event.marks) if event.marks else ()
+        if event.stale and "equal" in relations:
+            relations += _STALE
         if event.names and self.spec.lasting is not None:
             relations += self._changes(event)
         if event.repeats_last and self.spec.transport:

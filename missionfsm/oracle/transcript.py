@@ -19,6 +19,7 @@ from missionfsm.kernel.history import (
     Driven,
     Ended,
     Event,
+    Mark,
     Name,
     Received,
     Returned,
@@ -182,6 +183,7 @@ class Transcript:
         self._contents: dict[Hashable, Hashable] = {}
         self._forms: dict[tuple[str, ...], _Reader] = {}
         self._latest: dict[Name, dict[tuple[Hashable, ...], JSON]] = {}
+        self._shown: dict[Name, dict[Hashable, int]] = {}
         self._kinds: Mapping[str, _Reader] = {
             "call": self._call,
             "return": self._return,
@@ -318,18 +320,21 @@ class Transcript:
         _must_be_true(line, "closed")
         error = line.get("error")
         self._latest.pop(stream, None)
+        self._shown.pop(stream, None)
         return (Ended(stream, OK if error is None else self._status(error)),)
 
     def _received(self, channel: Name, message: JSON) -> tuple[Event, ...]:
         found = []
         parts = self.codec.split_message(message)
         repeats_last = bool(self.codec.streams) and self._comes_again(channel, message, parts)
+        numbers = tuple(mark for _, marks, _ in parts for mark in marks)
+        stale = bool(self.codec.streams) and self.is_stale(channel, numbers)
         for names, marks, rest in parts:
             key = self._fingerprint(rest)
             content = self._contents.get(key)
             if content is None:
                 content = self._content(key, rest)
-            found.append(Received(channel, content, names, marks, repeats_last))
+            found.append(Received(channel, content, names, marks, repeats_last, stale))
         return tuple(found)
 
     def _make_room(self, key: Hashable) -> None:
@@ -346,6 +351,17 @@ class Transcript:
         latest[tracks] = message
         return repeats_last
 
+    def is_stale(self, channel: Name, numbers: tuple[Mark, ...]) -> bool:
+        """Whether every number of a message that comes is the last one that its channel showed on the same track."""
+        shown = self._shown.setdefault(channel, {})
+        stale = bool(numbers) and all(shown.get(track) == number for track, number in numbers)
+        shown.update(numbers)
+        return stale
+
+    def drives(self) -> None:
+        """Something was driven: numbers may start over then, and what was shown be shown again."""
+        self._shown.clear()
+
     def _content(self, key: Hashable, rest: JSON) -> Hashable:
         self._make_room(key)
         content = self._contents[key] = self.codec.read_content(rest)
@@ -361,6 +377,7 @@ class Transcript:
         return self._received(connection, line["line"])
 
     def _drive(self, line: dict[str, JSON]) -> tuple[Event, ...]:
+        self.drives()
         event, names = self.codec.read_drive_result(line["drive"])
         return (Driven(event, names),)
 

@@ -198,6 +198,33 @@ def test_a_restart_that_is_told_frees_the_next_number() -> None:
     assert monitor.feed(messages[1]) == ()
 
 
+@pytest.mark.parametrize("endpoint", [ONLINE, ERRORS, NETWORK])
+def test_a_map_of_nothing_new_is_a_problem_unless_it_was_delivered_twice(endpoint: str) -> None:
+    """AS-08: entries that have not changed come along with one that has, and not by themselves."""
+    name, payload = {
+        ONLINE: ("onlineStates", {"connection": {"state": "STATE_CONNECTED"}}),
+        ERRORS: ("errorCodes", {"codes": []}),
+        NETWORK: ("networkStates", {}),
+    }[endpoint]
+
+    def shown(**numbers: int) -> Any:
+        return {name: {robot: of("", number, **payload) for robot, number in numbers.items()}}
+
+    def problems(*messages: Any, strict: bool) -> int:
+        monitor = StreamMonitor(endpoint, strict=strict)
+        return sum(len(monitor.feed(copy.deepcopy(one))) for one in messages)
+
+    first = shown(a=3, b=5)
+    for robot in first[name].values():
+        del robot["robotId"]
+    later = copy.deepcopy(first)
+    later[name]["b"]["metadata"]["sequenceNumber"] = 6
+    assert problems(first, later, strict=True) == 0
+    assert problems(first, first, strict=True) == 1
+    assert problems(first, {name: {"a": first[name]["a"]}}, strict=True) == 1
+    assert problems(first, first, strict=False) == 0
+
+
 def test_repeats_are_counted() -> None:
     """AS-12: tolerated on an event stream, but counted."""
     monitor = StreamMonitor(BATTERY)

@@ -291,6 +291,28 @@ def test_a_map_may_bring_the_robots_that_have_not_changed() -> None:
     assert readings_of(judge(lines), "AS-08.update") == ("c",)
 
 
+@pytest.mark.parametrize("robots", [("r1",), ("r2",), ("r1", "r2"), ("r2", "r1")])
+@pytest.mark.parametrize(
+    ("call", "field", "entry"),
+    [
+        (ONLINE, "onlineStates", lambda robot: {"connection": robot["state"]["connection"]}),
+        (ERRORS, "errorCodes", lambda robot: robot["state"]["errorCodes"]),
+        ("SubscribeNetworkStatus", "networkStates", lambda robot: {"connectedWifi": robot["wifi"]}),
+    ],
+)
+def test_a_map_of_nothing_new_is_no_update(call: str, field: str, entry: Any, robots: tuple[str, ...]) -> None:
+    """AS-08: what has not changed comes along with what has; by itself it breaks the rule of its numbers."""
+    known = {name: WORLDS[0]["robots"][place] for place, name in enumerate(("r1", "r2"))}
+
+    def shown(**numbers: int) -> Any:
+        entries = {name: {"metadata": metadata(number), **entry(known[name])} for name, number in numbers.items()}
+        return {"stream": 1, "message": {field: entries}}
+
+    lines = [*opened(1, call, by_ids("r1", "r2")), shown(r1=4, r2=7)]
+    assert conforms(*lines, SETTLED)
+    assert broken(*lines, shown(**{name: {"r1": 4, "r2": 7}[name] for name in robots})) == ["sequence-numbers-grow"]
+
+
 def test_an_entry_that_has_changed_must_not_keep_its_number() -> None:
     """AS-08: an old number stands for the old entry."""
     lines = [

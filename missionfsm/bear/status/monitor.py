@@ -83,6 +83,7 @@ class StreamMonitor:
         self.repeats = 0
         self.redelivered = 0
         self._strict = strict
+        self._echoes = 0
         self._selected = None if robots is None else frozenset(robots)
         self._tracks: dict[str, _Track] = {}
         self._verdicts: dict[bytes, Verdict] = {}
@@ -105,6 +106,16 @@ class StreamMonitor:
     def feed(self, message: JSON) -> tuple[Problem, ...]:
         """What is wrong with the next message; nothing, usually."""
         self.messages += 1
+        self._echoes = 0
+        found = self._fed(message)
+        if self._echoes and self._map is not None and self._echoes == len(_either(message, self._map)):
+            # AS-08: an update may bring what has not changed, but not that alone.
+            robot = next(iter(_either(message, self._map)))
+            says = f"the sequence number is equal ({self._tracks[robot].number} again), as all are in this message"
+            found = (*found, Problem(self.messages, robot, SEQUENCE.id, says))
+        return found
+
+    def _fed(self, message: JSON) -> tuple[Problem, ...]:
         try:
             if self._map is None and message["robotId"]:
                 return self._one(message["robotId"], message["metadata"], message[self._field])
@@ -198,6 +209,7 @@ class StreamMonitor:
                 self.redelivered += 1
                 return ()
             wrong = sequence(compared)
+            self._echoes += compared == "equal" and key == track.payload
             echo = compared in ("equal", "zero") and self._map is not None and key == track.payload
             if isinstance(wrong, Mismatch) and not echo:
                 problems.append((wrong.rule, f"{wrong.says} ({known.sequence_number} after {track.number})", False))

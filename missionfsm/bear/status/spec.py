@@ -64,7 +64,11 @@ def sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
     return Mismatch(SEQUENCE.id, f"the sequence number is {_COMPARED.get(relation, relation)}")
 
 
-_COMPARED = {"equal": "the one before again", "smaller": "smaller than the one before"}
+_COMPARED = {
+    "equal": "the one before again",
+    "smaller": "smaller than the one before",
+    "stale": "the one before again",
+}
 
 
 @functools.cache

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Name, Received, Returned, Settled
+from missionfsm.kernel.sequence import STALE
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
@@ -233,6 +234,8 @@ def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
     belief = nearest.belief
     relations = relations_of(belief.symbol(event)[0])
     for relation in relations[len(event.marks) :]:
+        if relation == STALE:
+            continue  # that the numbers are equal says it
         wrong = nearest.spec.sequence(relation)
         if isinstance(wrong, Mismatch):
             return wrong

@@ -53,6 +53,18 @@ WRONG: dict[str, tuple[list[Any], str]] = {
         [message(1, mission(), WAITS), message(2, mission("B", "STATE_FAILED"), mission(), index=1)],
         "all-missions-are-listed",
     ),
+    "one that waits, is not listed and waits": (
+        [message(1, mission(), WAITS), message(2, mission()), message(3, mission(), WAITS)],
+        "all-missions-are-listed",
+    ),
+    "one that was cleared and is back": (
+        [message(1, ENDED, index=-1), message(2, index=-1), message(3, mission("B")), message(4, ENDED, index=-1)],
+        "all-missions-are-listed",
+    ),
+    "one that runs under another id for a while": (
+        [message(1, mission()), message(2, mission("X")), message(3, mission())],
+        "all-missions-are-listed",
+    ),
     "an index where nothing is listed": ([message(1)], "the-current-mission-index-is-the-active-mission"),
     "one that is new in front of one that runs": (
         [message(1, mission()), message(2, mission("B", "STATE_FAILED", missionType={}), mission(), index=1)],
@@ -153,6 +165,19 @@ RIGHT: dict[str, list[Any]] = {
     ],
     "an empty list as one that waits": [message(1, {"state": "STATE_DEFAULT"})],
     "one that has ended and lies at goal 0": [message(1, mission(currentGoalIndex=1)), message(2, ENDED, index=-1)],
+    "a robot that has restarted gives an id anew": [
+        message(7, ENDED, index=-1),
+        message(8, index=-1),
+        message(0, index=-1),
+        message(1, mission()),
+    ],
+    "an empty list as one that waits, time and again": [
+        message(1, {"state": "STATE_DEFAULT"}),
+        message(2, ENDED, index=-1),
+        message(3, {"state": "STATE_DEFAULT"}),
+        message(4, mission("B")),
+        message(5, {"state": "STATE_DEFAULT"}),
+    ],
     "others take the place of those that went": [
         message(1, ENDED, index=-1),
         message(2, mission("B"), mission("C", "STATE_DEFAULT")),

@@ -79,6 +79,10 @@ def _reached() -> dict[State, frozenset[State]]:
 _REACHED = _reached()
 
 
+MAX_GONE = 50_000
+"""How many missions a monitor remembers that are no longer listed."""
+
+
 class MissionMonitor:
     """Judges the messages of one robot's stream as they come.
 
@@ -101,6 +105,7 @@ class MissionMonitor:
         self._number: int | None = None
         self._last: JSON = None
         self._missions: dict[object, MissionState] = {}
+        self._gone: dict[object, None] = {}
         self._begun: frozenset[object] = frozenset()
         self._odd: frozenset[Found] = frozenset()
 
@@ -135,8 +140,23 @@ class MissionMonitor:
         self.repeats += missions == self._missions and self.messages > 1
         yield from _listed(seen, names, self._begun)
         yield from self._goes_on(missions)
+        yield from self._come_back(seen, names)
         if all(seen.named):
             yield from self._put_in_front(missions)
+
+    def _come_back(self, seen: Seen, names: tuple[object, ...]) -> Iterator[Found]:
+        """Missions that were no longer listed, and are again: they were removed, and an id is that of one mission.
+
+        A robot that restarts, which is told by its number, may give ids anew.
+        """
+        listed = dict.fromkeys(name for name, named in zip(names, seen.named, strict=False) if named)
+        for name in listed:
+            if name in self._gone:
+                yield ALL_LISTED, f"mission {name} is listed again, after messages in which it was not"
+                del self._gone[name]
+        self._gone.update(dict.fromkeys(name for name in self._missions if name not in listed))
+        while len(self._gone) > MAX_GONE:
+            del self._gone[next(iter(self._gone))]
 
     def _have_begun(self, seen: Seen, names: tuple[object, ...]) -> frozenset[object]:
         """The missions that messages have shown to have begun, and not to have ended.
@@ -188,6 +208,8 @@ class MissionMonitor:
 
     def _numbered(self, number: int) -> Iterator[Found]:
         compared = relation(self._number, number)
+        if compared != "larger":
+            self._gone.clear()  # the robot has restarted, or the message is an old one
         if compared not in ("first", "larger", "zero"):
             yield SEQUENCE, f"the sequence number is {compared} ({number} after {self._number})"
         self._number = number

@@ -92,7 +92,7 @@ def to_stdout() -> Iterator[None]:
 
 
 def silence_stdout() -> None:
-    """What is still to be written goes nowhere: it would fail as well, and so would the interpreter when it ends."""
+    """Discard what is still to be written to stdout, which would fail as well, even when the interpreter ends."""
     with contextlib.suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -135,7 +135,7 @@ def _replace(target: Path, data: bytes, found: os.stat_result | None) -> None:
 
 @contextlib.contextmanager
 def naming(path: str) -> Iterator[None]:
-    """Says of which file it is that something is wrong."""
+    """Within it an OSError becomes an UnreadableError that names the file."""
     try:
         yield
     except OSError as error:

@@ -46,7 +46,7 @@ GRACE = 1.0
 PARSE_ERROR, INVALID_REQUEST, NO_METHOD, INVALID_PARAMS = -32700, -32600, -32601, -32602
 
 Trace = Callable[[str, bytes], None]
-"""Told of every line: ``>`` for one that was sent, ``<`` for one that came, and the line."""
+"""Given every line, after ``>`` if it was sent and ``<`` if it was received."""
 
 
 # The reference as a server.
@@ -204,7 +204,7 @@ class Child:
         return Exchange(None, self._error(message["error"], method), before, after)
 
     def _error(self, error: JSON, method: str) -> dict[str, str]:
-        """An error as gRPC has it, whose code says what its status does."""
+        """The gRPC status that an error of JSON-RPC stands for."""
         code = error.get("code") if isinstance(error, dict) else None
         if isinstance(code, bool) or not isinstance(code, int):
             raise self._failed(f"answered {method} with an error without a code: {brief(error)}")

@@ -1,4 +1,4 @@
-"""Being told to end while an event loop runs: the work ends as it should, and knows who ended it."""
+"""Signals to end while an event loop runs: the work ends in an orderly way, and knows which signal it was."""
 
 from __future__ import annotations
 

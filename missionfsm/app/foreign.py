@@ -44,16 +44,16 @@ class Subject:
 
 @frozen
 class SubjectResult:
-    """What the oracle says of a subject.
+    """The result of judging a subject.
 
     Attributes:
         subject: the subject.
-        said: the verdict, or why there is none: what its adapter did.
-        flags: what the verdict flags: readings that depart from the text by their names, all else by its line.
+        said: the outcome, or why there is none: what the adapter did.
+        flags: what the verdict flags: readings by their names, everything else by its line.
         rules: ids of the rules that it breaks.
-        lines: how long the history is that shows a violation, in lines.
+        lines: how many lines the history has that shows a violation.
         seconds: how long it took.
-        usual: what is flagged of the folder's first subject that deserves ``conforms``: no fault is noticed by that.
+        usual: what is flagged of the folder's first right subject, so that it shows no fault.
     """
 
     subject: Subject
@@ -66,18 +66,18 @@ class SubjectResult:
 
     @property
     def right(self) -> bool:
-        """Whether the verdict is the one deserved; a fault that is only flagged is told, and so noticed."""
+        """Whether the verdict is the deserved one; a fault counts as noticed if something unusual is flagged."""
         return self.said == self.subject.verdict or (self.subject.verdict == "violates" and self.only_flagged)
 
     @property
     def only_flagged(self) -> bool:
-        """Whether it conforms, and something is flagged that the right one without a fault does not have."""
+        """Whether it conforms, and something is flagged that is not flagged of the first right subject."""
         return self.said == Outcome.CONFORMS.value and not self.flags <= self.usual
 
 
 @frozen
 class ForeignReport:
-    """What the oracle says of all subjects of a folder."""
+    """The results of all subjects of a folder."""
 
     system: str
     judged: tuple[SubjectResult, ...]

@@ -14,15 +14,17 @@ from missionfsm.systems import system
 from missionfsm.tools.mutate.teeth import MutationReport, merged_reports, teeth
 
 _MORE = "one more"
-"""What a process tells the one that shows the progress, before it tells what it found."""
+"""The message of a process for each mutant that it has judged, before its report."""
 
 
 def teeth_on(
     jobs: int, name: str, *, seed: int, only: str, every: int = 1, progress: Callable[[], None]
 ) -> MutationReport:
-    """Judge every mutant of a system in so many processes; the same number of them finds the same.
+    """Judge every mutant of a system in several processes. The result depends on how many they are.
 
     Args:
+        jobs: how many processes.
+        name: the name of the system.
         seed, only, every: see `teeth`.
         progress: called for every mutant that has been judged.
     """

@@ -73,11 +73,11 @@ class _Work:
 
 
 class Recorder(Generic[Item]):
-    """Takes what comes by, and makes a history of it; never blocks whoever brings it.
+    """Makes a history of observed traffic, and never blocks whoever observes it.
 
     Args:
         head: the first line of the history.
-        reader: makes what reads what comes by, in another process, and so can be pickled.
+        reader: makes the reader of the traffic in another process, and so has to be picklable.
         file: where the lines are written; "" for nowhere.
         judge: whether they are judged.
         readings: the readings to assume.

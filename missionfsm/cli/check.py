@@ -148,7 +148,7 @@ class _Telling:
 
     @property
     def stale(self) -> tuple[str, ...]:
-        """Rules whose violation was expected and was not met; none where it may be met in what cannot be read."""
+        """Rules whose expected violation was not met; none if a file could not be read, which may have it."""
         return () if self.troubles else self.known.stale
 
     def say(self, line: str) -> None:

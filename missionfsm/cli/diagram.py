@@ -134,7 +134,7 @@ def _of_file(path: str) -> Picture:
 
 
 def _print(shown: tuple[Picture, ...], forms: tuple[str, ...]) -> None:
-    """Write one picture: the whole of it, but as an SVG, which of what is too much for one picture has the parts."""
+    """Write one picture. A picture that is too large is written whole, unless it is an SVG, which has its parts."""
     asked = shown
     if len(shown) > 1:
         shown = _drawn(shown, forms)

@@ -71,11 +71,11 @@ class Log:
             self._lines.say(written(entry, self._style, dt.datetime.now(dt.UTC)))
 
     def say(self, line: str) -> None:
-        """Have one line told."""
+        """Tell a line."""
         self.tell(Entry("note", line))
 
     def close(self) -> None:
-        """Wait for those who read, as long as they do; complain of what they did not."""
+        """Wait as long as somebody reads, and complain of lines that nobody has read."""
         unread = self._lines.close()
         if unread:
             complain(f"{unread} lines were not written: nobody reads stdout")

@@ -1,4 +1,4 @@
-"""``--html FILE``: what a command found, as one page for a browser. Pages take long to import, so that happens here."""
+"""``--html FILE``: what a command found, as one page. Pages are imported only when needed: that takes long."""
 
 from __future__ import annotations
 

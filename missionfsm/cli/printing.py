@@ -21,7 +21,7 @@ from missionfsm.reports.report import Made
 
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the verdict as JSON; - is stdout.")]
 HANG = 4
-"""Columns by which a line goes in where it is folded."""
+"""By how many columns the rest of a folded line is indented."""
 _WORST_FIRST = (
     (re.compile(r"(?:^|:\s+)(violates)\b"), "bold red"),
     (

@@ -24,7 +24,7 @@ from missionfsm.tools.check.verdict import Verdict
 
 @frozen
 class Reports:
-    """The reports that a command writes beside what it tells people.
+    """The reports that a command writes besides what it prints.
 
     Attributes:
         files: the formats that are wanted, each with the file that it goes to, in the order of `FORMATS`.

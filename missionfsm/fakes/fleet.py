@@ -80,7 +80,7 @@ class Update(Generic[T]):
 
 
 class Updates(AnyUpdates[Update[T]]):
-    """A subscription: a ``for`` over it takes what has come since the last one.
+    """A subscription: a ``for`` loop over it takes the updates since the last loop.
 
     The first updates are the latest known states when the subscription was made; every change adds one.
     """

@@ -58,7 +58,7 @@ class Moment:
 
 
 Updates = AnyUpdates[MissionStatus]
-"""A subscription to a robot's mission status: a ``for`` over it takes what has come since the last one."""
+"""A subscription to a robot's mission status: a ``for`` loop over it takes the updates since the last loop."""
 
 
 class Robot:
@@ -67,7 +67,7 @@ class Robot:
     Args:
         family: ``base``, ``servi`` or ``carti``.
         destinations: the display names on its map.
-        occupied: those that another robot holds or claims.
+        occupied: the destinations that another robot holds or claims.
         contact_dock: whether it has a contact-based charging dock.
         charging_location: whether its map has a contact charger.
         blocked: whether it is unable to start a mission.

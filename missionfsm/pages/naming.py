@@ -39,7 +39,7 @@ def dumped(value: JSON) -> str:
 
 
 class Writer:
-    """Makes names that stand for places, and writes JSON that has them in it."""
+    """Makes names that stand for places, and writes JSON with them."""
 
     def __init__(self, naming: Naming) -> None:
         self.naming = naming

@@ -139,7 +139,7 @@ class Story:
 
 @frozen
 class Chapter:
-    """All that a page has to say on one system."""
+    """The part of a page about one system."""
 
     spec: Spec
     topics: tuple[Topic, ...]

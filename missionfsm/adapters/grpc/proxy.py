@@ -36,9 +36,9 @@ class Proxy:
     """A relay of connections.
 
     Args:
-        upstream: the robot. Where it has TLS its name stands for the proxy's in what clients ask (``:authority``), as
-            those who serve several names behind one address go by it.
-        record: takes what came by, before it goes out; must not block.
+        upstream: the robot. If it has TLS, its name replaces the proxy's in the ``:authority`` of clients, by which a
+            server with several names behind one address tells them apart.
+        record: given the traffic before it is passed on; must not block.
         security: TLS at its own port; tokens are the robot's business.
         clock: seconds, for when it came by.
     """

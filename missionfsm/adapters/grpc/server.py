@@ -128,7 +128,7 @@ class _Handlers(grpc.GenericRpcHandler):
             self._by_path[f"/{control.SERVICE}/History"] = grpc.unary_stream_rpc_method_handler(self._history)
 
     def service(self, handler_call_details: grpc.HandlerCallDetails) -> grpc.RpcMethodHandler | None:
-        """The handler of a call; None, which is UNIMPLEMENTED, for one that is not modelled."""
+        """The handler of a call; None, which means UNIMPLEMENTED, if the call is not modelled."""
         return self._by_path.get(handler_call_details.method)
 
     def _handler(self, method: Method) -> grpc.RpcMethodHandler:
@@ -247,7 +247,7 @@ class _Handlers(grpc.GenericRpcHandler):
 
 
 async def _said(context: Context, method: Method, encoded: Callable[[], bytes]) -> bytes:
-    """The bytes of what the robot says; a reading that is about JSON alone may make it say what has none."""
+    """The bytes of an answer or a message. INTERNAL if binary protobuf cannot say it, as under a JSON-only reading."""
     try:
         return encoded()
     except NotOnTheWireError as error:
@@ -256,7 +256,7 @@ async def _said(context: Context, method: Method, encoded: Callable[[], bytes]) 
 
 
 async def _refuse(context: Context, answered: Answered) -> None:
-    """End a call with a documented error; which rules demand it, and where they stand, goes along."""
+    """End a call with a documented error. The trailing metadata has the rules that demand it, and their places."""
     assert answered.error is not None  # noqa: S101 - the caller has looked
     context.set_trailing_metadata(
         (

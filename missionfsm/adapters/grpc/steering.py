@@ -1,7 +1,7 @@
-"""What a tester does to a robot through its control service, where that passes by: lines of the history as well.
+"""Drives and resets that a tester asks of a robot's control service, as lines of the history.
 
-A drive that happened is a line where it was asked for, and a reset begins another conversation. Only the answer says
-whether it was so, and the messages that it causes may come before that: until then all lines wait.
+A drive that happened is a line at the place where it was asked for, and a reset begins another conversation. Only the
+answer says whether it happened, and the messages that it causes may come before the answer: until then all lines wait.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
-"""Messages from protobuf JSON as it is usually written, ten times as fast as protobuf's own JSON reads it.
+"""Messages from protobuf JSON in its usual form, ten times as fast as protobuf's own parser.
 
-Usual is what the model writes, and most of what others write: names in lowerCamelCase, enums by name, integers and
-floats as numbers, timestamps of UTC. All else is left to `google.protobuf.json_format`, so that what a value means, and
-whether it is refused, is decided there and nowhere else.
+The usual form has names in lowerCamelCase, enums by name, integers and floats as numbers, and timestamps of UTC. All
+other forms are left to `google.protobuf.json_format`, which alone decides what a value means and whether it is refused.
 """
 
 from __future__ import annotations

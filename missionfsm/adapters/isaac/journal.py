@@ -1,4 +1,4 @@
-"""What a mission server has accepted and what became of it, in a file that outlives it. SQLite, written ahead.
+"""The journal of a mission server: the missions that it accepted and their ends, in an SQLite file that outlives it.
 
 A change is on the disk before anybody hears of it: before a mission is sent, before a submission is answered, before
 an end is told. So whatever moment a server dies at, the next one on the same journal loses nothing that was accepted
@@ -83,7 +83,7 @@ class Journal:
             return tuple(_Row(*row).snapshot() for row in rows)
 
     def write(self, new: Iterable[Snapshot] = (), changed: Iterable[Snapshot] = (), gone: Iterable[Uuid] = ()) -> None:
-        """Write what is new, what has changed and what is forgotten: all of it or nothing, on the disk on return."""
+        """Write new, changed and forgotten missions, all or none of them; on return they are on the disk."""
         with self._as_journal_error():
             self._sql.execute("BEGIN")
             self._sql.executemany(

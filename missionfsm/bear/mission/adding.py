@@ -34,10 +34,12 @@ from missionfsm.kernel.rules import OK
 
 
 def _accepted(robot: Situation, operation: str, wanted: Wanted, *, waits: bool) -> Iterator[tuple[Mission, Assumed]]:
-    """The mission that is listed for what was wanted; doomed where it was accepted although it cannot be done.
+    """The missions that may be listed for a wanted one. A mission that cannot be done may be accepted, and fails later.
 
     Args:
+        robot: the situation of the robot.
         operation: the name of the call's operation.
+        wanted: the mission that was asked for.
         waits: whether it does not start at once.
     """
     assert wanted.kind is not None, "an empty request is refused"  # noqa: S101 - what the rules have made sure
@@ -72,7 +74,7 @@ def _doomed_or_hopeless(
 def _all_accepted(
     robot: Situation, operation: str, wanted: tuple[Wanted, ...]
 ) -> list[tuple[tuple[Mission, ...], Assumed]]:
-    """The missions that are listed for what was wanted, in every way that follows the same readings for all of them."""
+    """The missions that may be listed for all wanted ones, in every way that reads each ambiguity alike for all."""
     first = robot.active is None and not robot.queued
     held = first and robot.world.blocked
     waits = not first or held

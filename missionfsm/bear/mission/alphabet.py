@@ -125,7 +125,7 @@ _OTHER_WORKFLOWS: tuple[JSON, ...] = (
     {"serviWorkflow": {"birthday": {"goals": goals_at(TABLES[0])}}},
     {"serviWorkflow": {"deliveryPatrol": {"goals": []}}},
 )
-"""Others that are wrong for a reason that those have."""
+"""More requests that are invalid, for the same reasons."""
 
 
 def _updates() -> Iterator[Input]:

@@ -112,9 +112,9 @@ def _with_fault(robot: Situation, outcome: Outcome, failures: tuple[str, ...]) -
 
 
 def failing(request: Request, code: str) -> Failure | None:
-    """Codes that may come at any time. A deadline that passes leaves open what happens later (AM-20 to AM-24).
+    """Codes that may come at any time. After a passed deadline the call may take effect or not (AM-20 to AM-24).
 
-    SkipGoal has no deadline of its own and answers INTERNAL for one, so that leaves it open as well. AM-61: codes of
+    SkipGoal answers INTERNAL instead of a deadline, so its INTERNAL leaves that open as well. AM-61 is about codes of
     the transport and of authentication, which no table lists.
     """
     operation = OPERATIONS[request.operation]
@@ -167,7 +167,7 @@ def failed(robot: Situation, mission: Mission, how: Ambiguity = AM_10) -> Iterat
 
 
 def failed_to_start(robot: Situation, mission: Mission) -> Iterator[Way]:
-    """The ways in which a mission fails that cannot be done, as it starts."""
+    """The ways in which a mission that cannot be done fails as it starts."""
     return failed(robot, mission, AM_10_START)
 
 
@@ -344,5 +344,5 @@ def target(robot: Robot, ref: int | None) -> Target:
 
 
 def call_of(robot: Robot, request: Request, refs: Refs) -> Call:
-    """A request as the robot that gets it sees it."""
+    """The call that a request is for this robot: it says where the named mission stands."""
     return Call(request, target(robot, refs[0]) if refs else None)

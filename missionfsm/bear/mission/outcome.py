@@ -8,13 +8,11 @@ from missionfsm.kernel.values import value
 
 Assumed = tuple[Assumption, ...]
 
-
 Way = tuple[Edit, Assumed]
 """One way in which something takes effect, with what it assumes."""
 
-
 ADDED, ACTIVE, GONE, NOBODY, STREAM = "those added", "the active one", "those that vanish", "none", "a stream"
-"""Whose ids an answer has."""
+"""Which ids an answer has."""
 
 
 @value

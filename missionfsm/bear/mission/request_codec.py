@@ -1,4 +1,4 @@
-"""The requests of the Mission page as JSON: which member of which oneof means which kind of mission."""
+"""The JSON of the requests of the Mission page: which member of which oneof stands for which kind of mission."""
 
 from __future__ import annotations
 

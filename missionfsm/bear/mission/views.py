@@ -12,15 +12,20 @@ from missionfsm.kernel.values import value
 
 TOPIC = "mission status"
 MORE = "with fields that are not documented"
-"""The shape of an answer that has more than it should (AM-58)."""
+"""The shape of an answer that has undocumented fields (AM-58)."""
 
 
 @value(cache_hash=True)
 class Listing:
-    """What a status message shows: the listed missions in order, which of them is active, and on what robot.
+    """What a status message shows of a robot.
 
-    `fresh`: no mission was ever assigned. `held`: none of those that wait is going to start, which nobody sees.
-    `created`: the call that has just made the first mission that waits, which has nothing to wait for.
+    Attributes:
+        missions: the listed missions, in order.
+        active: the place of the active one; None if none is active.
+        family: the family of the robot.
+        fresh: whether no mission was ever assigned.
+        held: whether no waiting mission is going to start; subscribers do not see that.
+        created: the call that has just made the first waiting mission, although it has nothing to wait for.
     """
 
     missions: tuple[Mission, ...]
@@ -59,10 +64,14 @@ def listing(robot: Robot) -> Listing:
 
 @value(cache_hash=True)
 class Seen:
-    """A status message without its mission ids and metadata; `named` tells which missions have an id.
+    """A status message without its mission ids and metadata.
 
-    `bare` tells of each mission whether its feedback came as a bare enum instead of a message; `timed` whether the
-    message says when it was recorded; `more` whether it has fields that are not documented.
+    Attributes:
+        states: the message.
+        named: for each mission, whether it has an id.
+        bare: for each mission, whether its feedback is a bare enum instead of a message.
+        timed: whether the message says when it was recorded.
+        more: whether it has undocumented fields.
     """
 
     states: MissionStates

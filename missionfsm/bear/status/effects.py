@@ -179,7 +179,7 @@ def _others_at(fleet: Fleet, location: str | None) -> Iterator[Robot]:
 
 
 def _first_of_others(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator[Emission]:
-    """AS-03: what a stream that serves robots of somebody else may show first of one."""
+    """AS-03: the first message about somebody else's robot, on a stream that serves it."""
     unknown = blank(robot, endpoint) if endpoint in BLANK else None
     shown = View(robot.id, endpoint, unheard=True) if fleet.unheard else view(robot, endpoint) or unknown
     if shown:

@@ -248,7 +248,7 @@ def within(value: Content) -> Iterator[Content]:
 
 @functools.lru_cache(maxsize=100_000)
 def faults(value: object) -> tuple[Fault, ...]:
-    """All that is wrong with a value by itself, and with what it holds."""
+    """The faults of a value, and of the values in it."""
     found = []
     wrong = enum_values_are_documented.wrong(value)
     if wrong:

@@ -1,4 +1,4 @@
-"""What a message of the Robot Status page is about, what it shows of a robot, and what one looks like as it comes."""
+"""Messages of the Robot Status page as values: what they are about, what they show, and what they say."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a bare message: one of a subscription of which nothing else is known."""
+"""Problems of a bare message, as a monitor finds them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ class Problem:
 
     Attributes:
         message: which message of the stream it is, counted from 1.
-        robot: whom it is about; empty where it does not say.
+        robot: the robot that the message is about; empty if it does not say.
         rule: the id of the rule that it breaks.
         says: what is wrong, in a line.
-        flagged: it departs from the letter of the page in a way that a reading tolerates.
+        flagged: whether a reading tolerates it, although it departs from the letter of the page.
     """
 
     message: int

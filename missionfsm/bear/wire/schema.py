@@ -69,7 +69,7 @@ def _oneofs(kind: type) -> list[dict[str, Any]]:
 
 
 def _optional(declared: Declared, definitions: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a field: what it may be if it is there, or null."""
+    """The schema of a field that may be null."""
     return {"anyOf": [_value(declared, definitions), {"type": "null"}]}
 
 

@@ -15,7 +15,7 @@ def workflow_commands(verdicts: Iterable[tuple[str | None, str, Verdict]]) -> It
     """A line for each verdict that is bad (an error), and for each reading that departs from the text (a warning).
 
     Args:
-        verdicts: each with the file that it is about, if it is about one, and what it is about in words.
+        verdicts: each with its file, if it is about a file, and with what it is about in words.
     """
     for path, about, verdict in verdicts:
         line = (verdict.violation and verdict.violation.line) or 1

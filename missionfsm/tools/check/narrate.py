@@ -27,9 +27,9 @@ MAX_CHARACTERS = 240
 
 
 def story(system: System, history: tuple[JSON, ...]) -> str:
-    """A history in numbered lines; calls and their answers share one, and so do time that passes and what comes next.
+    """A history in numbered lines. A call and its answer share a line, and so do passing time and the event after it.
 
-    A world that is not the usual one stands before them.
+    A world that is not the usual one comes before the lines.
     """
     folded = (_folded(line, len(list(same))) for line, same in itertools.groupby(_lines_of(system, history)))
     lines = [f"{number:>3}. {shortened(line, MAX_LINE)}" for number, line in enumerate(folded, 1)]
@@ -42,7 +42,7 @@ def _folded(line: str, times: int) -> str:
 
 
 def story_of(system: System, violation: Violation) -> str:
-    """The conversation that shows a violation, or all that it takes, each with what it shows and its world."""
+    """The conversation that shows a violation; if several do, each of them with what it shows and its world."""
     if not violation.sides:
         return story(system, violation.history)
     parts = []

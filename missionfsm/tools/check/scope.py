@@ -1,4 +1,4 @@
-"""What a judgement rests on: what departs from the text, what is not checked, what was not put to the test."""
+"""The scope of a verdict: what departs from the text, what is not checked, and what was not put to the test."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
 
 Eliminated = Mapping[tuple[str, str], Elimination]
-"""Ambiguity id and letter to the event that ruled the letter out."""
+"""For each ambiguity id and letter that was ruled out, the event that did it."""
 
 Answers = Mapping[str, Mapping[str, int]]
-"""Operation to status name to how often it was answered so."""
+"""For each operation, how often it was answered with each status."""
 
 MAX_CODES = 3
 """How many codes are named of a call that never succeeded, the commonest first."""
 
 
 def assumed(spec: Spec, readings: Mapping[str, str] | None, *, no_flagged: bool) -> int:
-    """What is assumed from the start.
+    """The assumptions that hold from the start.
 
     Args:
+        spec: the system.
         readings: the readings that have to be followed.
         no_flagged: whether nothing may depart from the letter of the text.
 
@@ -45,7 +46,7 @@ def assumed(spec: Spec, readings: Mapping[str, str] | None, *, no_flagged: bool)
 
 
 def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """The ids of the rules that were not exercised, though the readings that are followed have them."""
+    """The ids of the rules that were not exercised, although they hold under the readings that are left."""
     return tuple(
         rule.id
         for rule in spec.all_rules
@@ -60,11 +61,13 @@ def uncovered(spec: Spec, exercised: Mapping[str, int], readings: Mapping[str, t
 def flagged(
     spec: Spec, readings: Mapping[str, tuple[str, ...]], eliminations: Eliminated, ways: Iterable[int] = ()
 ) -> tuple[Flagged, ...]:
-    """What is explained, and yet departs from the letter of the text or from itself, a line each.
+    """A line for everything that is explained, but departs from the letter of the text or is incoherent.
 
     Args:
-        readings: ambiguity id to the readings that are left, for those that mattered.
-        ways: what each explanation that is left assumes; where there are several, the one that departs least speaks.
+        spec: the system.
+        readings: for each ambiguity that mattered, the readings that are left.
+        eliminations: what ruled out the others.
+        ways: the assumptions of each explanation that is left; the one that departs least is reported.
     """
     left: Mapping[str, tuple[str, ...]] = {
         one.id: readings.get(one.id, tuple(one.readings)) for one in spec.ambiguities
@@ -74,7 +77,7 @@ def flagged(
     apart = list(clashes(spec.ambiguities, followed))
     least = min((_Way.followed(spec, way) for way in ways), key=_Way.size, default=None)
     if least is not None:
-        # Readings that are possible each by itself need not be so together.
+        # Readings that are possible one by one may not be possible together.
         departing += [one for one in least.departing if one not in departing]
         apart += [pair for pair in least.apart if pair not in apart]
         left = least.left
@@ -90,10 +93,11 @@ def flagged_in_all(
     eliminations: Eliminated,
     several: Iterable[Iterable[int]],
 ) -> tuple[Flagged, ...]:
-    """What `flagged` says of several conversations that follow the same readings, an ambiguity once.
+    """The lines of `flagged` for several conversations that follow the same readings, one for each ambiguity.
 
     Args:
-        several: of each conversation that has one, what its explanations assume.
+        spec, readings, eliminations: see `flagged`.
+        several: for each conversation whose explanations depart, what these assume.
     """
     lines = flagged(spec, readings, eliminations)
     followed = meet(UNCONSTRAINED, (one[readings[one.id]] for one in spec.ambiguities if readings.get(one.id)))
@@ -110,7 +114,13 @@ def _decided(spec: Spec, assumed: int) -> Iterable[Assumption]:
 
 @frozen
 class _Way:
-    """What one explanation reads: the letters that are left, by id, and where those depart."""
+    """The readings of one explanation.
+
+    Attributes:
+        left: for each ambiguity id, the letters that are left.
+        departing: the ambiguities of which only letters are left that depart from the text.
+        apart: pairs of alike ambiguities that are read differently.
+    """
 
     left: Mapping[str, tuple[str, ...]]
     departing: list[Ambiguity]
@@ -118,17 +128,17 @@ class _Way:
 
     @classmethod
     def followed(cls, spec: Spec, assumed: int) -> _Way:
-        """What an explanation with these assumptions reads."""
+        """The readings of an explanation with these assumptions."""
         left = {one.id: one.possible(assumed) for one in spec.ambiguities}
         return cls(left, _departing(spec, left), clashes(spec.ambiguities, assumed))
 
     def size(self) -> int:
-        """In how much it departs."""
+        """How many departures it has."""
         return len(self.departing) + len(self.apart)
 
 
 def _departing(spec: Spec, left: Mapping[str, tuple[str, ...]]) -> list[Ambiguity]:
-    """The ambiguities of which nothing but what departs from the letter of the text is left."""
+    """The ambiguities of which only letters are left that depart from the letter of the text."""
     return [one for one in spec.ambiguities if left[one.id] and one.flagged.issuperset(left[one.id])]
 
 
@@ -145,7 +155,7 @@ def _incoherences(
     left: Mapping[str, tuple[str, ...]],
     eliminations: Eliminated,
 ) -> Iterable[Flagged]:
-    """A line for every question that is read differently where it is asked alike, with an event for each side."""
+    """A line for each pair of alike ambiguities that are read differently, with an event for each side."""
     said: set[str | None] = set()
     for one, other in apart:
         if one.alike in said:
@@ -166,19 +176,21 @@ def _event(ambiguity: Ambiguity, letters: Iterable[str], eliminations: Eliminate
 
 
 def unchecked(spec: Spec, used: Iterable[str]) -> tuple[str, ...]:
-    """What the specification waives and could have shown, a line each.
+    """A line for each waived sentence that these calls and drives could have shown.
 
     Args:
-        used: names of the calls and drives that there were.
+        spec: the system.
+        used: the names of the calls and drives that there were.
     """
     used = set(used)
     return tuple(str(one) for one in spec.waived if not one.shown_by or used & set(one.shown_by))
 
 
 def untested(spec: Spec, answers: Answers, drives: Iterable[str], left_out: Iterable[str]) -> Untested:
-    """The calls and the rules that nothing can be said about, each with the reason.
+    """The calls and rules that nothing can be said about, each with the reason.
 
     Args:
+        spec: the system.
         answers: how calls were answered.
         drives: the drives that were commanded.
         left_out: ids of the rules that were not exercised.
@@ -202,7 +214,7 @@ def untested(spec: Spec, answers: Answers, drives: Iterable[str], left_out: Iter
 
 
 def _why_not(codes: Mapping[str, int]) -> str:
-    """Why nothing is known of a call that was answered so; empty where something is."""
+    """Why nothing is known of a call with these answers; empty if something is known."""
     if not codes:
         return NOT_TRIED
     if codes.keys() == {UNIMPLEMENTED}:
@@ -216,7 +228,7 @@ def _why_not(codes: Mapping[str, int]) -> str:
 
 
 def held_to_the_text(verdict: Verdict) -> Verdict:
-    """The verdict where what is flagged is held against an implementation that conforms otherwise."""
+    """The verdict; a violation if it conforms and something is flagged."""
     if not verdict.conforms or not verdict.flagged:
         return verdict
     violation = Violation((), f"What was observed departs from the text: {verdict.flagged[0]}", (), verdict.flagged[1:])

@@ -1,4 +1,4 @@
-"""What a diagram shows, whatever it is written in: nodes, arrows, and beside them what stays where it is."""
+"""Diagrams as values, whatever format they are written in: nodes, arrows, and what is done without leaving a node."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Arrow:
 
 @frozen
 class Stay:
-    """What can be done in some nodes without leaving them; a refusal has the code that it is refused with.
+    """What can be done in some nodes without leaving them.
 
-    `nodes` are identifiers; where there are none it can be done in every node that anything leaves. Nodes that nothing
-    leaves are not told of, since everything stays there; but for what is refused.
+    `nodes` are identifiers; without any it can be done in every node that has an arrow to another. Nodes without such
+    an arrow are not mentioned, since everything stays there; refusals are. `code` is the code of a refusal.
     """
 
     nodes: tuple[str, ...]

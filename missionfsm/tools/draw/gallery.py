@@ -81,7 +81,7 @@ FORMATS: Mapping[str, Format] = {
     "table": Format(".md", lambda shown: shown.table or None),
 }
 DRAWN = frozenset({"dot", SVG, "mermaid", "plantuml"})
-"""The formats that are pictures, which tell refusals only where that is wanted."""
+"""The formats that are pictures; they show refusals only if that is wanted."""
 
 
 @frozen
@@ -107,8 +107,8 @@ def named(system: System, name: str) -> tuple[Ambiguity, ...]:
 def pictures(system: System, wanted: Wanted) -> Iterator[Picture]:
     """The pictures of a system: lifecycles, quotients of its explored graph, plans of missions.
 
-    Readings that it has no ambiguity for are passed over. Where two readings are drawn in one picture, only quotients
-    are. Where nothing is said of readings, those contrasts are drawn that the system itself thinks worth it.
+    Readings of other systems are ignored. If two readings are drawn in one picture, only quotients are drawn. If no
+    readings are given, the contrasts are drawn that the system itself names.
 
     Raises:
         ValueError: a reading that does not exist, or two that are the same.
@@ -157,7 +157,7 @@ def _of_system(
 
 
 def _with_parts(shown: Picture, wanted: tuple[Part, ...] = ()) -> Iterator[Picture]:
-    """A picture, and the parts of it where it is too much for one."""
+    """A picture, and its parts if it is too large for one."""
     found = tuple(parts(shown.diagram, wanted))
     yield evolve(shown, divided=bool(found))
     for part, drawn in found:

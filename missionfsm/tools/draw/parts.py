@@ -10,7 +10,7 @@ from missionfsm.kernel.picture import Part
 from missionfsm.tools.draw.diagram import MARKS, Arrow, Diagram, Node, Side, Stay
 
 MAX_EDGES = 10
-"""Arrows of one picture, those that point to a start included: more are hard to follow with the eye."""
+"""The most arrows of one picture, including those that point to a start: more are hard to follow."""
 
 _WAY, _ENDS = Part("way", "on the way", ()), Part("ends", "how it ends", ())
 _SHARED = "What both share is not drawn."

@@ -69,5 +69,5 @@ def _laid_out(dot: str, layout: str) -> str:
 
 
 def light_and_dark(svg: str) -> str:
-    """A picture as Graphviz draws it, that turns dark with the page on which it stands."""
+    """A picture of Graphviz with a style that turns dark with the page that shows it."""
     return _OPENING.sub(lambda opening: f"{opening[0]}\n{_STYLE}", svg, count=1)

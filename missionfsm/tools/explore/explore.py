@@ -20,14 +20,14 @@ from missionfsm.kernel.terms import Code, Refs, State
 from missionfsm.tools.placeholders import fill, slots
 
 Free = tuple[bool, ...]
-"""Of each name of a request or an event, whether it may be any that the state has."""
+"""For each name of a request or an event, whether it may be any name of the state."""
 
 
 @frozen
 class Actions:
-    """What is tried in every state: requests and events, each with its names.
+    """What is tried in every state: requests and events.
 
-    Of every name it is told whether it may be any of the state's; one that may not is something that is new there.
+    Each has a flag for each of its names, whether it may be any name of the state; if not, it names something new.
     """
 
     requests: tuple[tuple[Any, Free], ...]

@@ -7,6 +7,7 @@ a form open (AI-27, AI-28) and notes which form it was; what no reading allows i
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 from attrs import astuple, frozen
@@ -30,6 +31,8 @@ _HEADER = frozenset({"channel", "uuid", *_HEADER_INTEGERS})
 _PAYLOAD = frozenset({"uuid", "config", "missionStatus", "text"})
 _HALVES = frozenset({"lower", "upper"})
 """The members of a message that are documented."""
+
+_USUAL_NUMBER = re.compile("0|-?[1-9][0-9]*")
 
 
 @frozen(cache_hash=True)
@@ -153,7 +156,7 @@ def stamp(line: object) -> int | None:
     try:
         raw = json.loads(line)["header"]["uuid"]  # type: ignore[arg-type]
         return Uuid(int(raw["lower"]), int(raw["upper"])).value or None
-    except (ValueError, TypeError, KeyError, RecursionError):
+    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
         return None
 
 
@@ -186,7 +189,8 @@ def _mission(payload: MissionProto, raw: JSON) -> tuple[str, str, str] | Malform
     what = canonical(payload.config)
     if what is None:
         return Malformed("the configuration is no JSON object")
-    return "mission", what, "text" if isinstance((config or {}).get("serialized"), str) else "object"
+    text = config.get("serialized") if isinstance(config, dict) else config
+    return "mission", what, "text" if isinstance(text, str) else "object"
 
 
 def _status(payload: MissionStatusProto, raw: JSON) -> tuple[str, str, str] | Malformed:
@@ -222,7 +226,7 @@ def is_garbled(raw: JSON) -> bool:
     if any(not uuid.keys() <= _HALVES for uuid in uuids):
         return True
     numbers = [header.get(key) for key in _HEADER_INTEGERS] + [half for uuid in uuids for half in uuid.values()]
-    return any(isinstance(one, str) and str(int(one)) != one for one in numbers)
+    return any(isinstance(one, str) and not _USUAL_NUMBER.fullmatch(one) for one in numbers)
 
 
 def _bare(raw: JSON) -> tuple[str, ...]:

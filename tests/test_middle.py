@@ -222,6 +222,37 @@ def test_what_is_not_in_the_log_is_explained(case: str) -> None:
     assert flagged & {"LOG-01", "LOG-02"} == ({flag} if flag else set())
 
 
+OWN = [*call(1, "SubscribeMissionStatus", {}, {"result": {"stream": 1}}), BUSY]
+ADDED = shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), ("Z", "DEFAULT"))
+UNDER_WAY = {
+    "nothing": (OWN, False),
+    "nothing, but the stream was opened before": (OWN[2:], True),
+    "a call that is answered later": ([*OWN, {"return": 77, "result": {"missionId": "Z"}}], True),
+    "a call that was answered before": ([{"return": 77, "result": {"missionId": "Y"}}, *OWN], False),
+    "another stream": ([shown(4210, ("X", "SUCCEEDED"), ("Y", "RUNNING"), stream=9), *OWN], True),
+    "a call of the log": ([OWN[0], *call(2, "SkipGoal", {}, REFUSED), *OWN[1:]], True),
+}
+
+
+@pytest.mark.parametrize("case", UNDER_WAY)
+def test_a_stream_that_the_log_opens_shows_all_that_was_before(tmp_path: Path, case: str) -> None:
+    """Unless something else is under way: then what the message shows may be older, or a call may still take effect."""
+    lines, explained = UNDER_WAY[case]
+    lines = [*lines[: len(lines) - (case == "a call that is answered later")], ADDED, *lines[lines.index(BUSY) + 1 :]]
+    ((_, verdict),) = check_file(str(written(tmp_path / "log", [ANYWHERE, *lines])))
+    assert (verdict.violation is None) is explained, str(verdict)
+    if explained:
+        assert [one.partition("=")[0] for one in verdict.flagged] == ["LOG-01"]
+
+
+def test_of_a_pipe_nobody_knows_which_calls_from_before_are_answered() -> None:
+    """There a minute has to have passed before a stream is opened."""
+    for at, explained in ((None, True), (30.0, True), (90.0, False)):
+        timed = [{**line, **({} if at is None else {"at": at})} for line in (*OWN, ADDED)]
+        begun = {"return": 70, "result": {}, **({} if at is None else {"at": 0.0})}
+        assert read(ANYWHERE, [begun, *timed]).right is explained
+
+
 GONE = {"error": {"status": "NOT_FOUND", "message": ""}}
 OURS = [*FIRST, *MINE]
 DRIVEN = {"drives": ["goalReached", "missionSucceeded", "missionFailed"]}

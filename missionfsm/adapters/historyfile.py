@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import contextlib
 import sys
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
 import orjson
+from attrs import define, field
 
 from missionfsm.adapters.addresses import Addresses
 from missionfsm.adapters.decompress import DAMAGED, decompressed
@@ -165,36 +167,63 @@ def lost_calls(path: str, *, by_params: bool = False) -> Mapping[str | None, fro
     Knowing them beforehand makes undecided calls cheap. A file that is malformed is left to `lines` to complain of.
     `by_params` is as for `Addresses`.
     """
-    waiting: dict[str | None, set[int]] = {}
-    sent: dict[str | None, IdSet] = {}
+    return {robot: frozenset(calls.waiting) for robot, calls in (_calls(path, by_params=by_params) or {}).items()}
+
+
+def early_answers(path: str, *, by_params: bool = False) -> Mapping[str | None, int] | None:
+    """How many answers a file has, for each robot, to calls that were sent before it; None of one that is malformed.
+
+    `by_params` is as for `Addresses`.
+    """
+    found = _calls(path, by_params=by_params)
+    return None if found is None else {robot: calls.early for robot, calls in found.items()}
+
+
+@define
+class _Calls:
+    """The ids of a robot's calls, as far as a file was read.
+
+    Attributes:
+        waiting: those that have no answer yet.
+        sent: all of them, and those that were only answered.
+        early: how many were only answered.
+    """
+
+    waiting: set[int] = field(factory=set)
+    sent: IdSet = field(factory=IdSet)
+    early: int = 0
+
+
+def _calls(path: str, *, by_params: bool) -> Mapping[str | None, _Calls] | None:
+    """The calls of each robot; None where a line is malformed."""
+    calls: defaultdict[str | None, _Calls] = defaultdict(_Calls)
     addresses = Addresses(by_params=by_params)
     with open_history(path) as source:
         try:
             for _, found, _ in _chunks(source, path):
-                _follow(found, waiting, sent, addresses)
+                _follow(found, calls, addresses)
         except (orjson.JSONDecodeError, UnreadableError, TypeError, AttributeError):
-            return {}
-    return {robot: frozenset(calls) for robot, calls in waiting.items()}
+            return None
+    return calls
 
 
-def _follow(
-    found: list[bytes], waiting: dict[str | None, set[int]], sent: dict[str | None, IdSet], addresses: Addresses
-) -> None:
+def _follow(found: list[bytes], calls: defaultdict[str | None, _Calls], addresses: Addresses) -> None:
     """Take the calls and the returns of some lines into account. Raises UnreadableError if an id comes twice."""
     for line in found:
         if b'"call"' not in line and b'"return"' not in line and b"\\u" not in line:
             continue
         one = orjson.loads(line)
         robot, _ = addresses.whose({key: value for key, value in one.items() if key != "at"})
-        if one.get("method") == "cancel" or not one.keys() & {"call", "return"}:
+        if not one.keys() & {"call", "return"}:
             continue
-        known = waiting.setdefault(robot, set())
-        if "call" in one:
-            if not sent.setdefault(robot, IdSet()).add(one["call"]):
-                raise UnreadableError("an id that was sent before")
-            known.add(one["call"])
-        else:
-            known.discard(one["return"])
+        known = calls[robot]
+        if "call" not in one:
+            known.early += known.sent.add(one["return"])
+            known.waiting.discard(one["return"])
+        elif not known.sent.add(one["call"]):
+            raise UnreadableError("an id that was sent before")
+        elif one.get("method") != "cancel":
+            known.waiting.add(one["call"])
 
 
 def fingerprint(value: JSON) -> bytes:

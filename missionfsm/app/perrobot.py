@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from attrs import evolve
 
 from missionfsm.adapters.addresses import Addresses
-from missionfsm.adapters.historyfile import Lines, called, fingerprint, wrong_line
+from missionfsm.adapters.historyfile import Lines, called, early_answers, fingerprint, is_plain_file, wrong_line
 from missionfsm.app.asked import Asked, judged_system
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.automaton import Automaton
@@ -65,12 +65,13 @@ class Judges:
         asked: how the file is to be judged.
         lost: the calls that are never answered; None: not known yet.
         keep: how many lines are kept to be shown. If none, lines that come again are recognised by their text.
+        path: the file that they are read from.
 
     Raises:
         UnreadableError: that is no first line.
     """
 
-    def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int) -> None:
+    def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int, path: str) -> None:
         first = head(line)
         self._head = first = evolve(
             first,
@@ -94,6 +95,8 @@ class Judges:
         self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
+        reread = first.anywhere and is_plain_file(path)
+        self._early = early_answers(path, by_params=self.system.codec.robot_in_params) if reread else None
         self._nobody = self._new(None)
         self._texts = Texts(self._nobody.transcript, fingerprint)
         self._judges: dict[str | None, Judge] = {}
@@ -114,6 +117,7 @@ class Judges:
             apart=True,
             waits=self._waits,
             settled_after=self._settled_after,
+            early=None if self._early is None else self._early.get(robot, 0),
         )
 
     @property

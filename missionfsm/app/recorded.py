@@ -124,7 +124,7 @@ def _judged(
         following: tuple[int, JSON] | None = (number, line)
         while following is not None:
             with placed(path, following[0]):
-                judges = Judges(following[1], asked, lost, keep)
+                judges = Judges(following[1], asked, lost, keep, path)
             parts.append(judges)
             following = judges.read(path, texts, numbered)
     finally:

@@ -149,6 +149,11 @@ class Automaton:
         """The node of this automaton that stands for the same as one of another automaton."""
         return self._intern(node.explanations, node.width)
 
+    def all_known(self, node: Node) -> Node:
+        """The node in which nothing from before the log is on its way any more."""
+        known = dict.fromkeys(evolve(one, all_known=True) for one in node.explanations)
+        return self._intern(tuple(known), node.width)
+
     def _intern(self, explanations: tuple[Explanation, ...], width: int) -> Node:
         node = self._nodes.get(explanations)
         if node is None:

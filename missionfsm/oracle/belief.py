@@ -100,6 +100,10 @@ class Belief:
         other.node = other.automaton.adopt(self.node)
         return other
 
+    def nothing_is_late(self) -> None:
+        """From now on nothing that was on its way when the log began explains an event."""
+        self.node = self.automaton.all_known(self.node)
+
     @property
     def of_last_event(self) -> Belief:
         """This belief; of a system in parts it is that of the part which the last event was about."""

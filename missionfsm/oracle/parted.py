@@ -57,6 +57,11 @@ class Parted:
         self.of_last_event = next(iter(self.beliefs.values()))
         self.broken = False
 
+    def nothing_is_late(self) -> None:
+        """From now on nothing that was on its way when the log began explains an event."""
+        for belief in self.beliefs.values():
+            belief.nothing_is_late()
+
     def observe(self, event: Event) -> bool:
         """Take one event into account; False when nothing explains it.
 

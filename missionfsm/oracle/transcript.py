@@ -156,6 +156,7 @@ class Transcript:
 
     Attributes:
         answered: the request whose answer was read last.
+        early: how many answers came to calls that were sent before the first line.
         silenced: the streams whose `cancel` was answered, the last ones; they show nothing more.
     """
 
@@ -173,6 +174,7 @@ class Transcript:
         self._anywhere = anywhere
         self._open: dict[int, tuple[str, Request]] = {}
         self._cancels: dict[int, Name] = {}
+        self.early = 0
         self.silenced: dict[Name, None] = {}
         self.answered: Request = None
         self._sent = IdSet()
@@ -271,6 +273,7 @@ class Transcript:
         number = _whole_number(line, "return")
         waiting = self._open.get(number)
         if waiting is None and self._anywhere and self._sent.add(number):
+            self.early += 1
             return ()  # the answer to a call that was sent before the log began
         if waiting is None:
             raise UnreadableError(f"return {number}: no call with this id is waiting for an answer")

@@ -19,6 +19,7 @@ from missionfsm.oracle.parted import Parted
 from missionfsm.oracle.successors import EVENT_BUDGET, ExhaustedError
 from missionfsm.oracle.transcript import Head, Transcript
 from missionfsm.tools.check.basis import Flagged
+from missionfsm.tools.check.beginning import Beginning
 from missionfsm.tools.check.candidates import AnsweredCall, Circumstances
 from missionfsm.tools.check.elapsing import elapsing
 from missionfsm.tools.check.eliminations import Eliminations, by_ambiguity
@@ -55,6 +56,7 @@ class Judge:
             an implementation cannot wait.
         settled_after: how many seconds (of `at`) after its cause a message is late; None: never.
         past: the names of what was there before, if a reset does not make a fresh instance; None if it does.
+        early: how many answers the lines have to calls that were sent before them; None where nobody knows.
 
     Attributes:
         right: whether everything so far is explained, within the budget.
@@ -82,6 +84,7 @@ class Judge:
         waits: bool = True,
         settled_after: float | None = None,
         past: Iterable[Name] | None = None,
+        early: int | None = None,
     ) -> None:
         self.system = system
         self.head = head
@@ -106,6 +109,7 @@ class Judge:
         self.quiet = None if settled_after is None else Quiet(settled_after)
         undriven = (one for name, one in system.spec.drives.items() if name not in self.automaton.successors.driven)
         self._elapsing = elapsing(tuple(undriven), settled_after)
+        self._beginning = Beginning(early) if head.anywhere else None
         self.lines: deque[JSON] = deque(maxlen=keep)
         self.read = 0
         self.events = 0
@@ -143,7 +147,7 @@ class Judge:
             self._elapsing.at = line.get("at")
         if self.right:
             self.lines.append(line)
-        return self.take(events, place, open_calls=open_calls)
+        return self.take(events, place, open_calls=open_calls, at=line.get("at"))
 
     @property
     def awaits(self) -> bool:
@@ -153,12 +157,15 @@ class Judge:
         except ExhaustedError:
             return False
 
-    def take(self, events: tuple[Event, ...], place: int = 0, *, open_calls: bool | None = None) -> bool:
+    def take(
+        self, events: tuple[Event, ...], place: int = 0, *, open_calls: bool | None = None, at: float | None = None
+    ) -> bool:
         """Take the events of a line into account that was read elsewhere; see `feed`. The line will not be shown.
 
         Args:
             place: where the line stands, kept in `place` if nothing explains it.
             open_calls: whether calls had no answer before the line; None: as after it.
+            at: when the line was, in seconds; None if it does not say.
         """
         if open_calls is None:
             open_calls = len(self.transcript.pending) > 0
@@ -189,6 +196,9 @@ class Judge:
             kind = type(event)
             if kind is Returned or kind is Settled or kind is Called:
                 self._count(event, self.transcript.answered, open_calls=open_calls)
+        if self._beginning is not None and self._beginning.is_over(at, events, self.transcript.early):
+            self._beginning = None
+            belief.nothing_is_late()
         return True
 
     def _with_what_passes(self, events: tuple[Event, ...]) -> tuple[Event, ...]:

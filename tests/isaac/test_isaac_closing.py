@@ -79,6 +79,7 @@ def test_a_status_that_is_never_counted_is_wrong() -> None:
 
 @pytest.mark.parametrize("timeout", [{}, {"timeout": 100}])
 def test_a_mission_that_was_acknowledged_does_not_miss_its_start(timeout: Any) -> None:
+    """A mission that its robot reports as running every second cannot time out before its run limit."""
     history = History().submit(1, **timeout).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles
     for _ in range(8):
         history = history.waits(1).reports(1, 1, "running").settles

@@ -97,5 +97,6 @@ def test_a_limit_that_ran_out_long_ago_by_the_times_of_the_lines_was_noticed() -
 
 @pytest.mark.parametrize(("seconds", "outcome"), [(30, Outcome.CONFORMS), (7200, Outcome.VIOLATES)])
 def test_a_mission_that_is_never_sent_is_late_by_the_times_of_the_lines(seconds: float, outcome: Outcome) -> None:
+    """With `--settled-after`, a mission may wait for its robot for some seconds, and not for hours."""
     history = History(*SEEN).submit(1).at(0).robot(1).at(1).shows("QUEUED").at(seconds)
     assert history.judged(settled_after=60).outcome is outcome

@@ -94,6 +94,7 @@ GARBLED_LINES: tuple[dict[str, Any], ...] = (
 @pytest.mark.parametrize("shown", ["STARTED", "RUNNING"])
 @pytest.mark.parametrize("changes", [*GARBLED_LINES, {"uuid": "1"}, {"uuid": {"lower": "+1"}}], ids=str)
 def test_a_status_in_which_something_is_of_another_form_counts_or_does_not(changes: Any, shown: str) -> None:
+    """A server may count or ignore a status with a member of another form, and has to count a well-formed one."""
     history = _reported(**changes).shows(shown)
     assert history.judged(no_flagged=True).outcome is Outcome.CONFORMS
     assert history.reports(1, 1, "running").settles.shows("STARTED").judged(no_flagged=True).conforms is False
@@ -102,6 +103,7 @@ def test_a_status_in_which_something_is_of_another_form_counts_or_does_not(chang
 @pytest.mark.parametrize("changes", GARBLED_LINES, ids=str)
 @pytest.mark.parametrize("taken", [True, False])
 def test_a_name_in_which_something_is_of_another_form_counts_or_does_not(changes: Any, *, taken: bool) -> None:
+    """A server may or may not identify a robot by a name with a member of another form."""
     line = _written(TextProto("r"), "name", **changes)
     history = History().submit(1).drive("connect", connection=1).drive("line", connection=1, line=line)
     history = history.sends(1, 1).settles if taken else history.settles.waits(2).settles.says(1).sends(1, 1).settles

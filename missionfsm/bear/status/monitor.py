@@ -208,11 +208,9 @@ class StreamMonitor:
             if compared in ("equal", "zero") and not self._strict and _came_twice(track, metadata, payload):
                 self.redelivered += 1
                 return ()
-            wrong = sequence(compared)
             self._echoes += compared == "equal" and key == track.payload
             echo = compared in ("equal", "zero") and self._map is not None and key == track.payload
-            if isinstance(wrong, Mismatch) and not echo:
-                problems.append((wrong.rule, f"{wrong.says} ({known.sequence_number} after {track.number})", False))
+            problems += () if echo else _misnumbered(compared, known.sequence_number, track.number)
             track.number, track.timestamp = known.sequence_number, metadata.get("timestamp")
         track.given = payload
         verdict = self._judge(payload, key) if isinstance(payload, dict) else _verdict(lambda: self._value(payload))
@@ -256,6 +254,13 @@ class StreamMonitor:
         if not isinstance(robot, str) or not robot:
             raise MalformedError(f"{brief(robot)} is not the id of a robot", "robotId")
         return self._slowly(robot, message.get("metadata"), {} if payload is None else payload)
+
+
+def _misnumbered(compared: str, number: int, before: int | None) -> Iterator[tuple[str, str, bool]]:
+    """What is wrong with a number that compares so with the one before."""
+    wrong = sequence(compared)
+    if isinstance(wrong, Mismatch):
+        yield wrong.rule, f"{wrong.says} ({number} after {before})", False
 
 
 def _came_twice(track: _Track, metadata: JSON, payload: JSON) -> bool:

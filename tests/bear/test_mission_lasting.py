@@ -63,3 +63,14 @@ def test_an_absent_type_is_an_unknown_one() -> None:
     """A member that is left out has its default, so that nothing changes with it."""
     verdict = charged(shown(1), shown(2, missionType={"baseType": 0}, state="STATE_SUCCEEDED"))
     assert verdict.outcome is Outcome.CONFORMS
+
+
+@pytest.mark.parametrize("other", ["touchscreen", "", "API"])
+def test_an_owner_that_changes_is_flagged(other: str) -> None:
+    """AM-52: owners are free texts, and nothing on the page changes the one of a mission."""
+    ended = {"state": "STATE_SUCCEEDED"}
+    kept = charged(shown(1, owner=other), shown(2, owner=other, **ended))
+    changed = charged(shown(1), shown(2, owner=other, **ended))
+    assert (kept.outcome, kept.flagged) == (Outcome.CONFORMS, ())
+    assert (changed.outcome, len(changed.flagged)) == (Outcome.CONFORMS, 1)
+    assert "AM-52.change=b" in str(changed)

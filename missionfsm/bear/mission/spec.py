@@ -21,7 +21,7 @@ from missionfsm.bear.mission.promises import ALL_LISTED, ANSWERS_FOR, GOALS, OWE
 from missionfsm.bear.mission.promises import RULES as STATUS_RULES
 from missionfsm.bear.mission.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.bear.mission.readings import AMBIGUITIES
-from missionfsm.bear.mission.readings.messages import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_54
+from missionfsm.bear.mission.readings.messages import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_52, AM_54
 from missionfsm.bear.mission.readings.unlisted import AM_58_SENT, AM_61
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
@@ -34,7 +34,7 @@ from missionfsm.bear.mission.state import (
     situation,
     without_place,
 )
-from missionfsm.bear.mission.stream import GOALS_CHANGED, TYPE_CHANGED, lasting, matches
+from missionfsm.bear.mission.stream import GOALS_CHANGED, OWNER_CHANGED, TYPE_CHANGED, lasting, matches
 from missionfsm.bear.mission.unwatched import UNWATCHED
 from missionfsm.bear.mission.views import MORE, TOPIC, listing
 from missionfsm.bear.wire.codes import UNLISTED
@@ -262,6 +262,8 @@ _CHANGED = {TYPE_CHANGED: TYPE.id, GOALS_CHANGED: GOALS.id}
 def _sequence(relation: str) -> tuple[Assumption, ...] | Mismatch:
     if relation in ("first", "larger", "zero"):
         return ()
+    if relation == OWNER_CHANGED:
+        return (AM_52["b"],)
     if relation in _CHANGED:
         return Mismatch(_CHANGED[relation], f"a mission that was listed before has its {relation}")
     return Mismatch(SEQUENCE.id, f"the sequence number is {relation}")

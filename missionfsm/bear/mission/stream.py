@@ -114,17 +114,21 @@ def _current(view: Listing, index: int) -> Assumed:
     return allowed[index]
 
 
-TYPE_CHANGED, GOALS_CHANGED = "type changed", "goals changed"
-"""What is wrong where something that has to last did not."""
+TYPE_CHANGED, GOALS_CHANGED, OWNER_CHANGED = "type changed", "goals changed", "owner changed"
+"""What is wrong, or odd, where something did not last."""
 
 
 @functools.lru_cache(maxsize=10_000)
 def lasting(content: Seen | Malformed) -> tuple[tuple[tuple[str, Hashable], ...], ...]:
-    """What each mission of a message keeps as long as it is listed: its type and its goals, whatever they are."""
+    """What each mission of a message keeps as long as it is listed: type, goals and owner, whatever they are."""
     if isinstance(content, Malformed) or not all(content.named):
         return ()
     return tuple(
-        ((TYPE_CHANGED, _shown_type(one)), (GOALS_CHANGED, tuple(map(_rounded, one.goals))))
+        (
+            (TYPE_CHANGED, _shown_type(one)),
+            (GOALS_CHANGED, tuple(map(_rounded, one.goals))),
+            (OWNER_CHANGED, one.owner),
+        )
         for one in content.states.missions
     )
 

@@ -1,4 +1,4 @@
-"""What a message of the status stream shows, and when one comes (AM-08, AM-14, AM-35, AM-36, AM-47 to AM-51, AM-54)."""
+"""What a message of the status stream shows, and when one comes (AM-08, AM-14, AM-35, AM-36, AM-47 to AM-52, AM-54)."""
 
 from __future__ import annotations
 
@@ -86,6 +86,13 @@ AM_51 = asked_of_each(
     "a",
     missions_of((Kind.BASE_NAVIGATE, Kind.BASE_NAVIGATE_AUTO)),
     flagged="b",
+)
+AM_52 = Ambiguity(
+    "AM-52.change",
+    "May a mission that is listed change its owner?",
+    {"a": "no", "b": "yes"},
+    default="a",
+    flagged=frozenset("b"),
 )
 AM_54 = {
     **asked_of_each(

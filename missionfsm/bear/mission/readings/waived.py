@@ -32,7 +32,7 @@ WAIVED: Mapping[str, str] = {
     "AM-48": "the example is careless: a mission lists the goals of its request, one for Navigate",
     "AM-49 a, b": "the encoding tells nothing about the robot: both forms are read everywhere",
     "AM-50 e, f": "feedback after the end may be kept or cleared; nothing follows from it",
-    "AM-52": "owners are free texts, and the adapter protocol has no touchscreen to start missions with",
+    "AM-52 a to d": "owners are free texts, and the adapter protocol has no touchscreen to start missions with",
     "AM-55": "two members of a oneof are malformed JSON and cannot be said in binary; a bare mission is an empty entry",
     "AM-56": "a history is explained by some order of the calls or not at all; two racing creates that win have none",
     "AM-57": "a conversation is with one robot; whoever records several marks the lines with the robot's name",

@@ -28,12 +28,30 @@ def test_a_busy_log_conforms(tmp_path: Path, seed: int, habits: Habits) -> None:
     assert verdict.conforms, str(verdict)
 
 
-@pytest.mark.parametrize("seed", [1, 33])
-def test_a_log_of_five_clients_whose_calls_are_lost_is_decided(tmp_path: Path, seed: int) -> None:
+@pytest.mark.parametrize(("clients", "seed"), [(5, 1), (5, 33), (4, 12)])
+def test_a_log_of_clients_whose_calls_are_lost_is_decided(tmp_path: Path, clients: int, seed: int) -> None:
     """Where what was wrong comes out long after, other ways of what came before are followed beside the nearest one."""
     path = tmp_path / "log"
-    lines = busy(seed, 100, Habits(clients=5), readings_at_random(seed))
+    lines = busy(seed, 100, Habits(clients=clients), readings_at_random(seed) if seed % 2 else None)
     path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in lines))
+    ((_, verdict),) = check_file(str(path))
+    assert verdict.conforms, str(verdict)
+
+
+@pytest.mark.parametrize("shows", [True, False])
+def test_a_subscription_that_nobody_answers_may_show_something(tmp_path: Path, *, shows: bool) -> None:
+    """Calls that wait are decided beside a subscription without an answer, whether its stream shows anything or not."""
+    robot = Recorder(drives=False)
+    for _ in range(2):
+        robot.call(SUBSCRIBE)
+    for number in range(6):
+        robot.call("CreateMission", navigate(f"table-{number % 3 + 1}"))
+        robot.drive(event="goalReached")
+    _, silent = robot.streams
+    told = [line for line in robot.history if line.get("return") != 2 and (shows or line.get("stream") != silent)]
+    slow = sorted(told[3:], key=lambda line: ("message" in line, "return" in line))
+    path = tmp_path / "log"
+    path.write_bytes(b"".join(orjson.dumps(line) + b"\n" for line in [*told[:3], *slow]))
     ((_, verdict),) = check_file(str(path))
     assert verdict.conforms, str(verdict)
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import itertools
 
-from missionfsm.kernel.history import Called, Event, Returned
+from missionfsm.kernel.history import Called, Ended, Event, Received, Returned
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.coming import Excerpt
-from missionfsm.oracle.explanation import Explanation, reopened, with_lost
+from missionfsm.oracle.explanation import GONE, Explanation, reopened, tidy, with_lost
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import Symbol
@@ -53,9 +53,9 @@ class Window:
 
     @property
     def unanswered(self) -> frozenset[int]:
-        """The numbers of the calls that the events do not answer, but for those that subscribe.
+        """The numbers of the calls that the events do not answer.
 
-        What a stream shows tells that it was opened.
+        One that subscribes is none of them where a stream may be its own: what that shows tells that it was opened.
         """
         waiting = {call.name: call.request for one in self._belief.node.explanations for call in one.calls}
         for kind, *what in self._symbols:
@@ -63,7 +63,16 @@ class Window:
                 waiting[what[3]] = what[0]
             elif kind is Returned:
                 waiting.pop(what[2], None)
-        return frozenset(call for call, request in waiting.items() if not self._streams(request))
+        if self._shows_what_nobody_opened:
+            return frozenset(call for call, request in waiting.items() if not self._streams(request))
+        return frozenset(waiting)
+
+    @property
+    def _shows_what_nobody_opened(self) -> bool:
+        """Whether anything comes on a stream of which no answer has told: a call that waits may have opened it."""
+        opened = {one.name for here in self._belief.node.explanations for one in here.channels}
+        opened.update(self._latest, *(what[1] for kind, *what in self._symbols if kind is Returned))
+        return any(kind in (Received, Ended) and what[-1] not in opened for kind, *what in self._symbols)
 
     def search(self, lost: frozenset[int] | None = None) -> Search:
         """A search through the window, which goes on with what came since it was last asked for.
@@ -91,13 +100,18 @@ class Window:
         return operation is None or operation.streaming
 
     def _given_up(self, explanation: Explanation, given_up: frozenset[int]) -> Explanation:
-        """The explanation without the calls in flight that never come back; those that wait may still take effect."""
+        """The explanation without the calls in flight that never come back; those that wait may still take effect.
+
+        A stream that one of them has opened, and that shows nothing, is left out as well.
+        """
         lost = explanation.lost
         for call in explanation.calls:
             if call.name in given_up and call.done is None:
                 lost = with_lost(lost, call.request, call.args)
+        silent = {name for call in explanation.calls if call.name in given_up and call.done for name in call.done.names}
         calls = tuple(call for call in explanation.calls if call.name not in given_up)
-        return explanation.replace(calls=calls, lost=lost)
+        channels = tuple(one for one in explanation.channels if one.name >= GONE or one.name not in silent)
+        return tidy(explanation.replace(calls=calls, lost=lost, channels=channels))
 
     def close(self, search: Search) -> None:
         """Let the belief go on behind the events, all of which the search has explained."""

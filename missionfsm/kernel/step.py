@@ -32,6 +32,7 @@ class Emission:
             time, also after things have settled.
         stays: the message is optional, and may come more than once.
         certain: the message comes even if the state after the step does not last.
+        fleeting: the message may be left out; it comes before things settle, or not at all.
     """
 
     topic: Hashable
@@ -41,6 +42,7 @@ class Emission:
     optional: bool = False
     stays: bool = False
     certain: bool = False
+    fleeting: bool = False
 
 
 @value

@@ -17,7 +17,7 @@ def owes(emission: Emission, pool: Names, after: Names, *, passing: bool) -> Owe
     """The message that an emission owes, with its names looked up."""
     names = after if emission.refs is None else tuple(pool[ref] for ref in emission.refs)
     optional = emission.optional or emission.stays
-    passing = (passing and not emission.certain) or optional or emission.only is not None
+    passing = (passing and not emission.certain) or optional or emission.fleeting or emission.only is not None
     return Owed(emission.view, names, passing, emission.only, optional, emission.stays)
 
 

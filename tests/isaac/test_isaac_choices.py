@@ -135,7 +135,7 @@ def test_a_name_that_is_empty() -> None:
     served = History().submit(1).robot(1, "").says(1).sends(1, 1).settles.shows("STARTED")
     assert follows(served.judged(readings={**EXACT, "AI-17": "a"}), AI_37_empty="d")
     unserved = History().submit(1).robot(1, "").says(1).settles.shows("QUEUED")
-    assert follows(unserved.judged(readings=EXACT), AI_37_empty="n", AI_17="ad")
+    assert follows(unserved.judged(readings=EXACT), AI_37_empty="n", AI_17="a")
 
 
 def test_timeouts_that_are_looked_at_now_and_then() -> None:

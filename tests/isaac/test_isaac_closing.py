@@ -84,3 +84,46 @@ def test_a_mission_that_was_acknowledged_does_not_miss_its_start(timeout: Any) -
     for _ in range(8):
         history = history.waits(1).reports(1, 1, "running").settles
     assert history.shows("FAILED_TIMEDOUT").judged().outcome is Outcome.VIOLATES
+
+
+RUBBISH = {"event": "line", "connection": 1, "line": "no json"}
+
+
+@pytest.mark.parametrize("closes", [True, False])
+@pytest.mark.parametrize("shown", ["RUNNING", "FAILED_DISCONNECTED"])
+def test_a_connection_that_a_bad_line_closes_is_seen_to_close(shown: str, *, closes: bool) -> None:
+    """AI-26 f: a mission is not lost with a connection of which nobody has seen the end."""
+    history = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles.drive(**RUBBISH)
+    history = (history.closes(1) if closes else history).settles.shows(shown)
+    at_once = {"AI-29": "d", "AI-15": "c", "AI-15.when": "n"}
+    assert history.judged(readings=at_once).conforms is ((shown == "RUNNING") is not closes)
+
+
+@pytest.mark.parametrize("again", ["s", "r"])
+def test_a_connection_that_a_name_closes_is_seen_to_close(again: str) -> None:
+    """AI-17 d, AI-16 d: a second name, or a second connection with it, is closed before anybody's eyes."""
+    history = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles
+    history = history.says(1, "s") if again == "s" else history.robot(2)
+    closed = 1 if again == "s" else 2
+    lost = ("FAILED_DISCONNECTED",) if again == "s" else ("RUNNING",)
+    assert history.closes(closed).settles.shows(*lost).judged(readings={"AI-29": "d"}).conforms
+    if again == "s":
+        unseen = History().submit(1).robot(1).sends(1, 1).settles.reports(1, 1, "running").settles.says(1, "s")
+        late = unseen.settles.shows(*lost)
+        assert not late.judged(readings={"AI-29": "d", "AI-17": "ad"}).conforms
+
+
+@pytest.mark.parametrize(("waits", "conforms"), [(0, True), (5, False)])
+def test_nothing_is_sent_on_a_connection_that_dropped_long_ago(waits: float, *, conforms: bool) -> None:
+    """AI-39.order s: a server that has yet to look may send in vain, which is seen until things settle."""
+    history = History().submit(1).robot(1).drive("disconnect", connection=1).settles
+    history = history.waits(waits).settles if waits else history
+    assert history.sends(1, 1).settles.judged().conforms is conforms
+
+
+def test_the_type_id_of_a_mission_is_signed() -> None:
+    history = History().submit(1).robot(1).sends(1, 1)
+    line = json.loads(history.lines[-1]["line"])
+    line["header"]["proto"] = "9410896613310777529"
+    history.lines[-1] = {"connection": 1, "line": json.dumps(line)}
+    assert history.settles.judged().outcome is Outcome.VIOLATES

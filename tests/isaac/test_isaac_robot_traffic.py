@@ -163,3 +163,9 @@ def test_a_status_is_a_name_or_a_number_which_is_flagged() -> None:
         verdict = _judged(NAME, ARRIVES, {"connection": 1, "line": json.dumps(line)}, SETTLED)
         assert verdict.conforms
         assert [one.reading for one in verdict.flagged] == flagged
+
+
+def test_a_robot_that_says_nothing_at_all_is_noticed() -> None:
+    """It is connected from the start, so that no time passes before that."""
+    assert _judged({"drive": {"event": "advance", "seconds": 60}}).outcome is Outcome.VIOLATES
+    assert _judged(CONNECTS, NAME).outcome is Outcome.VIOLATES

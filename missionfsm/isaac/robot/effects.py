@@ -348,6 +348,8 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
 @functools.lru_cache(maxsize=20_000)
 def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
     """Time passes: what has to be said within a bound was said by now, or may have been."""
+    if not here.begun:
+        return ()
     if not here.connected:
         # What was on its way when the connection dropped has come by now.
         return tuple(evolve(step, clears=(STATUSES, NAMES, OTHERS)) for step in _awaits(here, event.time))
@@ -409,7 +411,7 @@ def _introduces(step: Step, time: int) -> Iterator[Step]:
 def connection(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The connection drops, with all that was on its way or behind that, or is there again."""
     if event.name == "connect":
-        return () if here.connected else (_connected(here),)
+        return () if here.connected or not here.begun else (_connected(here),)
     if not here.connected:
         return ()
     gone = Step(evolve(here, connected=False), lingers=(STATUSES, NAMES, OTHERS), rules=(rules.LINKED.id,))

@@ -8,7 +8,7 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import back, closed, lost, shared, unconnected, untimed
+from missionfsm.isaac.server.lifecycle import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
 from missionfsm.isaac.server.readings import (
     AI_16,
     AI_16_AGAIN,
@@ -55,7 +55,7 @@ def drops(move: Move, link: Link, *, seen: bool = False) -> Moves:
     waiting = any(one.robot == link.name and one.queued for one in move.state.missions)
     because = (rules.DROPPED.id,) if link.serves and waiting else ()
     for after in closed(move.to(move.state, *because), link, seen=seen):
-        yield from _succeeded(after, link)
+        yield from _succeeded(after if seen else yet_to_be_seen(after, link, move.state), link)
 
 
 def without(server: Server, link: Link) -> Server:
@@ -249,7 +249,7 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
         elif letter == "n" or (letter == "a" and newer):
             yield from _takes_over(way, link, holder)
         elif letter == "d":
-            yield from closed(way, Link(link.slot))
+            yield from (yet_to_be_seen(one, link, way.state) for one in closed(way, Link(link.slot)))
         elif letter == "s":
             yield from _served(way, link)
         else:
@@ -260,7 +260,7 @@ def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False
     kept_open, closing = split(move, AI_16_OLDER, "v")
     if closing is not None:
         for after in closed(closing, holder):
-            yield from _served(after, link)
+            yield from _served(yet_to_be_seen(after, holder, closing.state), link)
     if kept_open is not None:
         yield from _displaces(kept_open, link, holder, unnoticed=unnoticed)
 

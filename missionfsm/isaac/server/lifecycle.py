@@ -291,10 +291,10 @@ def aborted(move: Move, index: int, kind: str) -> Moves:
         word = HEARD if heard else SENT
         yield quiet.with_mission(index, sent_on=link.slot, lingers=word) if lingers else quiet
     if closing is not None:
-        yield from (_yet_to_be_seen(one, link, closing.state) for one in closed(closing, link))
+        yield from (yet_to_be_seen(one, link, closing.state) for one in closed(closing, link))
 
 
-def _yet_to_be_seen(move: Move, link: Link, before: Server) -> Move:
+def yet_to_be_seen(move: Move, link: Link, before: Server) -> Move:
     """The server has closed a connection, which is told."""
     still = Link(link.slot, closing=True)
     links = (still if one.slot == link.slot else move.state.link_at(one.slot) for one in before.links)

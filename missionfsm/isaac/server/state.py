@@ -381,9 +381,9 @@ def topic(slot: int) -> tuple[str, int]:
 
 
 def emissions(move: Move) -> tuple[Emission, ...]:
-    """What a move owes to the connections; each gets its lines in order. What is sent in vain may be seen."""
+    """What a move owes to the connections; each gets its lines in order. What is sent in vain may be seen soon."""
     gone = {one.slot for one in move.state.gone}
     return tuple(
-        Emission(topic(slot), view, (uuid_ref(index),) if index >= 0 else (), certain=True, optional=slot in gone)
+        Emission(topic(slot), view, (uuid_ref(index),) if index >= 0 else (), certain=True, fleeting=slot in gone)
         for slot, index, view in sorted(move.sent, key=lambda one: one[0])
     )

@@ -147,6 +147,9 @@ def matches(view: Sends | Closes, content: LineContent | Malformed) -> tuple[Mat
         return Mismatch(rules.SENT.id, "the connection has to end")
     if content.kind != "mission":
         return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
+    if content.unsigned:
+        says = "header.proto is the unsigned type id; it is sent as its signed value"
+        return Mismatch(rules.ENVELOPE.id, says, near=True)
     wrong = [path for path in content.bare if path != "header.uuid"]
     if wrong:
         return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)

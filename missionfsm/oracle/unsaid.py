@@ -64,6 +64,11 @@ class Unsaid:
         skipped = self._successors.meet(assumed, (skips,)) if skips and assumed not in ways else 0
         return (*ways, *self._unchanged(channel, due[-1], skipped)) if skipped else ways
 
+    def is_told(self, channel: Channel, assumed: int) -> bool:
+        """Whether nobody could tell that what a channel owes has not come, since it was seen last."""
+        due = [owed for owed in channel.owed if not owed.passing]
+        return not due or bool(self._caught_up(channel, due, assumed))
+
     def passed_over(
         self, explanation: Explanation, name: int, topic: Hashable
     ) -> Iterator[tuple[Explanation, Hashable]]:

@@ -89,6 +89,17 @@ WRONG: dict[str, tuple[list[Any], str]] = {
         [message(1, mission()), message(2, PAUSED, index=-1)],
         "the-current-mission-index-is-the-active-mission",
     ),
+    "one that ran and waits, with the feedback that it had": (
+        [
+            message(1, mission(missionFeedback={"serviFeedback": {"status": "STATUS_NAVIGATING"}})),
+            message(
+                2,
+                mission(state="STATE_DEFAULT", missionFeedback={"serviFeedback": {"status": "STATUS_NAVIGATING"}}),
+                index=-1,
+            ),
+        ],
+        "the-state-is-reported",
+    ),
     "a goal that vanishes": (
         [message(1, mission()), message(2, mission(goals=[{"destinationId": "table-1"}]))],
         "the-goals-are-those-requested",

@@ -274,6 +274,28 @@ def test_a_network_that_is_gone_is_shown_as_unset() -> None:
     assert broken(*lines, network(2, {**R1["wifi"], "ssid": "another"}))[:1] == ["values-are-those-reported"]
 
 
+@pytest.mark.parametrize(("missed", "told"), [("r1", "r2"), ("r2", "r1")])
+def test_what_was_shown_last_is_not_said_to_be_missing(missed: str, told: str) -> None:
+    """AS-27: the network of a robot that was offline for a while is as before, so that no message need come."""
+    networks = {one["robotId"]: one["wifi"] for one in WORLDS[0]["robots"]}
+
+    def shown(number: int, robot: str, **wifi: Any) -> Any:
+        return {"stream": 1, "message": {"networkStates": {robot: {"metadata": metadata(number), **wifi}}}}
+
+    lines = [
+        *opened(1, "SubscribeNetworkStatus", by_ids(missed, told)),
+        *(shown(1, one, **({"connectedWifi": networks[one]} if networks[one] else {})) for one in (missed, told)),
+        report(told, "connection", {"state": "STATE_DISCONNECTED"}),
+        report(told, "connection", {"state": "STATE_CONNECTED"}),
+        report(missed, "wifi", {**R1["wifi"], "ssid": "another"}),
+        SETTLED,
+    ]
+    violation = judge(lines).violation
+    assert violation is not None
+    words = [str(one) for one in (*violation.expected, *violation.notes)]
+    assert all(missed in one and told not in one for one in words), words
+
+
 # Maps.
 
 

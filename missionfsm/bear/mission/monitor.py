@@ -254,7 +254,7 @@ def _listed(seen: Seen, names: tuple[object, ...], begun: frozenset[object]) -> 
     for index, mission in enumerate(missions):
         if not isinstance(mission.state, State):
             yield STATE, f"mission {index} is {_name(mission.state)}"
-        yield from _one(index, mission)
+        yield from _one(index, mission, begun=names[index] in begun if index < len(names) else False)
     yield from _ordered(seen, {place for place, name in enumerate(names) if name in begun})
 
 
@@ -293,13 +293,16 @@ def _may_overtake(mission: MissionState) -> bool:
     return mission.state not in _WAITING and mission.mission_type not in _BY_THEMSELVES
 
 
-def _one(index: int, mission: MissionState) -> Iterator[Found]:
-    """What is wrong with the goal index and the feedback of one mission."""
+def _one(index: int, mission: MissionState, *, begun: bool) -> Iterator[Found]:
+    """What is wrong with the goal index and the feedback of one mission.
+
+    Where one that has begun is shown as waiting, that is wrong and not its feedback.
+    """
     goal, goals = mission.current_goal_index, len(mission.goals)
     chooses = goals < 2 or mission.mission_type in _AUTOMATIC
     if not -1 <= goal <= goals or (mission.state is State.STATE_RUNNING and not chooses and not 0 <= goal < goals):
         yield GOAL_INDEX, f"mission {index} has current_goal_index {goal} and {goals} goals"
     feedback = mission.mission_feedback
     statuses = (feedback.base_feedback, feedback.servi_feedback, feedback.carti_feedback) if feedback else ()
-    if mission.state in _WAITING and any(one is not None and one.status for one in statuses):
+    if mission.state in _WAITING and not begun and any(one is not None and one.status for one in statuses):
         yield FEEDBACK, f"mission {index} waits and has feedback"

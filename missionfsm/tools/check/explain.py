@@ -289,7 +289,11 @@ def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
 def _still_due(nearest: Nearest) -> Accusation:
     """Things have settled although messages are owed: what is owed in the explanations that owe least."""
     ways = [(one, _due(one.explanation)) for one in nearest.ways()]
-    ways = [(one, due) for one, due in ways if due]
+    missed = [
+        (one, [(channel, owed) for channel, owed in due if not nearest.is_told(one.explanation, channel)])
+        for one, due in ways
+    ]
+    ways = [(one, due) for one, due in missed if due] or [(one, due) for one, due in ways if due]
     ways = [way for way in ways if nearest.at_rest(way[0].explanation)] or ways
     least = min((len(due) for _, due in ways), default=0)
     found: list[Candidate] = []

@@ -27,6 +27,7 @@ from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, Owe
 from missionfsm.oracle.middle import world_of
 from missionfsm.oracle.successors import ExhaustedError, Successor
 from missionfsm.oracle.symbols import call_of, names_of
+from missionfsm.oracle.unsaid import Unsaid
 from missionfsm.tools.check.candidates import (
     CODE,
     FAILED,
@@ -84,6 +85,7 @@ class Nearest:
         self.about = about
         self.spec = belief.automaton.spec
         self.successors = belief.automaton.successors
+        self._unsaid = Unsaid(self.successors, 0)
         self.successors.reset()
 
     def reachable(self, besides: int | None = None) -> Iterator[Explanation]:
@@ -101,6 +103,10 @@ class Nearest:
     def at_rest(self, here: Explanation) -> bool:
         """Whether nothing that is urgent has still to happen."""
         return not any(meet(here.assumed, step.assumes) for step in self.successors.urgent(here.state))
+
+    def is_told(self, here: Explanation, channel: Channel) -> bool:
+        """Whether a channel has shown last all that it owes, so that nobody misses it."""
+        return self._unsaid.is_told(channel, here.assumed)
 
     # Answers.
 

@@ -12,7 +12,7 @@ from server_history import SERVER, SETTLED, History
 from test_isaac_runtime_profiles import Live
 
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
-from missionfsm.isaac.server import spec
+from missionfsm.isaac.server import dispatch, spec
 from missionfsm.isaac.server import time as passing
 from missionfsm.isaac.server.dispatch import makes_no_difference
 from missionfsm.isaac.server.independence import Part, concerned, parts
@@ -373,3 +373,94 @@ def test_robots_whose_times_are_over_at_one_moment_do_not_multiply(monkeypatch: 
                 history.reports(robot, 4 * robot - 3 + turn, status)
             history = history.settles.waits(1) if status == "running" else history
     assert looked_at(history.settles, monkeypatch) < 3_000
+
+
+def alike(count: int, *, shows: bool = True) -> History:
+    """So many missions that look alike, and as many of another robot's that wait for one each; all of one are done."""
+    history = History()
+    for number in range(1, count + 1):
+        history.submit(number)
+    for number in range(1, count + 1):
+        history.submit(count + number, robot="q", upstream=[number])
+    history = history.robot(1)
+    order = [*range(2, count + 1), 1]
+    for turn, number in enumerate(order):
+        history.waits(1).sends(1, number)
+        history = history.settles
+        if turn == 1 and shows:
+            history.shows(
+                *["STARTED" if one == 3 else "SUCCESS" if one == 2 else "QUEUED" for one in range(1, 2 * count + 1)]
+            )
+        history.reports(1, number, "running").settles.reports(1, number, "success").lines.append(SETTLED)
+    return history.shows(*["SUCCESS"] * count, *["QUEUED"] * count) if shows else history
+
+
+ANY_ORDER = {"AI-05": "a", "AI-08": "a", "AI-10": "a", "AI-11": "a", "AI-13": "b", "AI-31": "b"}
+
+
+def widest_in_any_order(history: History) -> int:
+    """The most explanations after any line, for a server that sends what is ready in any order."""
+    judge = Judge(SERVER, Head("isaac.server", {}, history.drives), readings=ANY_ORDER)
+    most = 0
+    for line in history.lines:
+        assert judge.feed(line), line
+        most = max(most, len(judge.belief.node.explanations))
+    return most
+
+
+def test_missions_that_are_alike_do_not_multiply() -> None:
+    """Whichever of them goes first, those that go before the others are not told apart until a handle tells."""
+    assert widest_in_any_order(alike(8, shows=False)) < 2 * widest_in_any_order(alike(3, shows=False))
+    assert widest_in_any_order(alike(8)) < 2 * widest_in_any_order(alike(3))
+
+
+def test_missions_that_are_alike_are_told_apart_by_their_handles() -> None:
+    """A mission that is shown as done is not sent again, whichever it was; the other way round it is a violation."""
+    wrong = alike(3)
+    wrong.lines[-1]["result"]["missions"]["2"] = "QUEUED"
+    assert alike(3).judged(readings=ANY_ORDER).conforms
+    assert wrong.judged(readings=ANY_ORDER).violation is not None
+    wrong = alike(3, shows=False).shows("SUCCESS", "SUCCESS", "RUNNING", "QUEUED", "QUEUED", "QUEUED")
+    assert wrong.judged(readings=ANY_ORDER).violation is not None
+
+
+def in_whatever_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same verdict and readings, where one mission goes for those that are alike and where each is tried."""
+    draw = random.Random(seed)
+    readings = {**ANY_ORDER, "AI-07": "a", "AI-24.whole": "x", "AI-39.order": "n", "AI-11": draw.choice("aab")}
+    it = Live(attrs.evolve(DOCUMENTED, scheduling_period=draw.choice([0.0, 1.0])))
+    count = draw.randint(2, 3)
+    for _ in range(count):
+        it.mission("r")
+    for _ in range(draw.randint(0, count)):
+        it.mission("s", upstream=[draw.randint(1, count)])
+    it.connects().named(1).connects().named(2, "s")
+    for _ in range(draw.randint(2, 5)):
+        if it.sent and draw.random() < 0.7:
+            it.says_it(draw.randint(1, 2), -1, draw.choice(["running", "success", "failure"]))
+        it.after(draw.choice([0.4, 1, 1.3]))
+        if draw.random() < 0.2:
+            it.mission("s", upstream=[draw.randint(1, count)])
+    for history in (it, spoilt(draw, it), spoilt(draw, it), spoilt(draw, it)):
+        found = []
+        for alone in (False, True):
+            for cache in (spec._advance, spec._line, spec._silent_in, passing._urgent):
+                cache.cache_clear()
+            with monkeypatch.context() as patch:
+                if alone:
+                    patch.setattr(dispatch, "first_of_alike", lambda server, ready: ((one, server) for one in ready))
+                found.append(told(history, SERVER, readings))
+        assert found[0] == found[1]
+
+
+def test_one_mission_goes_for_those_that_are_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With every order tried, the verdict and what is left of each question are the same."""
+    for seed in range(5):
+        in_whatever_order(seed, monkeypatch)
+
+
+@pytest.mark.slow
+def test_one_mission_goes_for_those_that_are_alike_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So it is on many more."""
+    for seed in range(5, 40):
+        in_whatever_order(seed, monkeypatch)

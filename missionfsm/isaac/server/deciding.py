@@ -115,7 +115,7 @@ def merged(moves: Iterable[Move]) -> tuple[Move, ...]:
     """The same moves, with those that come to the same under several readings of one question made one."""
     same: dict[object, list[Move]] = {}
     for move in moves:
-        key = (move.state.missions, move.state.links, move.sent, move.at)
+        key = (move.state.missions, move.state.links, move.state.alike, move.sent, move.at)
         same.setdefault(key, []).append(move)
     return tuple(move for group in same.values() for move in _joined(group))
 

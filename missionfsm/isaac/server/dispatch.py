@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.alike import first_of_alike
 from missionfsm.isaac.server.clocks import Moves, started, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
@@ -70,7 +71,8 @@ def lapses(state: Server, link: Link) -> list[Move]:
     if letters not in ("p", "h", "ph"):
         return []
     first = _maybe_first(state, link)
-    sure = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued][:1]
+    queue = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued]
+    sure = [] if _is_in_no_order(state, queue) else queue[:1]
     return [one for at in first if letters == "p" or [at] != sure for one in _lapsed(Move(state), link, at)]
 
 
@@ -82,6 +84,8 @@ def _maybe_first(state: Server, link: Link) -> list[int]:
             continue
         if mission.doomed:
             found.append(index)
+        if state.alike:
+            continue
         if not any(one.lo <= 0 for one in mission.clocks) and not upstream_overdue(state.missions, index):
             break
     return found
@@ -100,11 +104,17 @@ def _lapsing(move: Move, part: Part) -> Moves:
             return
 
 
+def _is_in_no_order(state: Server, queue: list[int]) -> bool:
+    """Whether nobody knows which mission of a queue is the first, so that it need not be one that is doomed."""
+    return bool(state.alike) and not all(state.missions[index].doomed for index in queue)
+
+
 def _lapsed(move: Move, link: Link, index: int | None) -> list[Move]:
     """A doomed mission is cancelled that is the first in the queue of an idle robot; None: whichever is."""
     state = move.state
     if index is None:
-        index = next((at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued), None)
+        queue = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued]
+        index = None if not queue or _is_in_no_order(state, queue) else queue[0]
     if index is None or not state.missions[index].doomed or busy(state, link):
         return []
     head = state.missions[index]
@@ -366,7 +376,9 @@ def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
         any_order, _ = split(move, AI_13, "b")
         free = None if any_order is None else split(any_order, AI_12, "a")[0]
         if free is not None:
-            yield from ((index, free) for index in ready[1:])
+            for index, after in first_of_alike(free.state, ready):
+                if index != ready[0] or after is not free.state:
+                    yield index, free if after is free.state else free.to(after)
     if holds is not None:
         yield None, holds
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.alike import one_of_each
 from missionfsm.isaac.server.clocks import Moves
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.lifecycle import acknowledged, ends
@@ -119,7 +120,8 @@ def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves
         if way is None:
             continue
         after = [] if meant else [means_nothing(way)]
-        for index in meant:
+        # By the channel alone (AI-10 d) no uuid tells missions apart that are alike.
+        for index in one_of_each(way.state, meant) if way.state.letters(AI_10) == "d" else meant:
             after += _on_channel(way, index, report)
         for one in after:
             yield from _heard_out(one, link, report)

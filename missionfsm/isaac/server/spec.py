@@ -6,12 +6,15 @@ The names of a state are, for each mission, its handle and its identifier, and t
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.abstraction import canonical, explore_size, idle_search_key, search_key, search_size
+from missionfsm.isaac.server.alike import Unit, exchanged, exchanges_for, exchanges_of
+from missionfsm.isaac.server.alike import without as without_alike
 from missionfsm.isaac.server.clocks import started, zero_means
 from missionfsm.isaac.server.connections import connects, drops, hears, is_over, without
 from missionfsm.isaac.server.deciding import assumed, merged, split, ways
@@ -48,6 +51,7 @@ from missionfsm.isaac.server.state import (
     handle_ref,
     mission_of_handle,
     mission_of_uuid,
+    missions_of,
     topic,
 )
 from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
@@ -155,7 +159,8 @@ def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> It
                 depends=bool(upstream),
                 fated=fated,
             )
-            yield _clocked(way.to(evolve(way.state, missions=(*way.state.missions, mission))))
+            known = without_alike(way.state, upstream)
+            yield _clocked(way.to(evolve(known, missions=(*known.missions, mission))))
 
 
 def _upstreams(move: Move, upstream: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...], Move]]:
@@ -268,7 +273,8 @@ def _urgent_in(server: Server, part: Part) -> tuple[Step, ...]:
 
 
 def _spontaneous(server: Server) -> tuple[Step, ...]:
-    return tuple(_step(server, move) for part in parts(server) for move in unseen(server, part))
+    others = _exchanged(server, _all_pairs(server))
+    return others + tuple(_step(server, move) for part in parts(server) for move in unseen(server, part))
 
 
 @functools.lru_cache(maxsize=20_000)
@@ -284,10 +290,11 @@ def _silent_for(server: Server, focus: Focus) -> tuple[Step, ...]:
     """
     if focus.kind == SETTLED:
         return _before_rest(server, focus)
+    others = _exchanged(server, _pairs(server, focus)) if server.alike else ()
     if focus.kind == RETURNED and isinstance(focus.what, Statuses):
-        return _silent_before(server, focus)
+        return (*others, *_silent_before(server, focus))
     asked = asked_of(server, focus)
-    return tuple(step for part in concerned(server, focus) for step in _silent_in(server, part, asked))
+    return others + tuple(step for part in concerned(server, focus) for step in _silent_in(server, part, asked))
 
 
 def _before_rest(server: Server, focus: Focus) -> tuple[Step, ...]:
@@ -326,6 +333,39 @@ def _may_be_late(server: Server, part: Part) -> bool:
     """Whether a mission that is about to be sent may have timed out before that."""
     waiting = (server.missions[index] for index in part.missions if server.missions[index].queued)
     return any(clock.lo <= 0 for one in waiting for clock in one.ticking)
+
+
+def _exchanged(server: Server, pairs: Iterable[tuple[Unit, Unit]]) -> tuple[Step, ...]:
+    """Missions that were alike may have been one another all the time; a uuid goes with what became of its mission."""
+    return tuple(_exchange(server, *pair) for pair in pairs)
+
+
+def _exchange(server: Server, one: Unit, other: Unit) -> Step:
+    after, places = exchanged(server, one, other)
+    first = first_link_ref(server)
+    names = (
+        *(ref if ref % 2 == 0 else 2 * places.get(ref // 2, ref // 2) + 1 for ref in range(first)),
+        *range(first, first + len(server.ends)),
+    )
+    return Step(after, names=names)
+
+
+def _pairs(server: Server, focus: Focus) -> Iterator[tuple[Unit, Unit]]:
+    """The units that may have changed places, as far as something observed tells of that."""
+    asked = ((focus.what, focus.refs),) if focus.kind == RETURNED else ()
+    seen = None if focus.answer is None else focus.answer.shape
+    if asked and isinstance(focus.what, Statuses) and isinstance(seen, tuple) and len(seen) == len(server.missions):
+        yield from exchanges_for(server, lambda index, place: may_be_called(server, index, seen[place]))
+    for what, refs in (*asked, *focus.calls):
+        if isinstance(what, Submission):
+            for index in sorted(missions_of(server, refs)):
+                yield from exchanges_of(server, index)
+    if any(isinstance(what, Statuses) for what, _ in focus.calls):
+        yield from _all_pairs(server)
+
+
+def _all_pairs(server: Server) -> Iterator[tuple[Unit, Unit]]:
+    return (pair for units in server.alike for pair in itertools.combinations(units, 2))
 
 
 def _silent_before(server: Server, focus: Focus) -> tuple[Step, ...]:

@@ -240,6 +240,8 @@ class Server:
             may be seen. Slots below 0 are of those that the server ended itself.
         unsteady: whether connections may drop with nobody saying so.
         over: whether it has ended: nothing happens any more but that its connections are seen to end.
+        alike: groups of missions, each with those that wait for it, of which nobody knows which of them is which
+            (`missionfsm.isaac.server.alike`).
     """
 
     name_channel: str = "name"
@@ -251,6 +253,7 @@ class Server:
     gone: tuple[Link, ...] = ()
     unsteady: bool = False
     over: bool = False
+    alike: tuple[tuple[tuple[int, ...], ...], ...] = ()
 
     def letters(self, question: Ambiguity) -> str:
         """The readings of a question that are left."""
@@ -329,6 +332,7 @@ class Move:
             server.gone,
             server.unsteady,
             server.over,
+            server.alike,
         )
         return Move(after, self.sent, self.rules, self.at)
 

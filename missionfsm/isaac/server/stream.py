@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
+from missionfsm.isaac.server.alike import told_apart
 from missionfsm.isaac.server.deciding import assumed as decided_between
 from missionfsm.isaac.server.lifecycle import all_settled
 from missionfsm.isaac.server.readings import (
@@ -96,7 +97,7 @@ def _answers(before: Server, server: Server) -> Iterator[Step]:
     handles = tuple(handle_ref(index) for index in range(len(server.missions)))
     promised = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
     for (words, _), assumes in found.items():
-        yield Step(server, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
+        yield Step(told_apart(server, words), answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
 
 
 def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:

@@ -108,6 +108,7 @@ class Drive:
         cite: where the documents speak of it, if they do.
         renumbers: event → the tracks whose numbers start over with it, on every channel.
         shows_again: event → the tracks whose last message may come again with its number, on every channel.
+        revives: whether it may bring back names of things that are gone.
         ends: whether it ends a channel. Messages that arrive on the channel while it is being done came before the end.
         impossible: ids of the rules that are broken if it is said to have happened although it could not.
         waits: state → whether an earlier drive of this kind still waits there; the tester does not drive another then.
@@ -125,6 +126,7 @@ class Drive:
     cite: Citation | None = None
     renumbers: Callable[[Incident], tuple[Hashable, ...]] | None = None
     shows_again: Callable[[Incident], tuple[Hashable, ...]] | None = None
+    revives: bool = False
     ends: bool = False
     impossible: tuple[str, ...] = ()
     waits: Callable[[State], bool] = lambda _: False

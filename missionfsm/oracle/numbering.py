@@ -148,7 +148,8 @@ class Numbering:
 
     def _driven(self, event: Driven) -> Numbered:
         new: list[Name] = []
-        return (Driven, event.event, self._number(event.names, new)), new
+        revives = bool(event.names) and self.spec.drives[event.event.name].revives  # type: ignore[attr-defined]
+        return (Driven, event.event, self._number(event.names, new, revives=revives)), new
 
     def _ended_by_itself(self, event: Ended) -> Numbered:
         new: list[Name] = []
@@ -160,17 +161,17 @@ class Numbering:
     def _cancelled(self, event: Cancelled) -> Numbered:
         return (Cancelled, self._numbers.get(event.channel, GONE)), []
 
-    def _number(self, names: tuple[Name, ...], new: list[Name]) -> tuple[int, ...]:
+    def _number(self, names: tuple[Name, ...], new: list[Name], *, revives: bool = False) -> tuple[int, ...]:
         numbers = tuple(map(self._numbers.get, names))
         if None in numbers:
             return tuple(
-                self._number_anew(name, new) if number is None else number
+                self._number_anew(name, new, revives=revives) if number is None else number
                 for name, number in zip(names, numbers, strict=True)
             )
         return numbers  # type: ignore[return-value]  # none is None
 
-    def _number_anew(self, name: Name, new: list[Name]) -> int:
-        if name in self._retired:
+    def _number_anew(self, name: Name, new: list[Name], *, revives: bool = False) -> int:
+        if name in self._retired and not revives:
             return GONE
         if name in new:
             return len(self._names) + new.index(name)

@@ -288,3 +288,21 @@ def test_every_broken_rule_is_noticed() -> None:
     """Whichever rule the reference breaks, in whichever way, the oracle notices."""
     found = teeth(ROBOT)
     assert (found.killed, found.survived, found.allowed, found.untested) == (30, (), (), ())
+
+
+def _taking_turns(times: int, last: Any) -> tuple[Any, ...]:
+    """Two missions that preempt one another again and again, the same one twice at first; then something else."""
+    lines: list[Any] = [arrives(ONE), says("running"), arrives(ONE)]
+    for number in range(times):
+        old, new = (ONE, TWO) if number % 2 == 0 else (TWO, ONE)
+        lines += [arrives(new), says("failure", old), says("running", new), SETTLED]
+    return (*lines, last, SETTLED)
+
+
+@pytest.mark.parametrize("times", [2, 3, 4])
+def test_missions_that_were_there_before_come_again(times: int) -> None:
+    """Each comes back after it was preempted, and what is said is of the one that runs."""
+    runs, other = (ONE, TWO) if times % 2 == 0 else (TWO, ONE)
+    assert judged(*_taking_turns(times, says("running", runs))).conforms
+    assert judged(*_taking_turns(times, says("running", runs)), **{"AI-32.same": "b"}).conforms
+    assert not judged(*_taking_turns(times, says("running", other))).conforms

@@ -25,7 +25,7 @@ SPEC = Spec(
     title="a robot's mission codelet",
     initial=Codelet,
     drives=(
-        Drive("line", effects.arrives, impossible=(rules.LINKED.id,)),
+        Drive("line", effects.arrives, revives=True, impossible=(rules.LINKED.id,)),
         Drive("behaviorSucceeded", effects.stops, (Happening("behaviorSucceeded"),), impossible=(rules.STARTS.id,)),
         Drive("behaviorFailed", effects.stops, (Happening("behaviorFailed"),), impossible=(rules.STARTS.id,)),
         Drive("advance", effects.passes, later=later),

@@ -56,7 +56,7 @@ def test_other_traffic_of_the_application_changes_nothing(other: Any) -> None:
 
 def test_other_traffic_is_no_name_and_no_status() -> None:
     """A text on another channel does not stand for the name that a robot has to say."""
-    silent = _judged(_line(TextProto("robot"), "log"), {"drive": {"event": "advance", "seconds": 60}})
+    silent = _judged(_line(TextProto("robot"), "log"), {"drive": {"event": "advance", "seconds": 90}})
     assert silent.outcome is Outcome.VIOLATES
 
 

@@ -27,14 +27,14 @@ EVENTS: tuple[JSON, ...] = (
     {"event": "advance", "seconds": 0.05},
     {"event": "advance", "seconds": 1},
     {"event": "advance", "seconds": 5},
-    {"event": "advance", "seconds": 20},
+    {"event": "advance", "seconds": 90},
     {"event": "disconnect"},
     {"event": "connect"},
 )
 
 
 def _words() -> dict[str, ScriptStep]:
-    words = ("succeeds", "fails", "tick", "1s", "5s", "20s", "drops", "connects")
+    words = ("succeeds", "fails", "tick", "1s", "5s", "90s", "drops", "connects")
     known = {word: ScriptStep("drive", event) for word, event in zip(words, EVENTS, strict=True)}
     known["settle"] = ScriptStep("settle")
     known["mission"] = ScriptStep("drive", mission({"serialized": "{}"}, new("uuid"), "mission"))
@@ -62,9 +62,9 @@ SCRIPTS = tuple(
             # Missions preempt one another faster than a tick.
             "mission tick mission mission settle 1s settle fails mission settle 1s settle",
             # A connection drops while nothing runs, while a mission runs, and while it ends.
-            "20s settle drops settle connects settle 20s settle mission 1s settle drops settle 1s settle connects "
-            "settle 20s settle drops succeeds settle connects settle 20s settle mission settle 20s settle fails "
-            "settle 20s settle",
+            "90s settle drops settle connects settle 90s settle mission 1s settle drops settle 1s settle connects "
+            "settle 90s settle drops succeeds settle connects settle 90s settle mission settle 90s settle fails "
+            "settle 90s settle",
         ),
     )
 )

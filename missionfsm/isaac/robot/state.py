@@ -12,8 +12,8 @@ SYSTEM_NAME = "isaac.robot"
 RUNNING_BOUND = 5 * MICROSECONDS
 """Time within which RUNNING has to be reported at least once, in microseconds. The tester's choice (AI-31)."""
 
-NAME_BOUND = 20 * MICROSECONDS
-"""Time within which the name has to be said at least once, in microseconds. The tester's choice."""
+NAME_BOUND = 90 * MICROSECONDS
+"""Time within which the name has to be said at least once, in microseconds. The tester's choice (AI-31)."""
 
 TICK = MICROSECONDS
 """How long a status may wait for the codelet's own tick at most, in microseconds. The tester's choice (AI-31)."""

@@ -7,8 +7,10 @@ from typing import Any
 
 import orjson
 import pytest
+from commandline import CommandLine
 from traffic import SUBSCRIBE, delivery, navigate
 
+from missionfsm.app import recorded
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.history import Answer, Received, Returned
 from missionfsm.kernel.transport import REDELIVERED
@@ -93,6 +95,18 @@ def test_a_restart_is_seen_however_many_calls_are_on_their_way(tmp_path: Path, m
     log = [*BEFORE, *calls, shows(1, 0), *AFTER, *answers, {"settled": True}]
     verdict = judged(tmp_path / "log", log)
     assert (verdict.conforms, flags(verdict)) == (True, {"TR-05"}), str(verdict)
+
+
+def test_what_comes_over_a_pipe_is_judged_a_second_time(
+    command_line: CommandLine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A list that a call may have emptied was emptied by a restart, as a later answer shows, if the log can be kept."""
+    calls = [called(10 + at, *one) for at, one in enumerate(PENDING[:3])]
+    lines = [*BEFORE, *calls, shows(1, 0), *AFTER, *(refused(10 + at) for at in range(3)), {"settled": True}]
+    log = b"".join(orjson.dumps(line) + b"\n" for line in lines)
+    assert command_line("check", "-", stdin=log).status == 0
+    monkeypatch.setattr(recorded, "MOST_KEPT", len(log) - 1)
+    assert command_line("check", "-", stdin=log).status == 1
 
 
 EARLIER = [called(20, "CreateMission", navigate("table-3")), called(21, *CLEAR), made(20, "Z"), refused(21)]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+import io
 import itertools
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import IO, Any
 
 from attrs import evolve
 
@@ -53,18 +55,75 @@ def check_file(
         ValueError: `readings` names something that does not exist.
     """
     asked = Asked(readings or {}, **how)
-    if not is_plain_file(path):  # it can be read only once
-        return _judged(path, asked, tell, {}, MAX_LINES)
-    found = _read_twice(path, asked, tell)
+    again: Callable[[Asked], list[tuple[str | None, Verdict]]]
+    if is_plain_file(path):
+        found = _read_twice(path, asked, tell)
+        again = functools.partial(_read_twice, path, tell=_nobody)
+    else:  # it can be read only once, but what was read can be kept
+        kept = _Kept(open_history(path))
+        found = _judged(path, asked, tell, {}, MAX_LINES, io.BufferedReader(kept))
+        if kept.overflows:
+            return found
+        again = functools.partial(_judged_again, path, kept.content)
     # A violation may have its cause long before, in a message that was lost unnoticed. So such a file is judged once
     # more, with the faults of a transport considered at every event.
     doubtful = {robot for robot, verdict in found if verdict.violation and verdict.violation.at <= LONGEST_SECOND_LOOK}
     if not doubtful:
         return found
-    second = _read_twice(path, evolve(asked, eager=True, only=frozenset(doubtful)), lambda _: None)
     # Verdicts on bare messages have no robot, and are told apart by their subscription.
-    again = {(robot, verdict.implementation): verdict for robot, verdict in second}
-    return [(robot, _better(verdict, again.get((robot, verdict.implementation)))) for robot, verdict in found]
+    second = {
+        (robot, verdict.implementation): verdict
+        for robot, verdict in again(evolve(asked, eager=True, only=frozenset(doubtful)))
+    }
+    return [(robot, _better(verdict, second.get((robot, verdict.implementation)))) for robot, verdict in found]
+
+
+MOST_KEPT = 64_000_000
+"""How many bytes of a pipe are kept, so that it can be judged a second time."""
+
+
+class _Kept(io.RawIOBase):
+    """A source that keeps what is read of it, unless that is too much.
+
+    Attributes:
+        content: what was read so far.
+        overflows: whether it was too much.
+    """
+
+    def __init__(self, source: IO[bytes]) -> None:
+        self._source = source
+        self._read: Callable[[int], bytes] = getattr(source, "read1", source.read)
+        self.content = bytearray()
+        self.overflows = False
+
+    def readable(self) -> bool:
+        """It can be read."""
+        return True
+
+    def readinto(self, buffer: Any, /) -> int:  # noqa: ANN401 - whatever holds bytes
+        """Read what there is, as far as it has room."""
+        block = self._read(len(buffer))
+        buffer[: len(block)] = block
+        self.overflows = self.overflows or len(self.content) + len(block) > MOST_KEPT
+        if self.overflows:
+            self.content.clear()
+        else:
+            self.content += block
+        return len(block)
+
+    def close(self) -> None:
+        """Close the source as well."""
+        self._source.close()
+        super().close()
+
+
+def _judged_again(path: str, content: bytearray, asked: Asked) -> list[tuple[str | None, Verdict]]:
+    """The verdicts on what was kept of a pipe."""
+    return _judged(path, asked, _nobody, {}, MAX_LINES, io.BytesIO(content))
+
+
+def _nobody(_: str) -> None:
+    """Nobody is told."""
 
 
 LONGEST_SECOND_LOOK = 20_000
@@ -92,7 +151,12 @@ FIRST_LINE = '{"missionfsm": 1, "system": …, "world": …}'
 
 
 def _judged(
-    path: str, asked: Asked, tell: Callable[[str], None], lost: Lost | None, keep: int = 0
+    path: str,
+    asked: Asked,
+    tell: Callable[[str], None],
+    lost: Lost | None,
+    keep: int = 0,
+    source: IO[bytes] | None = None,
 ) -> list[tuple[str | None, Verdict]]:
     """The verdicts on one file, read once; see `check_file`.
 
@@ -100,8 +164,9 @@ def _judged(
         path, asked, tell: see `check_file`.
         lost: the calls that are never answered; None: not known yet, so that `UndecidedError` may be raised.
         keep: how many lines are kept to be shown; if none, the file is read again to show them.
+        source: where it is read from; None: the file.
     """
-    source = open_history(path)
+    source = open_history(path) if source is None else source
     parts: list[Judges] = []
     try:
         texts = Lines(source, path)

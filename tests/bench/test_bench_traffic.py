@@ -27,6 +27,16 @@ from busy import Habits, busy
 from traffic import MISSION, SUBSCRIBE, Recorder, delivery, navigate, readings_at_random
 
 from missionfsm.app.recorded import check_file
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import (
+    Header,
+    Message,
+    MissionProto,
+    MissionStatusProto,
+    TextProto,
+    Uuid,
+    WireStatus,
+)
 from missionfsm.systems import system
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -235,6 +245,36 @@ def test_bench_traffic_independent_missions(tmp_path: Path) -> None:
         lines.append({"return": number, "result": {"mission": number}})
     lines += [{"drive": {"event": "advance", "seconds": 60}}, {"settled": True}]
     shown("100 independent missions", written(tmp_path / "log.jsonl", lines))
+
+
+@pytest.mark.parametrize("pairs", [4, 8, 16])
+def test_bench_traffic_missions_in_pairs(tmp_path: Path, pairs: int) -> None:
+    """Missions of one robot, each with one of another that waits for it, all of which may time out at one moment."""
+    drives = ["connect", "line", "disconnect", "advance"]
+    lines: list[Any] = [{"missionfsm": 1, "system": "isaac.server", "world": {}, "drives": drives}]
+    for number in range(1, 2 * pairs + 1):
+        mission = {"robot": "r"} if number <= pairs else {"robot": "q", "upstream": [number - pairs]}
+        lines.append({"call": number, "method": "submit", "params": {"mission": mission}})
+        lines.append({"return": number, "result": {"mission": number}})
+
+    def said(connection: int, channel: str, payload: MissionStatusProto | TextProto) -> dict[str, Any]:
+        line = encode(Message(Header(channel), payload)).decode().strip()
+        return {"drive": {"event": "line", "connection": connection, "line": line}}
+
+    for connection, robot in ((1, "r"), (2, "q")):
+        lines.append({"drive": {"event": "connect", "connection": connection}})
+        lines.append(said(connection, "name", TextProto(robot)))
+    for number in range(1, pairs + 2):
+        due = [(1, Uuid(number, 1))] if number <= pairs else []
+        due += [(2, Uuid(number - 1, 2))] if number > 1 else []
+        lines.append({"drive": {"event": "advance", "seconds": 1}})
+        for connection, uuid in due:
+            sent = Message(Header("mission", 1, 1, Uuid(len(lines), 3)), MissionProto(uuid, "{}"))
+            lines.append({"connection": connection, "line": encode(sent).decode().strip()})
+        for status in (WireStatus.RUNNING, WireStatus.SUCCESS):
+            lines += [said(connection, "mission_status", MissionStatusProto(uuid, status)) for connection, uuid in due]
+            lines.append({"drive": {"event": "advance", "seconds": 1}})
+    shown(f"{pairs} pairs of missions", written(tmp_path / "log.jsonl", [*lines, {"settled": True}]))
 
 
 def test_bench_traffic_list_that_is_never_cleared(tmp_path: Path) -> None:

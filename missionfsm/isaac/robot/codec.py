@@ -17,6 +17,7 @@ from missionfsm.isaac.wire.messages import (
     Message,
     MissionProto,
     MissionStatusProto,
+    Payload,
     TextProto,
     Uuid,
     WireStatus,
@@ -72,13 +73,19 @@ def _garbled(line: str) -> tuple[Arrives, tuple[Name, ...]]:
     header, payload = raw.get("header"), raw.get("payload")
     if not (isinstance(header, dict) and isinstance(payload, dict) and isinstance(header.get("channel"), str)):
         return Arrives(), ()
+    proto = str(header.get("proto"))
     untyped = header.get("proto") is None and not {"text", "missionStatus"} & payload.keys()
-    if not untyped and str(header.get("proto")) not in _MISSION_TYPES and "config" not in payload:
+    if not untyped and proto not in _MISSION_TYPES and "config" not in payload:
         return Arrives(), ()
-    return Arrives(USABLE, channel=header["channel"], garbled=True), ()
+    return Arrives(USABLE, channel=header["channel"], garbled=True, foreign=proto in _OTHER_TYPES), ()
 
 
-_MISSION_TYPES = tuple(str(turned(TYPE_IDS[MissionProto])) for turned in (signed, unsigned))
+def _written(*kinds: type[Payload]) -> tuple[str, ...]:
+    """The type ids of these, in every form."""
+    return tuple(str(turned(TYPE_IDS[kind])) for kind in kinds for turned in (signed, unsigned))
+
+
+_MISSION_TYPES, _OTHER_TYPES = _written(MissionProto), _written(MissionStatusProto, TextProto)
 
 
 def _is_text(serialized: JSON, config: JSON) -> bool:

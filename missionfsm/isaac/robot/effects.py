@@ -180,10 +180,8 @@ def _read(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
     if event.channel != here.world.channel:
         return (ignored,)
     if event.foreign:
-        return (
-            evolve(ignored, assumes=(readings.AI_27_TYPE["a"],)),
-            *_all(_starts(here, event), (readings.AI_27_TYPE["b"],)),
-        )
+        ways = (*_starts(here, event), *(_fails(here, event, None) if event.garbled else ()))
+        return evolve(ignored, assumes=(readings.AI_27_TYPE["a"],)), *_all(ways, (readings.AI_27_TYPE["b"],))
     if event.mission is None:
         return (ignored,)
     found = tuple(_mission(here, event, refs))

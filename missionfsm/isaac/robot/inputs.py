@@ -25,7 +25,7 @@ class Arrives:
 
     Attributes:
         numeric: whether 64-bit integers in it are numbers.
-        foreign: whether it is a message of another type.
+        foreign: whether it is a message of another type, or (garbled) a mission whose header says so.
         untyped: whether its header has no type id, or an unsigned one.
         misplaced: whether its configuration is no text that holds JSON, but the JSON itself.
         garbled: whether something else in it is not written as documented: a field that nobody knows, no

@@ -222,6 +222,25 @@ def test_what_is_not_in_the_log_is_explained(case: str) -> None:
     assert flagged & {"LOG-01", "LOG-02"} == ({flag} if flag else set())
 
 
+@pytest.mark.parametrize("strict", [True, False])
+@pytest.mark.parametrize("states", [("SUCCEEDED", "SUCCEEDED"), ("SUCCEEDED", "RUNNING"), ("SUCCEEDED", "FAILED")])
+def test_missions_have_one_order_on_all_streams(tmp_path: Path, states: tuple[str, str], *, strict: bool) -> None:
+    """Others turn no list round: at most a robot that has restarted would show one, where that can be."""
+    first = {name: said for name, said in OTHERS.items() if strict or name != "transport"}
+    listed = list(zip("AT", states, strict=True))
+    begun = [*FIRST, *MINE, THEIRS, shown(4, *listed)]
+    again = call(9, "SubscribeMissionStatus", {}, {"result": {"stream": 2}})
+
+    def verdict(*missions: tuple[str, str]) -> Any:
+        lines = [*begun, *again, shown(4, *missions, stream=2)]
+        return check_file(str(written(tmp_path / "log", [first, *lines])))[0][1]
+
+    kept, turned = verdict(*listed), verdict(*reversed(listed))
+    assert kept.violation is None
+    assert not any(one.startswith("TR-05") for one in kept.flagged)
+    assert turned.violation is not None or (not strict and any(one.startswith("TR-05") for one in turned.flagged))
+
+
 OWN = [*call(1, "SubscribeMissionStatus", {}, {"result": {"stream": 1}}), BUSY]
 ADDED = shown(4212, ("X", "SUCCEEDED"), ("Y", "RUNNING"), ("Z", "DEFAULT"))
 UNDER_WAY = {

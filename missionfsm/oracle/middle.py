@@ -188,8 +188,11 @@ def _showing(channel: Channel, last: Owed) -> Channel:
 def _goes_on(glimpses: Glimpses, here: Explanation, arrival: Arrival) -> int:
     """What is assumed where a message shows what the things that were there have become; 0 where they cannot have.
 
-    What was shown before on its channel tells in which state they were; elsewhere it may have been shown later.
+    What was shown before on its channel tells in which state they were; elsewhere it may have been shown later, but not
+    in another order.
     """
+    if any(_turned_round(one, arrival) for one in here.channels):
+        return 0
     world, assumed = world_of(glimpses, here.state), here.assumed
     lasts = (one.last for one in here.channels if one.name == arrival.channel)
     shown = (glimpses.shown(one.view, one.names) for one in lasts if one and one.view is not ANY)
@@ -199,6 +202,16 @@ def _goes_on(glimpses: Glimpses, here: Explanation, arrival: Arrival) -> int:
         if not assumed:
             return 0
     return assumed
+
+
+def _turned_round(channel: Channel, arrival: Arrival) -> bool:
+    """Whether a channel has shown last some of the things of a message in another order."""
+    last = channel.last
+    if last is None or last.view is ANY:
+        return False
+    places = {name: place for place, name in enumerate(arrival.names)}
+    kept = [places[name] for name in last.names if name in places]
+    return kept != sorted(kept)
 
 
 def _names(spec: Spec, here: Explanation, state: State, match: Match, names: Names) -> Names:

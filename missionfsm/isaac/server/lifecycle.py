@@ -221,7 +221,8 @@ def all_settled(server: Server) -> tuple[Server, ...]:
         return (server,)
     ends_so = list(dict.fromkeys(one.state for one in settled(Move(server), index)))
     timed_out = [one for one in ends_so if one.missions[index].status is Status.ABORTED]
-    return tuple(dict.fromkeys(after for one in timed_out or ends_so for after in all_settled(one)))
+    others = [one for one in ends_so if one not in timed_out]
+    return tuple(dict.fromkeys(after for one in (*timed_out, *others) for after in all_settled(one)))
 
 
 def _noticed(move: Move, clock: Clock) -> tuple[Move, Move | None]:

@@ -180,12 +180,7 @@ def _judged(
         if _is_bare_message(line):
             return _watched(path, asked, tell, itertools.chain([(number, line)], texts.parsed(numbered)))
         with placed(path, number):
-            if isinstance(line, list):
-                message = f"the first line has to be {FIRST_LINE}; of a list, `jq -c '.[]'` makes lines"
-                raise UnreadableError(message)
-            if isinstance(line, dict) and "missionfsm" not in line:
-                message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
-                raise UnreadableError(message)
+            _refuse_other_beginnings(line)
         following: tuple[int, JSON] | None = (number, line)
         while following is not None:
             with placed(path, following[0]):
@@ -206,6 +201,16 @@ def _judged(
     return [
         (robot, verdict if keep else _retold(verdict, path, robot, by_params=by_params)) for robot, verdict in found
     ]
+
+
+def _refuse_other_beginnings(line: JSON) -> None:
+    """Raise UnreadableError for a line that begins neither a history nor bare messages."""
+    if isinstance(line, list):
+        message = f"the first line has to be {FIRST_LINE}; of a list, `jq -c '.[]'` makes lines"
+        raise UnreadableError(message)
+    if isinstance(line, dict) and "missionfsm" not in line:
+        message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
+        raise UnreadableError(message)
 
 
 def _is_bare_message(line: JSON) -> bool:

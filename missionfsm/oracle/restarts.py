@@ -8,7 +8,7 @@ answer.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from attrs import frozen
 
@@ -47,29 +47,40 @@ def apparent_restarts(symbols: Sequence[Symbol], open_before: Iterable[int]) -> 
         open_before: the channels that had shown something before them.
     """
     messages = {at: symbol for at, symbol in enumerate(symbols) if symbol[0] is Received}
-    shown = [at for at, symbol in messages.items() if shows_restart(symbol)]
+    shown = frozenset(at for at, symbol in messages.items() if shows_restart(symbol))
     if not shown or all("zero" in relations_of(symbol) for symbol in messages.values()):
         return NONE
     perhaps: set[int] = set()
     surely: set[int] = set()
+    last = -1
+    for at, since in _first_shown(messages, shown, open_before):
+        answers = [one for one in range(last + 1, at) if symbols[one][0] is Returned]
+        later = _named_after(messages, at)
+        told = next((one for one in answers if not later.isdisjoint(names_of(symbols[one]))), at)
+        perhaps.update(one for one in answers if since < one <= told)
+        surely.update({told} - {at})
+        last = at
+    return Restarts(shown, frozenset(perhaps), frozenset(surely))
+
+
+def _first_shown(
+    messages: Mapping[int, Symbol], shown: Collection[int], open_before: Iterable[int]
+) -> Iterator[tuple[int, int]]:
+    """Of messages that show restarts the first of each, with the position of the message before it on its channel.
+
+    What another channel shows later, which was open before, is the same restart.
+    """
     seen = dict.fromkeys(open_before, -1)
     renewed: dict[int, int] = {}
     last = -1
     for at, symbol in messages.items():
         channel = symbol[-1]
         since, seen[channel] = seen.get(channel, at), at
-        if at not in shown:
-            continue
-        # What another channel has shown already was the same restart.
-        if not (since < last and renewed.get(channel, -1) < last):
-            answers = [one for one in range(last + 1, at) if symbols[one][0] is Returned]
-            later = _named_after(messages, at)
-            told = next((one for one in answers if not later.isdisjoint(names_of(symbols[one]))), at)
-            perhaps.update(one for one in answers if since < one <= told)
-            surely.update({told} - {at})
-            last = at
-        renewed[channel] = at
-    return Restarts(frozenset(shown), frozenset(perhaps), frozenset(surely))
+        if at in shown:
+            if since >= last or renewed.get(channel, -1) >= last:
+                yield at, since
+                last = at
+            renewed[channel] = at
 
 
 def shows_restart(symbol: Symbol) -> bool:

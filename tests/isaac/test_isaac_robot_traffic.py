@@ -153,6 +153,9 @@ def test_a_tree_that_stops_while_no_mission_runs_is_nothing_to_the_codelet() -> 
     verdict = _judged(NAME, SETTLED, SUCCEEDED, SETTLED, ARRIVES, RUNS, SETTLED, SUCCEEDED, SUCCESS)
     assert [one.reading for one in verdict.flagged] == ["AI-31.idle=b"]
     assert _judged(NAME, SETTLED, SUCCEEDED, SUCCESS).outcome is Outcome.VIOLATES
+    failure = _line(MissionStatusProto(MISSION, WireStatus.FAILURE), "mission_status")
+    away = (NAME, ARRIVES, RUNS, SETTLED, DROPS, SETTLED, SUCCEEDED, SETTLED, CONNECTS, NAME)
+    assert _judged(*away, failure).outcome is Outcome.VIOLATES
 
 
 def test_a_status_is_a_name_or_a_number_which_is_flagged() -> None:
@@ -167,5 +170,5 @@ def test_a_status_is_a_name_or_a_number_which_is_flagged() -> None:
 
 def test_a_robot_that_says_nothing_at_all_is_noticed() -> None:
     """It is connected from the start, so that no time passes before that."""
-    assert _judged({"drive": {"event": "advance", "seconds": 60}}).outcome is Outcome.VIOLATES
+    assert _judged({"drive": {"event": "advance", "seconds": 600}}).outcome is Outcome.VIOLATES
     assert _judged(CONNECTS, NAME).outcome is Outcome.VIOLATES

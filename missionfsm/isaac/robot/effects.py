@@ -325,8 +325,10 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     if here.running:
         due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
         ends = tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
-    else:
+    elif here.connected:
         ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
+    else:
+        return ()
     return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
 
 

@@ -69,3 +69,14 @@ def test_a_uuid_is_told_by_its_halves(name: object) -> None:
     uuid = Uuid.of(name[1])  # type: ignore[index]
     assert name_words(name) == f"uuid (lower {uuid.lower}, upper {uuid.upper})"
     assert SERVER.naming.write(name) == {"lower": str(uuid.lower), "upper": str(uuid.upper)}
+
+
+def test_what_ended_is_told_before_what_is_cancelled_for_it() -> None:
+    """Where a mission is given up too early and another is cancelled for it, the limit is what is told of."""
+    history = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).settles
+    early = history.waits(1).settles.shows("FAILED_TIMEDOUT", "FAILED_UPSTREAM").judged()
+    assert early.violation is not None
+    assert "is shown as timed out" in str(early)
+    assert "no upstream of it has failed" not in str(early)
+    alone = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).settles.shows("STARTED", "FAILED_UPSTREAM")
+    assert "shown as canceled, though no upstream of it has failed" in str(alone.judged())

@@ -115,9 +115,15 @@ def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:
     ]
     if not wrong:
         return (Match(),)
-    one, other = next((pair for pair in wrong if pair[1] == "canceled"), wrong[0])
+    one, other = min(wrong, key=_comes_first)
     besides = ", though no upstream of it has failed" if other == "canceled" else ""
     return Mismatch(_broken(one, other), f"a mission that is {one} is shown as {other}{besides}")
+
+
+def _comes_first(pair: tuple[str, str]) -> int:
+    """Which of several missions that are shown otherwise is told of: one that failed may have cancelled others."""
+    other = pair[1]
+    return 0 if other in (*_GIVEN_UP, "lost", "failed") else 1 if other == "canceled" else 2
 
 
 _GIVEN_UP = ("aborted", "timed out")

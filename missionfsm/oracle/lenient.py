@@ -85,6 +85,8 @@ def restarted(
 
 def _renewed(channel: Channel) -> Channel:
     """The channel, whose last message shows the restart; what was on its way before that may still come."""
+    if not channel.owed:  # a stream that has ended is shown nothing
+        return channel
     *before, last = channel.owed
     return Channel(channel.name, channel.topic, None, (*(evolve(one, passing=True) for one in before), last))
 

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from server_history import History
 
+from missionfsm.adapters.isaac.subjects import RobotSubject, ServerSubject
 from missionfsm.isaac.wire.framing import encode
 from missionfsm.isaac.wire.messages import (
     Header,
@@ -112,3 +113,40 @@ def test_a_mission_may_carry_its_configuration_as_a_text_or_an_object(config: An
         history = History().submit(1, config=wanted).robot(1)
         history.lines.append({"connection": 1, "line": json.dumps(raw)})
         assert history.settles.judged().conforms is right
+
+
+@pytest.mark.parametrize("channel", MESSAGES)
+def test_what_ships_goes_on_after_a_line_of_any_types(channel: str) -> None:
+    """The server that ships sends its mission after all that, and the robot that ships runs it."""
+    server, robot = ServerSubject(), RobotSubject()
+    for line in _lines(channel):
+        robot.exchange("drive", {"event": "line", "line": line})
+        number = server.exchange("drive", {"event": "connect"}).result["connection"]
+        server.exchange("drive", {"event": "line", "connection": number, "line": line})
+        server.exchange("drive", {"event": "disconnect", "connection": number})
+    server.exchange("submit", {"mission": {"robot": "last"}})
+    number = server.exchange("drive", {"event": "connect"}).result["connection"]
+    hello = encode(Message(Header("name"), TextProto("last"))).decode()
+    (sent,) = server.exchange("drive", {"event": "line", "connection": number, "line": hello}).after
+    robot.exchange("drive", {"event": "line", "line": sent.params["line"]})
+    reported = robot.exchange("drive", {"event": "advance", "seconds": 1}).after
+    mission = json.loads(sent.params["line"])["payload"]["uuid"]
+    assert {"uuid": mission, "missionStatus": "running"} in [
+        json.loads(one.params["line"])["payload"] for one in reported
+    ]
+
+
+@pytest.mark.parametrize(
+    "member", ["robot", "channel", "status_channel", "config", "start_timeout", "timeout", "upstream"]
+)
+def test_every_member_of_a_submission_may_be_of_any_type(member: str) -> None:
+    """What ships takes or refuses it, and what it does is judged without a crash."""
+    for value in (None, True, -1, 1.5, 1e400, 1 << 70, "", "x", [], [1], [None], [[]], {}, {"a": [1]}):
+        server = ServerSubject()
+        mission: Any = {"robot": "r", member: value}
+        answer = server.exchange("submit", {"mission": mission})
+        refused = answer.error is not None
+        history = History()
+        history.lines.append({"call": 1, "method": "submit", "params": {"mission": mission}})
+        history.lines.append({"return": 1, **({"error": answer.error} if refused else {"result": answer.result})})
+        assert history.settles.judged().outcome in (Outcome.CONFORMS, Outcome.INCONCLUSIVE), value

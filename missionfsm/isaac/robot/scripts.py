@@ -33,13 +33,25 @@ EVENTS: tuple[JSON, ...] = (
 )
 
 
+_DOUBTFUL = {
+    "unusable": "no json",
+    "null": "null",
+    "blank": "",
+    "shallow": '{"a":1}',
+    "odd": "[1,2]",
+    "unknown": '{"a":{"b":{"c":1}}}',
+}
+"""Configurations that a robot may be unable to use, by what is wrong with them."""
+
+
 def _words() -> dict[str, ScriptStep]:
     words = ("succeeds", "fails", "tick", "1s", "5s", "90s", "drops", "connects")
     known = {word: ScriptStep("drive", event) for word, event in zip(words, EVENTS, strict=True)}
     known["settle"] = ScriptStep("settle")
     known["mission"] = ScriptStep("drive", mission({"serialized": "{}"}, new("uuid"), "mission"))
     known["again"] = ScriptStep("drive", mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
-    known["unusable"] = ScriptStep("drive", mission({"serialized": "no json"}, new("uuid"), "mission"))
+    for word, config in _DOUBTFUL.items():
+        known[word] = ScriptStep("drive", mission({"serialized": config}, new("uuid"), "mission"))
     return known
 
 
@@ -58,7 +70,10 @@ SCRIPTS = tuple(
             # The mission that runs arrives again; it ends, and arrives once more.
             "mission 1s settle again settle 1s settle succeeds 1s settle again 1s settle fails 1s settle",
             # Missions that cannot be used, with and without one that runs, and what runs then ends.
-            "unusable settle 1s settle mission 1s settle unusable settle 1s settle succeeds settle 1s settle",
+            *(
+                f"{word} settle 1s settle mission 1s settle {word} settle 1s settle succeeds settle 1s settle"
+                for word in _DOUBTFUL
+            ),
             # Missions preempt one another faster than a tick.
             "mission tick mission mission settle 1s settle fails mission settle 1s settle",
             # A connection drops while nothing runs, while a mission runs, and while it ends.

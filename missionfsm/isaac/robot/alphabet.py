@@ -12,7 +12,7 @@ from missionfsm.isaac.wire.messages import TYPE_IDS, MissionStatusProto, TextPro
 from missionfsm.kernel.language import JSON, Alphabet, Bounds, as_text, new, pick
 
 _CONFIGS = ('{"goals.path":{"FollowPath":{"tolerance":0.25}}}', "{}", '{"a":{"b":{"c":[1,2.5,null,"é"]}}}')
-_UNUSABLE = ("no json", "[1,2]", "{", "17", '{"a":1}')
+_UNUSABLE = ("no json", "[1,2]", "{", "17", '{"a":1}', "")
 _WORLDS: tuple[JSON, ...] = (
     {"name": "carter-01"},
     {"name": "fork 2", "channel": "lift", "statusChannel": "lift-status", "nameChannel": "names"},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from attrs import evolve
 
@@ -33,7 +33,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import UPDATES
 from missionfsm.bear.status.values import clamped
-from missionfsm.bear.status.views import BLANK, MEMBERS, About, Assumed, Tie, View, blank, each, view
+from missionfsm.bear.status.views import BLANK, About, Assumed, Tie, View, blank, each, view
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.terms import Refs
@@ -172,33 +172,33 @@ def _addressed(
         return [((message,), ())]
     if only is None and (optional or stays):
         return [(tuple(_offered(message, about, question)), ())]
+    come = evolve(message, topic=evolve(about, ties=_COME), only=only or question["d"])
+    stayed = evolve(message, topic=evolve(about, ties=_STAYED), optional=True)
     return [
-        (
-            (
-                evolve(message, topic=evolve(about, ties=owed)),
-                *(evolve(message, topic=evolve(about, ties=may), optional=True) for may in (offered,) if may),
-            ),
-            (question[letters],),
-        )
-        for letters, owed, offered in _FOLLOWED
+        # Of those that have come nobody sees whether the stream began before they did, so that nothing of them is owed.
+        ((evolve(message, topic=about), come), (question["a", "d"],)),
+        ((evolve(message, topic=evolve(about, ties=_THERE)),), (question["b"],)),
+        # It may have left in between, and a stream that it has left does not follow it when it is back.
+        ((evolve(message, topic=evolve(about, ties=_NAMED)), stayed), (question["c", "e"],)),
     ]
 
 
-_FOLLOWED: tuple[tuple[tuple[str, ...], frozenset[Tie], frozenset[Tie]], ...] = (
-    (("a",), MEMBERS, frozenset()),
-    (("b",), frozenset((Tie.NAMED, Tie.STAYED, Tie.COME)), frozenset()),
-    # It may have left in between, and a stream that it has left does not follow it when it is back.
-    (("c", "e"), frozenset((Tie.NAMED,)), frozenset((Tie.STAYED,))),
-    # It may have left before the stream began, and never have come.
-    (("d",), MEMBERS | {Tie.COME}, frozenset((Tie.PASSED,))),
-)
-"""Letters of AS-25, with the ties by which a stream follows a robot that has moved, and those by which it may."""
+_NAMED, _STAYED = frozenset((Tie.NAMED,)), frozenset((Tie.STAYED,))
+_THERE = frozenset((Tie.NAMED, Tie.STAYED, Tie.COME))
+_COME = frozenset((Tie.COME, Tie.PASSED))
+_FOLLOWED: Mapping[Tie, tuple[str, ...]] = {
+    Tie.NAMED: ("a", "b", "c", "d", "e"),
+    Tie.STAYED: ("a", "b", "c", "d", "e"),
+    Tie.GONE: ("a", "d"),
+    Tie.COME: ("b", "d"),
+    Tie.PASSED: ("d",),
+}
+"""For each tie the letters of AS-25 under which a stream may show a robot that has moved."""
 
 
 def _offered(message: Emission, about: About, question: Ambiguity) -> Iterator[Emission]:
     """A message that may be left out, for each tie of a stream on which it may come, with the letters of AS-25."""
-    for tie in Tie:
-        letters = tuple(one for letters, owed, offered in _FOLLOWED if tie in owed | offered for one in letters)
+    for tie, letters in _FOLLOWED.items():
         only = question[letters] if len(letters) < len(question.readings) else None
         yield evolve(message, topic=evolve(about, ties=frozenset((tie,))), only=only)
 

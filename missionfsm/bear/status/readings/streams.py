@@ -66,12 +66,12 @@ AS_25 = asked_of_each(
         "a": "those that were there at its start",
         "b": "those that are there",
         "c": "those that were there at its start, until they leave",
-        "d": "those that were there at its start or have come since",
+        "d": "those that were there at its start, and perhaps those that have come since",
         "e": "those that were there at its start, until they leave; with the last one it ends, NOT_FOUND",
     },
     "a",
     SUBSCRIPTIONS,
-    flagged="e",
+    flagged="de",
 )
 AS_26 = asked_of_each(
     "AS-26", "{}: may a stream just end, without an error?", {"a": "no", "b": "yes"}, "a", SUBSCRIPTIONS, flagged="b"

@@ -122,6 +122,7 @@ def test_nothing_is_sent_on_a_connection_that_dropped_long_ago(waits: float, *, 
 
 
 def test_the_type_id_of_a_mission_is_signed() -> None:
+    """A number above the signed ones is none, though it has the same bits."""
     history = History().submit(1).robot(1).sends(1, 1)
     line = json.loads(history.lines[-1]["line"])
     line["header"]["proto"] = "9410896613310777529"

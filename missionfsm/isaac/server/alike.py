@@ -6,7 +6,7 @@ any two may change places, together with those that wait for them. Only what men
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from attrs import evolve
 
@@ -74,17 +74,37 @@ def first_of_alike(server: Server, ready: Sequence[int]) -> Iterator[tuple[int, 
     while left:
         first, *left = left
         group = next((units for units in server.alike if any(unit[0] == first for unit in units)), None)
-        heads = {unit[0] for unit in group} if group else set()
-        taken = {index for units in server.alike for unit in units for index in unit}
-        found: list[Unit] = []
-        for other in left:
-            both = _units(server.missions, first, other) if (other in heads if group else first not in taken) else None
-            if both is None or (not group and not taken.isdisjoint((*both[0], *both[1]))):
-                continue
-            if not found or (found[0] == both[0] and not any(set(one) & set(both[1]) for one in found)):
-                found += both if not found else both[1:]
+        found = _alike(server, first, left) if group is None else _still_alike(server, first, left, group)
         left = [index for index in left if index not in {unit[0] for unit in found}]
         yield first, server if group or not found else evolve(server, alike=(*server.alike, tuple(found)))
+
+
+def _still_alike(server: Server, first: int, others: Sequence[int], group: tuple[Unit, ...]) -> list[Unit]:
+    """The units of a mission, and of those others of its group that are still like it."""
+    heads = {unit[0] for unit in group}
+    return _collected(_units(server.missions, first, other) for other in others if other in heads)
+
+
+def _alike(server: Server, first: int, others: Sequence[int]) -> list[Unit]:
+    """The units of a mission of no group, and of those others of none that are like it; none where nothing is."""
+    taken = {index for units in server.alike for unit in units for index in unit}
+    if first in taken:
+        return []
+    pairs = (_units(server.missions, first, other) for other in others)
+    return _collected(both for both in pairs if both is not None and taken.isdisjoint((*both[0], *both[1])))
+
+
+def _collected(pairs: Iterable[tuple[Unit, Unit] | None]) -> list[Unit]:
+    """The units of pairs that have one unit in common, as long as they share no mission."""
+    found: list[Unit] = []
+    for both in pairs:
+        if both is None:
+            continue
+        if not found:
+            found += both
+        elif found[0] == both[0] and not any(set(one) & set(both[1]) for one in found):
+            found.append(both[1])
+    return found
 
 
 def one_of_each(server: Server, indices: Sequence[int]) -> tuple[int, ...]:

@@ -162,18 +162,19 @@ def strikes(
         return (), (move,)
     aborting, meaningless = _aborting(alike, index, clock)
     noticed = [_noticed(way, clock) if due else (way, None) for way in aborting]
-    if held:
-        over = tuple(_held(at_once, index, clock.kind) for at_once, _ in noticed)
-    else:
-        over = tuple(one for at_once, _ in noticed for one in aborted(at_once, index, clock.kind))
     return (
-        over,
+        tuple(one for at_once, _ in noticed for one in _over(at_once, index, clock.kind, held=held)),
         (
             *(stopped(way, index, (clock.kind, clock.since)) for way in meaningless),
             *(with_later_clocks(later) for _, later in noticed if later is not None),
             *filter(None, (unlike,)),
         ),
     )
+
+
+def _over(move: Move, index: int, kind: str, *, held: bool) -> Moves:
+    """A mission has timed out; where it is `held`, it has ended, and it is left open how."""
+    return iter((_held(move, index, kind),)) if held else aborted(move, index, kind)
 
 
 def settled(move: Move, index: int) -> Moves:

@@ -98,6 +98,11 @@ def _was_sent(state: Server, index: int) -> bool:
     return mission.sent and not any(one.kind == DROP for one in mission.clocks)
 
 
+def _may_be_meant(state: Server, link: Link, index: int, *, anywhere: bool) -> bool:
+    """Whether a status on a connection may be about a mission."""
+    return index >= 0 and (_may_report(state, link, index) or (anywhere and _was_sent(state, index)))
+
+
 def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves:
     """What a status does, for each way in which it may be matched to a mission (AI-10)."""
     targets: dict[tuple[int, ...], str] = {}
@@ -109,11 +114,7 @@ def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves
         ("c", () if report.header is None else (report.header,)),
         ("d", current),
     ):
-        meant = tuple(
-            index
-            for index in found
-            if index >= 0 and (_may_report(move.state, link, index) or (anywhere and _was_sent(move.state, index)))
-        )
+        meant = tuple(index for index in found if _may_be_meant(move.state, link, index, anywhere=anywhere))
         targets[meant] = targets.get(meant, "") + letter
     for meant, letters in targets.items():
         way, _ = split(move, AI_10, letters)

@@ -497,14 +497,7 @@ def _overdue(move: Move, late: int) -> Iterator[Move]:
 def _late(here: Move, part: Part, late: int) -> Iterator[Move]:
     """What happens next in a part of what should have happened long ago: a clock strikes, a pass comes."""
     state = here.state
-    due = [
-        (index, clock)
-        for index in part.missions
-        for clock in _counting(state, index)
-        if clock.hi is not None and clock.hi <= -late
-    ]
-    matters = [(index, clock) for index, clock in due if not makes_no_difference(state, index, clock, 0)]
-    for index, clock in matters or due[:1]:
+    for index, clock in _long_over(state, part, late):
         aborting, meaningless = strikes(evolve(here, at=(clock.lo, 0)), index, clock, due=True)
         struck = (*(heard for one in aborting for heard in inherited(state, one)),)
         for one in (*struck, *(_a_pass_later(other, index, clock) for other in meaningless)):
@@ -514,6 +507,17 @@ def _late(here: Move, part: Part, late: int) -> Iterator[Move]:
         if link is not None and link.pass_since is not None and link.pass_since >= late + PASS_PERIOD:
             for one in _after_pass(evolve(here, at=(-link.pass_since, 0)), slot, part):
                 yield _pass_due_since(state, one, part, late)
+
+
+def _long_over(state: Server, part: Part, late: int) -> list[tuple[int, Clock]]:
+    """The clocks of missions that were over so long ago; of those that make no difference the first is enough."""
+    due = [
+        (index, clock)
+        for index in part.missions
+        for clock in _counting(state, index)
+        if clock.hi is not None and clock.hi <= -late
+    ]
+    return [one for one in due if not makes_no_difference(state, *one, 0)] or due[:1]
 
 
 def _pass_due_since(before: Server, move: Move, part: Part, late: int) -> Move:

@@ -13,6 +13,7 @@ from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
+from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import relations_of
 from missionfsm.tools.check import causes
 from missionfsm.tools.check.candidates import (
@@ -286,15 +287,20 @@ def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
     return [(channel, due[-1]) for channel, due in owed if due]
 
 
-def _still_due(nearest: Nearest) -> Accusation:
-    """Things have settled although messages are owed: what is owed in the explanations that owe least."""
+def _owing_most_surely(nearest: Nearest) -> list[tuple[Successor, list[tuple[Channel, Owed]]]]:
+    """What is owed in each explanation: best what was not shown yet, where nothing can happen any more."""
     ways = [(one, _due(one.explanation)) for one in nearest.ways()]
     missed = [
         (one, [(channel, owed) for channel, owed in due if not nearest.is_told(one.explanation, channel)])
         for one, due in ways
     ]
-    ways = [(one, due) for one, due in missed if due] or [(one, due) for one, due in ways if due]
-    ways = [way for way in ways if nearest.at_rest(way[0].explanation)] or ways
+    found = [(one, due) for one, due in missed if due] or [(one, due) for one, due in ways if due]
+    return [way for way in found if nearest.at_rest(way[0].explanation)] or found
+
+
+def _still_due(nearest: Nearest) -> Accusation:
+    """Things have settled although messages are owed: what is owed in the explanations that owe least."""
+    ways = _owing_most_surely(nearest)
     least = min((len(due) for _, due in ways), default=0)
     found: list[Candidate] = []
     rules: list[str] = []

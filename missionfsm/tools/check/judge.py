@@ -39,6 +39,8 @@ PATIENCE = 300
 RECENT = 6
 """How many of the last answered calls are remembered, for the words of a violation."""
 
+_COUNTED = frozenset((Returned, Settled, Called))
+
 
 class Judge:
     """Judges one conversation as its lines come.
@@ -193,13 +195,17 @@ class Judge:
                 return False
             if belief.node not in self._seen:
                 self.eliminations.notice(event, self.transcript.answered, before)
-            kind = type(event)
-            if kind is Returned or kind is Settled or kind is Called:
+            if type(event) in _COUNTED:
                 self._count(event, self.transcript.answered, open_calls=open_calls)
+        if self._beginning is not None:
+            self._begun(at, events)
+        return True
+
+    def _begun(self, at: float | None, events: tuple[Event, ...]) -> None:
+        """After a line of a log that begins anywhere: whether nothing from before it is on its way any more."""
         if self._beginning is not None and self._beginning.is_over(at, events, self.transcript.early):
             self._beginning = None
-            belief.nothing_is_late()
-        return True
+            self.belief.nothing_is_late()
 
     def _with_what_passes(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
         """The events of a line, after the time that passes before it. Messages on a cancelled stream are noted."""

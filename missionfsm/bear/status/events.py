@@ -183,9 +183,9 @@ def _addressed(
     ]
 
 
-_NAMED, _STAYED = frozenset((Tie.NAMED,)), frozenset((Tie.STAYED,))
-_THERE = frozenset((Tie.NAMED, Tie.STAYED, Tie.COME))
-_COME = frozenset((Tie.COME, Tie.PASSED))
+_NAMED, _STAYED = (Tie.NAMED,), (Tie.STAYED,)
+_THERE = (Tie.NAMED, Tie.STAYED, Tie.COME)
+_COME = (Tie.COME, Tie.PASSED)
 _FOLLOWED: Mapping[Tie, tuple[str, ...]] = {
     Tie.NAMED: ("a", "b", "c", "d", "e"),
     Tie.STAYED: ("a", "b", "c", "d", "e"),
@@ -200,7 +200,7 @@ def _offered(message: Emission, about: About, question: Ambiguity) -> Iterator[E
     """A message that may be left out, for each tie of a stream on which it may come, with the letters of AS-25."""
     for tie, letters in _FOLLOWED.items():
         only = question[letters] if len(letters) < len(question.readings) else None
-        yield evolve(message, topic=evolve(about, ties=frozenset((tie,))), only=only)
+        yield evolve(message, topic=evolve(about, ties=(tie,)), only=only)
 
 
 def _due(robot: Robot, endpoint: Endpoint, shown: View, lenient: Iterable[Assumption] = ()) -> Iterator[Way]:
@@ -284,9 +284,10 @@ def _reconnected(before: Robot, after: Robot) -> Iterator[list[Way]]:
             shown = view(after, endpoint)
             if shown:
                 question = AS_09_OFFLINE[endpoint.value]
-                back = [
-                    (emits, (*assumed, question["b", "c"])) for emits, assumed in _addressed(after, endpoint, shown)
-                ]
+                # Once the robot has moved, nothing is required then: which streams follow it would be asked of all
+                # endpoints at once, in too many combinations.
+                found = _addressed(after, endpoint, shown, optional=bool(after.left))
+                back = [(emits, (*assumed, question["b", "c"])) for emits, assumed in found]
                 yield [*back, ((), (question["a"],))]
 
 
@@ -318,7 +319,7 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     robot = fleet.robot(event.robot)
     if robot is None:
         return ()
-    after = evolve(robot, location=str(event.value), left=robot.left | {robot.location})
+    after = evolve(robot, location=str(event.value), left=tuple(sorted({*robot.left, robot.location})))
     if after.location == robot.location:
         return (Step(fleet, label="move"),)
     emits = tuple(
@@ -330,7 +331,7 @@ def moved(fleet: Fleet, event: Event, _: Refs) -> tuple[Step, ...]:
     return (Step(fleet.put(after), emits=emits, label="move"),)
 
 
-_HERE = frozenset((Tie.STAYED, Tie.COME))
+_HERE = (Tie.STAYED, Tie.COME)
 """The ties of a robot to the streams of the location where it is."""
 
 

@@ -147,8 +147,8 @@ class Robot:
         wifi: the network that it is connected to.
         known: by subscription with a single topic, in the order of `TOPICAL`: what is known of it, perhaps although
             the robot does not report it any more (AS-09); None for nothing.
-        left: the locations that it has left: once there are any, it matters which robots a location's streams follow
-            (AS-25).
+        left: the locations that it has left, sorted: once there are any, it matters which robots a location's streams
+            follow (AS-25).
     """
 
     id: str
@@ -157,7 +157,7 @@ class Robot:
     state: RobotState = RobotState()
     wifi: Wifi | None = None
     known: tuple[Value, ...] = (None,) * len(TOPICAL)
-    left: frozenset[str] = frozenset()
+    left: tuple[str, ...] = ()
 
     def part(self, name: str) -> Value:
         """What it reports of a part."""

@@ -60,7 +60,7 @@ class Tie(Enum):
     PASSED = "it has been at the location, neither at the stream's start nor now"
 
 
-MEMBERS = frozenset((Tie.NAMED, Tie.STAYED, Tie.GONE))
+MEMBERS = (Tie.NAMED, Tie.STAYED, Tie.GONE)
 """The ties of a robot that belonged to a stream at its start."""
 
 
@@ -79,8 +79,8 @@ class About:
     endpoint: Endpoint
     robot: str
     location: str
-    left: frozenset[str] = frozenset()
-    ties: frozenset[Tie] = MEMBERS
+    left: tuple[str, ...] = ()
+    ties: tuple[Tie, ...] = MEMBERS
 
 
 def concerns(channel: Topic, emission: About) -> bool:

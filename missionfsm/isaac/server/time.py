@@ -421,11 +421,20 @@ def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
         mission = evolve(mission, was=(status, left - time, fresh and not time) if left > time else None)
     if not mission.clocks:
         return mission
-    least = -EVER if mission.overdue else 0
+    if mission.overdue:
+        return _with_clocks_stopped(mission, time)
     clocks = (
-        evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(least, clock.hi - time))
+        evolve(clock, lo=clock.lo - time, hi=None if clock.hi is None else max(0, clock.hi - time))
         for clock in mission.clocks
     )
+    return evolve(mission, clocks=tuple(clocks))
+
+
+def _with_clocks_stopped(mission: Mission, time: int) -> Mission:
+    """A mission that has ended, nobody knows how: of its clocks only which came first matters, not how long ago."""
+    latest = max(clock.lo for clock in mission.clocks)
+    by = min(time, max(0, latest))
+    clocks = (evolve(one, lo=one.lo - by, hi=None if one.hi is None else one.hi - by) for one in mission.clocks)
     return evolve(mission, clocks=tuple(clocks))
 
 

@@ -272,24 +272,22 @@ def test_a_mission_whose_header_names_another_type_may_run_or_fail_which_is_flag
     assert _judged(arrives, *NEXT, no_flagged=True).outcome is Outcome.CONFORMS
 
 
-def test_a_status_that_does_not_name_its_mission_is_flagged() -> None:
-    """AI-10 a: the schema has the mission's uuid in every status; where the mission has none, its status has none."""
+def test_a_status_need_not_name_its_mission() -> None:
+    """AI-10 a: on the page a status has no uuid of a mission; it is about the one that runs."""
     unnamed = [
         {"connection": 1, "line": _written(MissionStatusProto(None, status), "mission_status")}
         for status in (WireStatus.RUNNING, WireStatus.SUCCESS)
     ]
     ends = (unnamed[0], SETTLED, {"drive": {"event": "behaviorSucceeded"}}, unnamed[1])
-    verdict = _judged(_arrives(ONE), *ends)
-    assert verdict.outcome is Outcome.CONFORMS
-    assert [one.reading for one in verdict.flagged] == ["AI-10=a"]
+    assert _judged(_arrives(ONE), *ends, no_flagged=True).outcome is Outcome.CONFORMS
     assert _judged(_arrives(ONE, uuid=None), *ends, no_flagged=True).outcome is Outcome.CONFORMS
 
 
 def test_all_missions_that_are_queued_may_be_sent_at_once() -> None:
-    """AI-11 b is what Robot Identification says, so it is not flagged; one at a time is allowed as well."""
+    """AI-11 b is what Robot Identification says, but each mission preempts the one before: so it is flagged."""
     history = History().submit(1).submit(2).robot(1)
-    at_once = history.sends(1, 1).sends(1, 2).settles.judged(no_flagged=True)
+    at_once = history.sends(1, 1).sends(1, 2).settles.judged()
     assert at_once.outcome is Outcome.CONFORMS
-    assert at_once.readings["AI-11"] == ("b",)
+    assert [one.reading for one in at_once.flagged] == ["AI-11=b"]
     one = History().submit(1).submit(2).robot(1).sends(1, 1).settles.judged(no_flagged=True)
     assert one.outcome is Outcome.CONFORMS

@@ -11,7 +11,6 @@ AI_10 = Ambiguity(
     "How does a status say which mission it is about?",
     {"a": "it does not: there is one mission at a time", "b": "by the mission's uuid in the payload"},
     default="b",
-    flagged=frozenset("a"),
     rule="a-status-is-about-its-mission",
 )
 AI_15_MISSION = Ambiguity(

@@ -150,6 +150,7 @@ AI_11 = Ambiguity(
     "How many missions is a robot sent at a time?",
     {"a": "one", "b": "all that are ready", "c": "one on each channel"},
     default="a",
+    flagged=frozenset("b"),
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_12 = Ambiguity(

@@ -249,7 +249,7 @@ def test_the_numbers_are_those_of_the_command_line(explorers: Explorers, open_pa
     """The page says what `explore` prints, and within which bounds; where it holds less than that, it says so."""
     told = missionfsm("explore", "isaac.robot", "--missions", 1, "--batch", 1).out.splitlines()[0]
     counts = told.partition(": ")[2]
-    assert counts.startswith("24 states in 24 situations")
+    assert counts.startswith("13 states in 13 situations")
     shown = open_page(explorers["isaac.robot"]).page.locator("#bounds").inner_text()
     assert shown.startswith(f"{counts}, within the bounds size 1, goals 2, batch 1. What is tried")
     held = open_page(explorers["bear.mission"]).page.locator("#bounds").inner_text()

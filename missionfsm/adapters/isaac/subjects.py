@@ -246,7 +246,7 @@ class ServerSubject(_InProcess):
                 found.append(Notification("closed", {"connection": effect.connection}))
             elif isinstance(effect, Send):
                 bare = self.profile.header_uuid_as_numbers
-                line = _line(effect.payload, effect.channel, self._now, self._fresh(), bare=bare)
+                line = _line(effect.payload, effect.channel, self._now, effect.header or self._fresh(), bare=bare)
                 found.append(Notification("line", {"connection": effect.connection, "line": line}))
         return tuple(found)
 

@@ -254,7 +254,8 @@ class TcpMissionServer:
     def _send(self, effect: Send) -> None:
         connection = self._connections.get(effect.connection)
         if connection is not None:
-            message = stamp(effect.payload, effect.channel, pubtime=time.time_ns(), uuid=fresh_uuid())
+            uuid = effect.header or fresh_uuid()
+            message = stamp(effect.payload, effect.channel, pubtime=time.time_ns(), uuid=uuid)
             connection.send(encode(message, header_uuid_as_numbers=self._settings.profile.header_uuid_as_numbers))
 
 

@@ -94,12 +94,16 @@ class Refused:
 
 @attrs.frozen
 class Send:
-    """The mission goes to the robot on this connection, on this channel; the adapter stamps the header."""
+    """The mission goes to the robot on this connection, on this channel; the adapter stamps the header.
+
+    The uuid in the header is `header`, or a fresh one.
+    """
 
     connection: int
     channel: str
     payload: MissionProto
     mission: Uuid
+    header: Uuid | None = None
 
 
 @attrs.frozen

@@ -39,7 +39,7 @@ class Profile:
     - ``ai_09`` a status after the end is (a) ignored, (b) believed if final, (c) believed if final and the first after
       an abort. What was decided downstream stays decided
     - ``ai_10`` a status belongs to (a) the mission it names, or, naming none, the robot's latest on that channel,
-      (b) the mission it names, (c) the mission its header names
+      (b) the mission it names, (c) the mission its header names, as the header of a mission does then
     - ``ai_11`` a robot is sent (a) one mission at a time, (b) all that are ready, (c) one at a time per channel
     - ``ai_12`` a mission that waits for upstreams (a) is overtaken, (b) holds up those behind it
     - ``ai_13`` of several that are ready (a) the first submitted goes, (b) any does: here the last submitted

@@ -345,8 +345,9 @@ class Scheduler:
         mission.in_flight = mission.was_sent = True
         mission.connection = connection
         lane.sent[mission.uuid] = mission
+        header = mission.attempt if profile.ai_10 == "c" else None
         self.effects.append(
-            Send(connection.id, request.channel, MissionProto(mission.attempt, request.config), mission.uuid)
+            Send(connection.id, request.channel, MissionProto(mission.attempt, request.config), mission.uuid, header)
         )
         self.change(mission, Status.STARTED)
         if profile.ai_05 == "a":

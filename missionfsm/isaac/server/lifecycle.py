@@ -118,8 +118,9 @@ def _doomed(move: Move, before: Move, index: int) -> Moves:
 
 
 def _held(move: Move, index: int, kind: str) -> Move:
-    """A mission that was queued has ended, and it is left open how."""
-    after = move.with_mission(index, overdue=True)
+    """A mission that was queued has ended, and it is left open how: clocks that cannot be over yet are none of it."""
+    clocks = tuple(one for one in move.state.missions[index].clocks if one.lo <= move.at[1])
+    after = move.with_mission(index, overdue=True, clocks=clocks)
     return after.to(after.state, _because(kind))
 
 

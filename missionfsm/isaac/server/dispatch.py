@@ -71,7 +71,7 @@ def lapses(state: Server, link: Link) -> list[Move]:
     if letters not in ("p", "h", "ph"):
         return []
     first = _maybe_first(state, link)
-    queue = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued]
+    queue = _waiting_for(state.missions, link.name)
     sure = [] if _is_in_no_order(state, queue) else queue[:1]
     return [one for at in first if letters == "p" or [at] != sure for one in _lapsed(Move(state), link, at)]
 
@@ -113,7 +113,7 @@ def _lapsed(move: Move, link: Link, index: int | None) -> list[Move]:
     """A doomed mission is cancelled that is the first in the queue of an idle robot; None: whichever is."""
     state = move.state
     if index is None:
-        queue = [at for at, one in enumerate(state.missions) if one.robot == link.name and one.queued]
+        queue = _waiting_for(state.missions, link.name)
         index = None if not queue or _is_in_no_order(state, queue) else queue[0]
     if index is None or not state.missions[index].doomed or busy(state, link):
         return []
@@ -238,7 +238,12 @@ def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple
 def _queue(state: Server, link: Link) -> list[int]:
     """The missions that wait for the robot of a connection, or (AI-19 b) for any."""
     whose = (link.name, None) if "b" in state.letters(AI_19) else (link.name,)
-    return [index for index, one in enumerate(state.missions) if one.robot in whose and one.queued]
+    return _waiting_for(state.missions, *whose)
+
+
+def _waiting_for(missions: tuple[Mission, ...], *robots: str | None) -> list[int]:
+    """The missions that wait for robots, in the order of submission; None is for any robot."""
+    return [index for index, one in enumerate(missions) if one.robot in robots and one.queued]
 
 
 def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
@@ -259,7 +264,7 @@ def makes_no_difference(state: Server, index: int, clock: Clock, until: int) -> 
     if not mission.queued or clock.kind not in (START, RUN, DOOM) or mission.robot is None or mission.sent:
         return False
     if not _is_blocked(state, mission.robot, mission.channel, until):
-        queue = [at for at, one in enumerate(missions) if one.robot == mission.robot and one.queued]
+        queue = _waiting_for(missions, mission.robot)
         if any(index in _first_ready(missions, lane) for lane in (queue, *_lanes(missions, queue))):
             return False
         if _holds_up(state, index):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from attrs import evolve
 
 from missionfsm.adapters.addresses import Addresses
-from missionfsm.adapters.historyfile import Lines, called, early_answers, fingerprint, is_plain_file, wrong_line
+from missionfsm.adapters.historyfile import Lines, called, fingerprint, wrong_line
 from missionfsm.app.asked import Asked, judged_system
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.oracle.automaton import Automaton
@@ -23,6 +23,12 @@ from missionfsm.tools.explore.undriven import missed_without
 
 Lost = Mapping[str | None, frozenset[int]]
 """For each robot the ids of the calls that are never answered."""
+
+Early = Callable[[bool], Mapping[str | None, int] | None]
+"""Says how many answers a file has to calls from before it, for each robot; None where nobody knows.
+
+It is told whether the params of a call may say for which robot it is.
+"""
 
 SECOND_PATIENCE = 2_000
 """How many explanations an event may cost in the second reading of a file, before the first verdict stands."""
@@ -65,13 +71,13 @@ class Judges:
         asked: how the file is to be judged.
         lost: the calls that are never answered; None: not known yet.
         keep: how many lines are kept to be shown. If none, lines that come again are recognised by their text.
-        path: the file that they are read from.
+        early: asked of a file that begins anywhere.
 
     Raises:
         UnreadableError: that is no first line.
     """
 
-    def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int, path: str) -> None:
+    def __init__(self, line: JSON, asked: Asked, lost: Lost | None, keep: int, early: Early) -> None:
         first = head(line)
         self._head = first = evolve(
             first,
@@ -95,8 +101,7 @@ class Judges:
         self._no_flagged = asked.no_flagged
         self._lost = lost
         self._keep = keep
-        reread = first.anywhere and is_plain_file(path)
-        self._early = early_answers(path, by_params=self.system.codec.robot_in_params) if reread else None
+        self._early = early(self.system.codec.robot_in_params) if first.anywhere else None
         self._nobody = self._new(None)
         self._texts = Texts(self._nobody.transcript, fingerprint)
         self._judges: dict[str | None, Judge] = {}

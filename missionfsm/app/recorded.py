@@ -16,6 +16,7 @@ from missionfsm.adapters.historyfile import (
     STDIN,
     Lines,
     called,
+    early_answers,
     is_plain_file,
     lines,
     lost_calls,
@@ -167,6 +168,7 @@ def _judged(
         source: where it is read from; None: the file.
     """
     source = open_history(path) if source is None else source
+    early = functools.cache(functools.partial(_early_answers, path))
     parts: list[Judges] = []
     try:
         texts = Lines(source, path)
@@ -184,7 +186,7 @@ def _judged(
         following: tuple[int, JSON] | None = (number, line)
         while following is not None:
             with placed(path, following[0]):
-                judges = Judges(following[1], asked, lost, keep, path)
+                judges = Judges(following[1], asked, lost, keep, early)
             parts.append(judges)
             following = judges.read(path, texts, numbered)
     finally:
@@ -211,6 +213,11 @@ def _refuse_other_beginnings(line: JSON) -> None:
     if isinstance(line, dict) and "missionfsm" not in line:
         message = f"the first line has to be {FIRST_LINE}, or a message of a subscription, as all others then"
         raise UnreadableError(message)
+
+
+def _early_answers(path: str, by_params: bool) -> Mapping[str | None, int] | None:  # noqa: FBT001 - `Early` has it so
+    """How many answers a file has to calls from before it, for each robot; None where it can be read only once."""
+    return early_answers(path, by_params=by_params) if is_plain_file(path) else None
 
 
 def _is_bare_message(line: JSON) -> bool:

@@ -25,15 +25,13 @@ LOG_01 = Ambiguity(
     "LOG-01",
     "Did something from before the log, or on its way when it began, take effect?",
     {"a": "no", "b": "yes, what no line of the log brought about"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 LOG_02 = Ambiguity(
     "LOG-02",
     "Did somebody act whose calls are not in the log?",
     {"a": "no", "b": "yes, another client or somebody at the touchscreen"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 MIDDLE = (LOG_01, LOG_02)
 """Both, in the order of their numbers."""

@@ -45,6 +45,10 @@ class Assumption:
         return f"{self.ambiguity.id}={'|'.join(self.letters)}"
 
 
+def _letters(letters: Iterable[str]) -> frozenset[str]:
+    return frozenset(letters)
+
+
 @frozen(eq=False)
 class Ambiguity:
     """A question that the documents leave open.
@@ -53,8 +57,9 @@ class Ambiguity:
         id: the entry, such as ``AM-09``; an entry with several questions has one ambiguity for each (``AM-14.paused``).
         question: what is asked, in one line.
         readings: letter to answer, in our own words.
-        default: the letter that the reference model follows.
-        flagged: letters that are accepted, but depart from the letter of the text; a verdict says so.
+        default: the letter that the reference model follows: the first, where nothing else is said.
+        flagged: letters that are accepted, but depart from the letter of the text; a verdict says so. One text of them
+            will do: ``"bc"``.
         alike: what parts of one entry have in common that ask the same question, with the same letters, in calls that
             look alike (``AM-01.create`` and ``AM-01.append``); None for a question that is asked once. Whoever reads
             such parts differently is explained, and the verdict says that it is incoherent.
@@ -67,16 +72,20 @@ class Ambiguity:
     id: str
     question: str
     readings: Mapping[str, str]
-    default: str
-    flagged: frozenset[str] = frozenset()
+    default: str = field()
+    flagged: frozenset[str] = field(default=frozenset(), converter=_letters)
     alike: str | None = None
     rule: str = ""
-    json_only: frozenset[str] = frozenset()
+    json_only: frozenset[str] = field(default=frozenset(), converter=_letters)
     _bit: Mapping[str, int] = field(init=False, repr=False)
     _made: dict[int, Assumption] = field(init=False, repr=False, factory=dict)
     _named: dict[str | tuple[str, ...], Assumption] = field(init=False, repr=False, factory=dict)
     group: int = field(init=False, repr=False)
     """The bits of all its readings."""
+
+    @default.default
+    def _first(self) -> str:
+        return next(iter(self.readings), "")
 
     def __attrs_post_init__(self) -> None:
         if not {self.default} | self.flagged | self.json_only <= self.readings.keys():
@@ -129,26 +138,28 @@ class Ambiguity:
         return tuple(letter for letter, bit in self._bit.items() if assumed & bit)
 
 
-def asked_of_each(
+def asked_of_each(  # noqa: PLR0913 - every one but the first four has a default
     entry: str,
     question: str,
     readings: Mapping[str, str],
-    default: str,
     parts: Mapping[str, str] | Iterable[str],
     flagged: str = "",
     *,
+    default: str = "",
     alike: bool = True,
+    rule: str = "",
 ) -> Mapping[str, Ambiguity]:
     """One ambiguity for each part of a question, such as each call: nothing that is written ties one to another.
 
     Args:
         entry: the id, to which each part adds its name: ``AM-01.CreateMission``.
         question: what is asked, with `{}` for the part.
-        readings: as those of an `Ambiguity`, like the arguments after it.
-        default: the letter that the reference model follows.
+        readings: as those of an `Ambiguity`.
         parts: the name of each part to the words for it; just the names where these are the words.
         flagged: letters that depart from the letter of the text.
+        default: the letter that the reference model follows: the first, where nothing else is said.
         alike: whether different answers to different parts are more often wrong than free.
+        rule: the rule that is broken by whoever reads a part now so and now otherwise.
     """
     words = parts if isinstance(parts, Mapping) else {part: part for part in parts}
     return {
@@ -156,9 +167,10 @@ def asked_of_each(
             f"{entry}.{part}",
             question.format(text),
             readings,
-            default,
-            frozenset(flagged),
+            default or next(iter(readings)),
+            flagged,
             alike=entry if alike and len(words) > 1 else None,
+            rule=rule,
         )
         for part, text in words.items()
     }

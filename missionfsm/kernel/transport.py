@@ -25,7 +25,7 @@ from missionfsm.kernel.spec import Failure, Spec
 
 def _reading(number: int, question: str, happened: str) -> Ambiguity:
     readings = {"a": "no", "b": happened}
-    return Ambiguity(f"TR-{number:02}", question, readings, default="a", flagged=frozenset("b"))
+    return Ambiguity(f"TR-{number:02}", question, readings, default="a", flagged="b")
 
 
 TR_01 = _reading(

@@ -186,9 +186,9 @@ def test_unflagged_leaves_what_the_text_says() -> None:
 
 def test_a_question_that_is_asked_of_each_part_has_an_ambiguity_for_each() -> None:
     """Each part has its name in the id and its words in the question; several are alike, unless that is not meant."""
-    rooms = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", {"hall": "great hall", "attic": "attic"})
-    lone = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", ("hall",), flagged="a")
-    free = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, "a", ("hall", "attic"), alike=False)
+    rooms = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, {"hall": "great hall", "attic": "attic"})
+    lone = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, ("hall",), flagged="a")
+    free = asked_of_each("R-5", "Which lamp in the {}?", {"a": "red"}, ("hall", "attic"), alike=False)
     assert [(part, one.id, one.question, one.alike) for part, one in rooms.items()] == [
         ("hall", "R-5.hall", "Which lamp in the great hall?", "R-5"),
         ("attic", "R-5.attic", "Which lamp in the attic?", "R-5"),

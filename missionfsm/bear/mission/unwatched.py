@@ -22,8 +22,7 @@ LOG_03 = Ambiguity(
     "LOG-03",
     "Did other robots take or leave goals with no line of the log that says so?",
     {"a": "no", "b": "yes, so that a NavigateAuto mission found others free"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 UNWATCHED = Unwatched(LOG_03, lambda world: evolve(world, unwatched=True))
 

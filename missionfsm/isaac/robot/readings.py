@@ -21,59 +21,51 @@ AI_15_MISSION = Ambiguity(
         "b": "it is given up without a word",
         "c": "it fails, which is told once the connection is there again",
     },
-    default="a",
     rule="nothing-is-said-without-a-connection",
 )
 AI_15_STATUS = Ambiguity(
     "AI-15.status",
     "What becomes of a status that is due while there is no connection?",
     {"a": "it is lost", "b": "it is sent once the connection is there again"},
-    default="a",
     rule="nothing-is-said-without-a-connection",
 )
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a mission understood whose 64-bit integers are numbers instead of strings?",
     {"a": "yes, both are", "b": "no, strings only: it is no message", "c": "no: it is a mission that fails"},
-    default="a",
     rule="a-mission-starts-the-behavior-tree",
 )
 AI_25_HEADER = Ambiguity(
     "AI-25.header",
     "How are the halves of the header's uuid sent?",
     {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
-    default="s",
-    flagged=frozenset("n"),
+    flagged="n",
     rule="64-bit-integers-are-strings",
 )
 AI_27_TYPE = Ambiguity(
     "AI-27.type",
     "What is a message of another type on the mission channel?",
     {"a": "nothing to the codelet", "b": "a mission without a configuration: only the channel counts"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="what-is-no-mission-has-no-effect",
 )
 AI_27_UUID = Ambiguity(
     "AI-27.uuid",
     "Whose is the uuid in a header?",
     {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="a-line-is-one-message",
 )
 AI_27_TAKEN = Ambiguity(
     "AI-27.taken",
     "Is a mission understood whose header has no type id, or an unsigned one?",
     {"a": "yes", "b": "no, it is no message", "c": "no: it is a mission that fails"},
-    default="a",
     rule="a-mission-starts-the-behavior-tree",
 )
 AI_28_TAKEN = Ambiguity(
     "AI-28.taken",
     "What is a mission whose configuration is JSON itself instead of a text that holds it?",
     {"a": "one with that configuration", "b": "one whose configuration cannot be used", "c": "no message"},
-    default="a",
     rule="a-mission-starts-the-behavior-tree",
 )
 AI_28_STATUS = Ambiguity(
@@ -81,18 +73,17 @@ AI_28_STATUS = Ambiguity(
     "How is a status written?",
     {"c": "by its name in capitals", "d": "by its name in lower case", "e": "by its number"},
     default="d",
-    flagged=frozenset("e"),
+    flagged="e",
     rule="a-line-is-one-message",
 )
 _TICK = {"a": "at once", "b": "on the codelet's own tick"}
 AI_31_END = Ambiguity(
-    "AI-31.end", "When is the final status sent?", _TICK, default="a", alike="AI-31", rule="one-success-at-the-end"
+    "AI-31.end", "When is the final status sent?", _TICK, alike="AI-31", rule="one-success-at-the-end"
 )
 AI_31_PREEMPTED = Ambiguity(
     "AI-31.preempted",
     "When is the FAILURE of a preempted mission sent?",
     _TICK,
-    default="a",
     alike="AI-31",
     rule="a-new-mission-preempts",
 )
@@ -100,7 +91,6 @@ AI_31_UNUSABLE = Ambiguity(
     "AI-31.unusable",
     "When is the FAILURE of a mission sent whose configuration cannot be used?",
     _TICK,
-    default="a",
     alike="AI-31",
     rule="an-unusable-configuration-fails-the-mission",
 )
@@ -108,31 +98,27 @@ AI_31_IDLE = Ambiguity(
     "AI-31.idle",
     "What is it where the behavior tree stops while no mission runs?",
     {"a": "it does not happen: a mission starts the tree", "b": "nothing to the codelet"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="a-mission-starts-the-behavior-tree",
 )
 AI_32_SAME = Ambiguity(
     "AI-32.same",
     "What is a MissionProto with the uuid of the mission that runs?",
     {"a": "a mission that preempts it, like any other", "b": "nothing: that mission runs already"},
-    default="a",
     rule="a-new-mission-preempts",
 )
 AI_33_NULL = Ambiguity(
     "AI-33.null",
     "What is a configuration that is null?",
     {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
-    default="a",
-    flagged=frozenset("c"),
+    flagged="c",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_BLANK = Ambiguity(
     "AI-33.blank",
     "What is a configuration that is an empty text?",
     {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
-    default="a",
-    flagged=frozenset("c"),
+    flagged="c",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_VALUE = Ambiguity(
@@ -143,8 +129,7 @@ AI_33_VALUE = Ambiguity(
         "b": "one with nothing to set",
         "c": "a reason to pass over the mission",
     },
-    default="a",
-    flagged=frozenset("c"),
+    flagged="c",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_NODE = Ambiguity(
@@ -155,8 +140,7 @@ AI_33_NODE = Ambiguity(
         "b": "one that cannot be used, as in the shipped software: the mission fails",
         "c": "a reason to pass over the mission",
     },
-    default="a",
-    flagged=frozenset("c"),
+    flagged="c",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNKNOWN = Ambiguity(
@@ -167,8 +151,7 @@ AI_33_UNKNOWN = Ambiguity(
         "b": "one that cannot be used: the mission fails",
         "c": "a reason to pass over the mission",
     },
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_UNUSABLE = Ambiguity(
@@ -179,15 +162,13 @@ AI_33_UNUSABLE = Ambiguity(
         "b": "it runs with the configuration as it is",
         "c": "it is passed over, and nothing is said of it",
     },
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
     rule="an-unusable-configuration-fails-the-mission",
 )
 AI_33_RUNNING = Ambiguity(
     "AI-33.running",
     "Is RUNNING said of a mission whose configuration cannot be used?",
     {"a": "no, only FAILURE", "b": "yes, before the FAILURE"},
-    default="a",
     rule="an-unusable-configuration-fails-the-mission",
 )
 _PREEMPTS = {"a": "it is preempted all the same", "b": "it goes on"}
@@ -195,7 +176,6 @@ AI_33_PREEMPTS = Ambiguity(
     "AI-33.preempts",
     "What becomes of a mission that runs when one comes whose configuration is no JSON?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -203,7 +183,6 @@ AI_33_PREEMPTS_NULL = Ambiguity(
     "AI-33.preempts-null",
     "What becomes of a mission that runs when one comes that does not run since its configuration is null?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -211,7 +190,6 @@ AI_33_PREEMPTS_BLANK = Ambiguity(
     "AI-33.preempts-blank",
     "What becomes of a mission that runs when one comes that does not run since its configuration is an empty text?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -219,7 +197,6 @@ AI_33_PREEMPTS_VALUE = Ambiguity(
     "AI-33.preempts-value",
     "What becomes of a mission that runs when one comes that does not run since its configuration is no object?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -227,7 +204,6 @@ AI_33_PREEMPTS_NODE = Ambiguity(
     "AI-33.preempts-node",
     "What becomes of a mission that runs when one comes that does not run since something in it is no node?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -235,7 +211,6 @@ AI_33_PREEMPTS_UNKNOWN = Ambiguity(
     "AI-33.preempts-unknown",
     "What becomes of a mission that runs when one comes that does not run since its nodes are unknown?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )
@@ -243,7 +218,6 @@ AI_33_PREEMPTS_WRITTEN = Ambiguity(
     "AI-33.preempts-written",
     "What becomes of a mission that runs when one comes that fails since it is written otherwise?",
     _PREEMPTS,
-    default="a",
     alike="AI-33.preempts",
     rule="a-new-mission-preempts",
 )

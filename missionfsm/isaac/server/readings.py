@@ -14,7 +14,6 @@ AI_02_CANCELED = Ambiguity(
     "AI-02.canceled",
     "How is a mission called that was cancelled?",
     {"a": "canceled", "b": "failed"},
-    default="a",
 )
 AI_02_ABORTED = Ambiguity(
     "AI-02.aborted",
@@ -30,8 +29,7 @@ AI_03 = Ambiguity(
         "b": "only what a robot reported; after others the mission waits for ever",
         "c": "all but cancellations; after those the mission waits for ever",
     },
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
     rule="a-failed-upstream-cancels",
 )
 AI_03_WHEN = Ambiguity(
@@ -43,28 +41,24 @@ AI_03_WHEN = Ambiguity(
         "p": "in a scheduling pass in which it heads the queue of a robot that is there and idle",
         "h": "as soon as it heads the queue of a robot that is there and idle",
     },
-    default="n",
-    flagged=frozenset("ph"),
+    flagged="ph",
     rule="a-failed-upstream-cancels",
 )
 AI_04 = Ambiguity(
     "AI-04",
     "What is a submitted mission that waits for upstreams?",
     {"a": "QUEUED", "b": "CREATED"},
-    default="a",
 )
 AI_04_ROBOT = Ambiguity(
     "AI-04.robot",
     "What is a submitted mission whose robot is not there?",
     {"q": "QUEUED", "r": "CREATED"},
-    default="q",
 )
 AI_04_SENT = Ambiguity(
     "AI-04.sent",
     "What is a mission that was sent and not acknowledged?",
     {"s": "STARTED", "t": "QUEUED"},
-    default="s",
-    flagged=frozenset("t"),
+    flagged="t",
     rule="every-mission-is-shown-with-its-status",
 )
 AI_05 = Ambiguity(
@@ -76,8 +70,7 @@ AI_05 = Ambiguity(
         "c": "from when its upstreams have succeeded",
         "d": "from when its robot is connected",
     },
-    default="a",
-    flagged=frozenset("bcd"),
+    flagged="bcd",
     rule="start-timeout-aborts",
 )
 AI_06 = Ambiguity(
@@ -89,8 +82,7 @@ AI_06 = Ambiguity(
         "c": "from its submission",
         "d": "from when the mission is sent, though it aborts only what was acknowledged",
     },
-    default="a",
-    flagged=frozenset("c"),
+    flagged="c",
     rule="/timeout-aborts",
 )
 AI_07 = Ambiguity(
@@ -101,8 +93,7 @@ AI_07 = Ambiguity(
         "b": "RUNNING only; a final status before it is not heard",
         "c": "that it could be sent",
     },
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
     rule="a-final-status-ends-the-mission",
 )
 AI_08 = Ambiguity(
@@ -114,16 +105,14 @@ AI_08 = Ambiguity(
         "d": "nothing, and it is sent no other mission until it has said how that one ended",
         "e": "nothing; if it has said that it runs that one, it is sent no other until it has said how that ended",
     },
-    default="a",
-    flagged=frozenset("cde"),
+    flagged="cde",
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_09 = Ambiguity(
     "AI-09",
     "What is a final status worth that comes after the end?",
     {"a": "nothing", "b": "the last one counts", "c": "the first after an abort counts"},
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
     rule="an-ended-mission-stays-ended",
 )
 AI_10 = Ambiguity(
@@ -135,42 +124,36 @@ AI_10 = Ambiguity(
         "c": "only by the identifier in its header",
         "d": "by its channel alone: it is about the robot's current one there",
     },
-    default="a",
-    flagged=frozenset("cd"),
+    flagged="cd",
     rule="a-final-status-ends-the-mission",
 )
 AI_10_FROM = Ambiguity(
     "AI-10.from",
     "On which connections is a status heard that names its mission?",
     {"r": "on that of its robot, or the one that it was sent on", "w": "on any"},
-    default="r",
 )
 AI_11 = Ambiguity(
     "AI-11",
     "How many missions is a robot sent at a time?",
     {"a": "one", "b": "all that are ready", "c": "one on each channel"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_12 = Ambiguity(
     "AI-12",
     "Does a mission that waits for upstreams hold up those behind it?",
     {"a": "no, they overtake it", "b": "yes"},
-    default="a",
 )
 AI_13 = Ambiguity(
     "AI-13",
     "Which of several missions that are ready goes first?",
     {"a": "the one that was submitted first", "b": "any"},
-    default="a",
 )
 AI_14_STATUS = Ambiguity(
     "AI-14.status",
     "On which channel are the statuses of a mission that names only its channel?",
     {"a": '"mission_status"', "b": "its channel's name with _status appended"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="running-acknowledges",
 )
 AI_15 = Ambiguity(
@@ -194,7 +177,6 @@ AI_15_WHEN = Ambiguity(
         "r": "once the robot is back",
         "g": "after a while, unless the robot is back before: then it goes on",
     },
-    default="n",
 )
 AI_16 = Ambiguity(
     "AI-16",
@@ -206,14 +188,12 @@ AI_16 = Ambiguity(
         "n": "the one that said the name later",
         "s": "both: each is given what comes next",
     },
-    default="a",
-    flagged=frozenset("s"),
+    flagged="s",
 )
 AI_16_OLDER = Ambiguity(
     "AI-16.older",
     "Another connection becomes the robot: what of the one that was it?",
     {"v": "it is kept", "w": "it is closed"},
-    default="v",
 )
 AI_16_UNDER_WAY = Ambiguity(
     "AI-16.under-way",
@@ -251,7 +231,6 @@ AI_17 = Ambiguity(
         "b": "the connection is that robot's from then on",
         "d": "it closes the connection",
     },
-    default="a",
 )
 AI_17_UNDER_WAY = Ambiguity(
     "AI-17.under-way",
@@ -263,20 +242,18 @@ AI_18_EARLY = Ambiguity(
     "AI-18.early",
     "What becomes of a status that comes before the name?",
     {"a": "it is ignored", "b": "it is kept until the name is known"},
-    default="a",
 )
 AI_18_UNNAMED = Ambiguity(
     "AI-18.unnamed",
     "What becomes of a connection that says no name?",
     {"c": "it is kept", "d": "it is closed after a time"},
-    default="c",
 )
 AI_19 = Ambiguity(
     "AI-19",
     "What becomes of a mission without a robot?",
     {"a": "it is never sent", "b": "any robot gets it", "c": "it is refused"},
     default="c",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AI_20_KEYS = Ambiguity(
     "AI-20.keys", "Is a mission with an unknown key refused?", {"a": "yes", "c": "no, the key is ignored"}, default="c"
@@ -285,7 +262,6 @@ AI_20_NULL = Ambiguity(
     "AI-20.null",
     "What is a field that is null?",
     {"a": "of the wrong type: the mission is refused", "c": "left out"},
-    default="a",
 )
 AI_20_EMPTY = Ambiguity(
     "AI-20.empty", "Is a mission with an empty channel refused?", {"a": "yes", "c": "no"}, default="c"
@@ -304,11 +280,10 @@ AI_22_STARTED = Ambiguity(
         "i": "as good as failed, as in the shipped software",
         "j": "waited for, and then as good as failed, however it ended",
     },
-    default="a",
-    flagged=frozenset("ij"),
+    flagged="ij",
     rule="a-failed-upstream-cancels",
 )
-AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"}, default="a")
+AI_24 = Ambiguity("AI-24", "What is a timeout of 0?", {"a": "one that has elapsed at once", "b": "none"})
 AI_24_WHOLE = Ambiguity(
     "AI-24.whole",
     "When has a timeout elapsed?",
@@ -316,55 +291,47 @@ AI_24_WHOLE = Ambiguity(
         "x": "as soon as that much time has passed",
         "w": "in the first scheduling pass in which more whole seconds of less than a day have passed",
     },
-    default="x",
-    flagged=frozenset("w"),
+    flagged="w",
     rule="timeout-aborts",
 )
 AI_25_TAKEN = Ambiguity(
     "AI-25.taken",
     "Is a message understood whose 64-bit integers are numbers instead of strings?",
     {"a": "yes, both are", "b": "no, strings only"},
-    default="a",
 )
 AI_25_HEADER = Ambiguity(
     "AI-25.header",
     "How are the halves of the header's uuid sent?",
     {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
-    default="s",
-    flagged=frozenset("n"),
+    flagged="n",
     rule="64-bit-integers-are-strings",
 )
 AI_26 = Ambiguity(
     "AI-26",
     "What does a line do that cannot be read?",
     {"e": "it is skipped", "f": "its connection is closed"},
-    default="e",
 )
 AI_26_BLANK = Ambiguity(
     "AI-26.blank",
     "What does a line do on which nothing stands?",
     {"e": "nothing", "f": "its connection is closed, as by one that cannot be read"},
-    default="e",
 )
 AI_27_UUID = Ambiguity(
     "AI-27.uuid",
     "Whose is the uuid in a header?",
     {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
     rule="a-line-is-one-message",
 )
 AI_27_TAKEN = Ambiguity(
     "AI-27.taken",
     "Is a message understood whose header has no type id, or an unsigned one?",
     {"a": "yes", "b": "no, it is no message"},
-    default="a",
 )
 AI_28_TAKEN = Ambiguity(
     "AI-28.taken",
     "Is a status understood that is in capitals, or a number?",
     {"a": "yes", "b": "no, only a name in lower case is"},
-    default="a",
 )
 AI_28_CONFIG = Ambiguity(
     "AI-28.config",
@@ -377,77 +344,67 @@ AI_28_UUID = Ambiguity(
     "AI-28.uuid",
     "Does a MissionProto say which mission it is?",
     {"y": "yes, its payload has the mission's uuid", "n": "no"},
-    default="y",
-    flagged=frozenset("n"),
+    flagged="n",
     rule="a-line-is-one-message",
 )
 AI_29 = Ambiguity(
     "AI-29",
     "When may the server end, and its connections with it?",
     {"d": "once its missions are done, however they ended", "s": "at any time, as one that is stopped does"},
-    default="d",
-    flagged=frozenset("s"),
+    flagged="s",
 )
 AI_31 = Ambiguity(
     "AI-31",
     "Is a mission lost whose robot stops reporting RUNNING?",
     {"a": "yes, after some time", "b": "no"},
     default="b",
-    flagged=frozenset("a"),
+    flagged="a",
     rule="silence-is-no-loss",
 )
 AI_33_NULL = Ambiguity(
-    "AI-33.null", "What is a configuration that is null?", {"a": "an empty one", "b": "a reason to refuse"}, default="a"
+    "AI-33.null", "What is a configuration that is null?", {"a": "an empty one", "b": "a reason to refuse"}
 )
 AI_36 = Ambiguity(
     "AI-36",
     "When is a mission cancelled that waits for other upstreams too?",
     {"a": "at once", "b": "when they have ended as well"},
-    default="a",
 )
 AI_37 = Ambiguity(
     "AI-37",
     "How is the text taken that a robot says as its name?",
     {"a": "exactly", "b": "without the space around it"},
-    default="a",
 )
 AI_37_EMPTY = Ambiguity(
     "AI-37.empty",
     "What is a text that is empty, said as a name?",
     {"d": "nothing: the name is still waited for", "n": "the connection's name, which is no robot's"},
-    default="d",
 )
 AI_38 = Ambiguity(
     "AI-38",
     "What does a message of a type do that does not travel as JSON?",
     {"a": "it is skipped", "d": "its connection is closed"},
-    default="a",
-    flagged=frozenset("d"),
+    flagged="d",
     rule="what-means-nothing-has-no-effect",
 )
 AI_39 = Ambiguity(
     "AI-39",
     "When is a mission sent that can be, and when is a timeout noticed?",
     {"a": "at once", "b": "when the server looks, about once a second"},
-    default="a",
 )
 AI_39_FAILED = Ambiguity(
     "AI-39.failed",
     "When does a server that sends at once send the next mission to a robot that has just reported a failure?",
     {"a": "at once", "b": "up to a second later"},
-    default="a",
 )
 AI_39_LIMITS = Ambiguity(
     "AI-39.limits",
     "When does a server notice a timeout that sends at once?",
     {"a": "at once", "b": "when it looks, about once a second"},
-    default="a",
 )
 AI_39_REPORTS = Ambiguity(
     "AI-39.reports",
     "When does a server that looks about once a second show what a robot has reported?",
     {"a": "at once", "b": "when it looks"},
-    default="a",
 )
 AI_39_ORDER = Ambiguity(
     "AI-39.order",
@@ -456,7 +413,6 @@ AI_39_ORDER = Ambiguity(
         "n": "first it takes up names and drops",
         "s": "first it sends: to a name that it takes up then in the next pass, on a connection that dropped in vain",
     },
-    default="n",
 )
 
 AMBIGUITIES = declared(globals(), Ambiguity)

@@ -9,8 +9,7 @@ AM_37_PAUSED = Ambiguity(
     "AM-37.paused",
     "Does a paused mission forbid ChargeRobot?",
     {"a": "yes", "b": "no, charging waits behind it"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_37_QUEUED = asked_of_each(
     "AM-37.queued",
@@ -21,7 +20,6 @@ AM_37_QUEUED = asked_of_each(
         "c": "no, charging comes first",
         "o": "no, charging comes first, though it is listed behind them",
     },
-    "a",
     WAITING,
 )
 AM_38_DOCK = Ambiguity(
@@ -34,8 +32,7 @@ AM_38_DOCK = Ambiguity(
         "d": "UNIMPLEMENTED",
         "g": "INVALID_ARGUMENT",
     },
-    default="a",
-    flagged=frozenset("cdg"),
+    flagged="cdg",
 )
 DOCK, LOCATION = "dock", "location"
 AM_38_BUSY = {
@@ -43,7 +40,6 @@ AM_38_BUSY = {
         f"AM-38.{state}",
         f"{words} and {{}}: what does ChargeRobot answer?",
         {"e": "FAILED_PRECONDITION", "f": "what it answers for what is missing"},
-        "e",
         {DOCK: "the robot has no contact dock", LOCATION: "the map has no charging location"},
     )
     for state, words in (
@@ -55,5 +51,4 @@ AM_40 = Ambiguity(
     "AM-40",
     "May charging be paused?",
     {"a": "yes, it is a mission like others", "c": "no, FAILED_PRECONDITION"},
-    default="a",
 )

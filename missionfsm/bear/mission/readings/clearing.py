@@ -9,7 +9,6 @@ AM_33 = asked_of_each(
     "AM-33",
     "What does ClearMissionStatus answer {}?",
     {"a": "OK without ids", "b": "FAILED_PRECONDITION", "c": "INVALID_ARGUMENT"},
-    "a",
     {"fresh": "a robot that never had a mission", "cleared": "when nothing is listed any more"},
     flagged="c",
 )

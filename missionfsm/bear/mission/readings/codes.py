@@ -15,28 +15,24 @@ AM_01 = asked_of_each(
         "b": "FAILED_PRECONDITION: the state is checked first, of what can be decoded at all",
         "c": "shape, then state, then goals and map",
     },
-    "a",
     (*CREATING, *APPENDING, *FIELDLESS),
 )
 AM_01_BLOCKED = asked_of_each(
     "AM-01.blocked",
     "{}: a request is malformed and the robot unable to start a mission: which code?",
     AM_01["CreateMission"].readings,
-    "a",
     CREATING,
 )
 AM_02_QUEUED = Ambiguity(
     "AM-02.queued",
     "UpdateMission names a waiting mission while no mission is active: which code?",
     {"a": "NOT_FOUND", "b": "FAILED_PRECONDITION"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_02_ENDED = asked_of_each(
     "AM-02.ended",
     "UpdateMission names a listed mission that has ended, {}: which code?",
     {"a": "FAILED_PRECONDITION", "b": "NOT_FOUND", "d": "INVALID_ARGUMENT"},
-    "a",
     _WHILE,
     alike=False,
 )
@@ -44,7 +40,6 @@ AM_02_CLEARED = asked_of_each(
     "AM-02.cleared",
     "UpdateMission names a mission that is not listed any more, {}: which code?",
     {"a": "INVALID_ARGUMENT", "b": "NOT_FOUND", "e": "FAILED_PRECONDITION"},
-    "a",
     _WHILE,
     alike=False,
 )
@@ -60,14 +55,13 @@ AM_02_UNKNOWN = {
         f"UpdateMission names a mission that never was, {_WHILE[BUSY]}: which code?",
         AM_02_CLEARED[BUSY].readings,
         default="a",
-        flagged=frozenset("e"),
+        flagged="e",
     ),
 }
 AM_03 = asked_of_each(
     "AM-03",
     "UpdateMission, {}: which code?",
     {"a": "FAILED_PRECONDITION", "b": "NOT_FOUND", "c": "INVALID_ARGUMENT"},
-    "a",
     {
         "fresh": "on a robot that never had a mission",
         "unknown": "on a robot that lists no mission any more, of one that never was",
@@ -79,7 +73,6 @@ AM_04 = asked_of_each(
     "AM-04",
     "UpdateMission has an invalid command and {}: which is answered?",
     {"a": "the command", "b": "the id: the code that it gets with a valid command"},
-    "a",
     {
         f"{which}-{when}": f"names {whose} mission, {_WHILE[when]}"
         for which, whose in (("queued", "a waiting"), ("ended", "an ended"), ("cleared", "a past"), ("unknown", "no"))
@@ -91,5 +84,4 @@ AM_04_NO_ID = Ambiguity(
     "AM-04.no-id",
     "UpdateMission does not say readably which mission it is about, and none is active: which is answered?",
     {"a": "the format: INVALID_ARGUMENT", "c": "the state: FAILED_PRECONDITION"},
-    default="a",
 )

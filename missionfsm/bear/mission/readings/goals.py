@@ -15,7 +15,6 @@ AM_41 = asked_of_each(
         "c": "OK, and the mission fails when it is started",
         "d": "OK, and the mission fails on the way",
     },
-    "a",
     (*BATCHES, "CreateMission", "AppendMission"),
     flagged="cd",
 )
@@ -27,7 +26,6 @@ AM_43 = asked_of_each(
         "b": "the mission is accepted and fails when it is started",
         "d": "the mission is accepted and fails on the way",
     },
-    "a",
     (*CREATING, *APPENDING),
     flagged="bd",
 )
@@ -35,27 +33,23 @@ AM_43_LEFT = Ambiguity(
     "AM-43.left",
     "What becomes of a mission under way of which a goal leaves the map?",
     {"a": "it goes on", "e": "it may fail", "p": "the goal is passed over; where none is left, the mission fails"},
-    default="a",
 )
 AM_44 = asked_of_each(
     "AM-44",
     "{}: may a goal occur twice in one mission?",
     {"a": "yes", "i": "no, INVALID_ARGUMENT"},
-    "a",
     (*CREATING, *APPENDING),
 )
 AM_44_AUTOMATIC = asked_of_each(
     "AM-44.automatic",
     "{}: may a goal occur twice in the list of a NavigateAuto mission?",
     {"a": "yes", "i": "no, INVALID_ARGUMENT"},
-    "a",
     (*BATCHES, "CreateMission", "AppendMission"),
 )
 AM_45_NONE = asked_of_each(
     "AM-45.none",
     "What does {} do when no goal is free?",
     {"a": "it waits, running", "b": "it fails", "d": "it takes the first goal"},
-    "a",
     missions_of(kind for kind in Kind if kind in AUTOMATIC),
 )
 AM_45_REFUSED = asked_of_each(
@@ -66,7 +60,6 @@ AM_45_REFUSED = asked_of_each(
         "c": "yes, INVALID_ARGUMENT or FAILED_PRECONDITION",
         "s": "yes, INVALID_ARGUMENT or FAILED_PRECONDITION, where it would start at once",
     },
-    "a",
     (*BATCHES, "CreateMission", "AppendMission"),
 )
 AM_45_WHEN = asked_of_each(
@@ -78,6 +71,6 @@ AM_45_WHEN = asked_of_each(
         "j": "when it starts, and again on the way",
         "o": "when it starts, and again where another robot takes its goal",
     },
-    "i",
     missions_of(kind for kind in Kind if kind in AUTOMATIC),
+    default="i",
 )

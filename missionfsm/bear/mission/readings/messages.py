@@ -10,80 +10,69 @@ AM_08 = Ambiguity(
     "AM-08",
     "Which state does a waiting mission report?",
     {"a": "STATE_DEFAULT", "b": "STATE_UNKNOWN or none", "c": "STATE_PAUSED, if the index does not point at it"},
-    default="a",
-    flagged=frozenset("bc"),
+    flagged="bc",
 )
 AM_14_ENDED = Ambiguity(
     "AM-14.ended",
     "What is current_mission_index when nothing is active and nothing waits?",
     {"a": "-1", "b": "the last mission's"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_14_GAP = Ambiguity(
     "AM-14.gap",
     "What is current_mission_index when nothing is active but a mission is about to start?",
     {"c": "-1", "d": "the mission before", "e": "the next mission"},
-    default="c",
-    flagged=frozenset("de"),
+    flagged="de",
 )
 AM_14_HALTED = Ambiguity(
     "AM-14.halted",
     "What is current_mission_index when nothing is active and missions wait in a halted queue?",
     AM_14_GAP.readings,
     default="c",
-    flagged=frozenset("de"),
+    flagged="de",
 )
 AM_35 = Ambiguity(
     "AM-35",
     "What does a subscriber see after a clear?",
     {"a": "no missions", "c": "one unnamed mission in STATE_DEFAULT"},
-    default="a",
 )
 AM_36 = Ambiguity(
     "AM-36",
     "What is the first message of a robot that never had a mission?",
     {"a": "no missions", "b": "one unnamed mission in STATE_DEFAULT", "c": "none, until there is a mission"},
-    default="a",
 )
 AM_47_SKIP = Ambiguity(
     "AM-47.skip",
     "Is every change a message?",
     {"a": "yes", "b": "no, only the latest state is sure to be sent"},
-    default="a",
 )
 AM_47_REPEAT = Ambiguity(
     "AM-47.repeat",
     "May a message repeat the one before?",
     {"a": "no", "c": "yes"},
-    default="a",
 )
 AM_49 = Ambiguity(
     "AM-49.timestamp",
     "Does every message say when it was recorded?",
     {"a": "yes", "b": "no, the timestamp may be absent"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_50_SHAPE = Ambiguity(
     "AM-50.shape",
     "Is the feedback of a Servi or Carti mission a message or a bare enum?",
     {"a": "a message with a status", "b": "a bare enum, which only JSON can say"},
-    default="a",
-    json_only=frozenset("b"),
+    json_only="b",
 )
 AM_50_MEMBER = Ambiguity(
     "AM-50.member",
     "Which feedback does a base mission of a Servi or Carti robot report?",
     {"c": "that of the mission's kind", "d": "that of the robot's family"},
-    default="c",
-    flagged=frozenset("d"),
+    flagged="d",
 )
 AM_51 = asked_of_each(
     "AM-51",
     "Which mission_type does {} of a Servi or Carti robot report?",
     {"a": "base_type", "b": "the type of the robot's family"},
-    "a",
     missions_of((Kind.BASE_NAVIGATE, Kind.BASE_NAVIGATE_AUTO)),
     flagged="b",
 )
@@ -91,15 +80,13 @@ AM_52 = Ambiguity(
     "AM-52.change",
     "May a mission that is listed change its owner?",
     {"a": "no", "b": "yes"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_54 = {
     **asked_of_each(
         "AM-54",
         "Is what {} makes seen all at once?",
         {"a": "yes", "b": "no, it may be seen growing"},
-        "a",
         BATCHES,
         flagged="b",
     ),
@@ -107,6 +94,5 @@ AM_54 = {
         "AM-54.CreateMissionWorkflow",
         "Are the missions of a workflow seen all at once?",
         {"a": "yes", "b": "no, they may be seen growing"},
-        default="a",
     ),
 }

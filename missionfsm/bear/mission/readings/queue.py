@@ -9,8 +9,7 @@ AM_06 = Ambiguity(
     "AM-06",
     "Does a paused mission forbid CreateMissionBatch?",
     {"a": "yes, paused counts as running", "b": "no, the batch waits behind it"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_07 = asked_of_each(
     "AM-07",
@@ -22,7 +21,6 @@ AM_07 = asked_of_each(
         "r": "no, the workflow replaces the queue",
         "v": "yes, with INVALID_ARGUMENT: it does not fit the robot's state",
     },
-    "a",
     WAITING,
     flagged="v",
 )
@@ -36,16 +34,14 @@ AM_09 = Ambiguity(
     "AM-09",
     "What becomes of the queue when the active mission is cancelled?",
     _QUEUE_AFTER_CANCEL,
-    default="a",
-    flagged=frozenset("d"),
+    flagged="d",
     alike="AM-09",
 )
 AM_09_SKIP = Ambiguity(
     "AM-09.skip",
     "What becomes of the queue when skipping the last goal cancels the active mission?",
     _QUEUE_AFTER_CANCEL,
-    default="a",
-    flagged=frozenset("d"),
+    flagged="d",
     alike="AM-09",
 )
 _QUEUE_AFTER_FAILURE = {**_QUEUE_AFTER_CANCEL, "e": "the waiting missions fail too"}
@@ -53,30 +49,26 @@ AM_10 = Ambiguity(
     "AM-10",
     "What becomes of the queue when the active mission fails?",
     _QUEUE_AFTER_FAILURE,
-    default="a",
-    flagged=frozenset("d"),
+    flagged="d",
     alike="AM-10",
 )
 AM_10_START = Ambiguity(
     "AM-10.start",
     "What becomes of the queue when a mission fails as it is to start?",
     _QUEUE_AFTER_FAILURE,
-    default="a",
-    flagged=frozenset("d"),
+    flagged="d",
     alike="AM-10",
 )
 AM_11 = asked_of_each(
     "AM-11",
     "May {} be called when all listed missions have ended?",
     {"a": "yes, and what it appends starts", "b": "no, FAILED_PRECONDITION"},
-    "a",
     APPENDING,
 )
 AM_12_PAUSED = asked_of_each(
     "AM-12.paused",
     "May {} be called while the active mission is paused?",
     {"a": "yes", "b": "no, FAILED_PRECONDITION"},
-    "a",
     APPENDING,
     flagged="b",
 )
@@ -84,7 +76,6 @@ AM_12_HALTED = asked_of_each(
     "AM-12.halted",
     "What does {} do to a halted queue?",
     {"a": "the mission waits with the others", "b": "FAILED_PRECONDITION", "c": "it sets the queue going again"},
-    "a",
     APPENDING,
     flagged="b",
 )
@@ -92,6 +83,5 @@ AM_13 = asked_of_each(
     "AM-13",
     "What becomes of ended missions when {} creates new ones?",
     {"a": "they stay listed", "b": "the new ones replace them"},
-    "a",
     (*CREATING, "ChargeRobot"),
 )

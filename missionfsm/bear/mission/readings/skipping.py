@@ -10,8 +10,7 @@ AM_16 = Ambiguity(
     "AM-16",
     "May a goal of a paused mission be skipped?",
     {"a": "no, FAILED_PRECONDITION", "b": "yes, and it stays paused"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 _AT_THE_LAST = {
     "a": "the mission succeeds",
@@ -23,7 +22,6 @@ AM_17_LAST = asked_of_each(
     "AM-17.last",
     "What does skipping the last goal of {} do?",
     _AT_THE_LAST,
-    "a",
     missions_of(kind for kind in Kind if kind not in PATROLS | GOALLESS),
 )
 LOOPS = PATROLS - {Kind.SERVI_HOSTING_PATROL}
@@ -36,16 +34,15 @@ AM_17_PATROL = {
         "AM-17.patrol",
         "What does skipping the last goal of {} do?",
         {**_AT_THE_LAST, "f": "it goes on at the first goal"},
-        "f",
         missions_of(kind for kind in Kind if kind in kinds),
         flagged,
+        default="f",
     ).items()
 }
 AM_18 = asked_of_each(
     "AM-18",
     "What does skipping the goal of {} do?",
     {"a": "it takes the next free goal", "b": "it takes the next goal, free or not", "c": "it was the last goal"},
-    "a",
     missions_of(kind for kind in Kind if kind in AUTOMATIC),
 )
 AM_19 = Ambiguity("AM-19.charge", "What does skipping do while charging?", _AT_THE_LAST, default="b")

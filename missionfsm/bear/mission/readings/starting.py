@@ -13,20 +13,18 @@ _UNABLE_FIRST = {
     "t": "OK, or DEADLINE_EXCEEDED",
 }
 AM_53 = {
-    **asked_of_each("AM-53", _UNABLE, _UNABLE_FIRST, "a", ("CreateMission", "ChargeRobot"), flagged="i", alike=False),
+    **asked_of_each("AM-53", _UNABLE, _UNABLE_FIRST, ("CreateMission", "ChargeRobot"), flagged="i", alike=False),
     "CreateMissionWorkflow": Ambiguity(
         "AM-53.CreateMissionWorkflow",
         _UNABLE.format("CreateMissionWorkflow"),
         {**_UNABLE_FIRST, "v": "INVALID_ARGUMENT: the workflow does not fit the robot's state"},
-        default="a",
-        flagged=frozenset("iv"),
+        flagged="iv",
     ),
-    **asked_of_each("AM-53", _UNABLE, {"b": "OK", "t": "OK, or DEADLINE_EXCEEDED"}, "b", APPENDING, alike=False),
+    **asked_of_each("AM-53", _UNABLE, {"b": "OK", "t": "OK, or DEADLINE_EXCEEDED"}, APPENDING, alike=False),
     "CreateMissionBatch": Ambiguity(
         "AM-53.CreateMissionBatch",
         _UNABLE.format("CreateMissionBatch"),
         {"a": "FAILED_PRECONDITION", "t": "FAILED_PRECONDITION, or DEADLINE_EXCEEDED"},
-        default="a",
     ),
 }
 QUEUE = "queue"
@@ -34,14 +32,12 @@ AM_53_THEN = asked_of_each(
     "AM-53.then",
     "What becomes of {}, while the robot is unable to start a mission?",
     {"p": "it waits", "f": "it may fail", "s": "it starts all the same"},
-    "p",
     {QUEUE: "a mission whose turn it is", **{call: f"a first mission that {call} makes" for call in ADDING}},
 )
 AM_63 = asked_of_each(
     "AM-63",
     "Is the first mission that {} makes seen before it runs?",
     {"a": "no, it is running at once", "b": "yes, waiting at first"},
-    "a",
     ADDING,
     alike=False,
 )

@@ -9,14 +9,12 @@ AM_58 = asked_of_each(
     "AM-58",
     "{}: is a request with an unknown field malformed?",
     {"a": "no, the field is ignored", "b": "yes, INVALID_ARGUMENT"},
-    "a",
     EVERY_CALL,
 )
 AM_58_SENT = asked_of_each(
     "AM-58.sent",
     "Do {} have fields that are not documented?",
     {"a": "no", "b": "yes"},
-    "a",
     ("answers", "messages"),
     flagged="b",
     alike=False,
@@ -25,6 +23,5 @@ AM_61 = Ambiguity(
     "AM-61",
     "May codes of the transport and of authentication come that no table lists?",
     {"a": "no", "b": "yes"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )

@@ -8,7 +8,6 @@ AM_29 = asked_of_each(
     "AM-29",
     "What does {} answer?",
     {"a": "FAILED_PRECONDITION", "b": "OK, and nothing changes"},
-    "a",
     {"pause": "pausing a paused mission", "resume": "resuming a running mission"},
     flagged="b",
 )
@@ -16,26 +15,22 @@ AM_30 = Ambiguity(
     "AM-30",
     "When does a finished mission succeed?",
     {"a": "at once", "b": "at its current goal"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_31 = Ambiguity(
     "AM-31",
     "May a paused mission be finished?",
     {"a": "yes", "b": "no, FAILED_PRECONDITION"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_64 = Ambiguity(
     "AM-64.goals",
     "Where does a resumed mission go on?",
     {"a": "at its goal", "b": "at its first goal"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AM_64_AUTOMATIC = Ambiguity(
     "AM-64.automatic",
     "Where does a resumed NavigateAuto mission go on?",
     {"a": "at its goal", "c": "it selects again"},
-    default="a",
 )

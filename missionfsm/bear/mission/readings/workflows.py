@@ -16,7 +16,6 @@ AM_25 = asked_of_each(
         "d": "one for each goal and a return",
         "x": "others, among which the goals of the request stand in their order",
     },
-    "a",
     {part_of(kind): kind.value for kind in WORKFLOWS},
     alike=False,
 )
@@ -28,7 +27,6 @@ AM_26 = {
         f"AM-26.{part_of(kind).removeprefix('servi-')}",
         f"Which servi_type does a {kind.value.removeprefix('servi ')} workflow report?",
         {"a": "SERVI_TYPE_UNKNOWN or none", "b": "a number that is not documented", "c": "a documented type"},
-        default="a",
     )
     for kind in UNNAMED
 }
@@ -36,7 +34,6 @@ AM_27 = asked_of_each(
     "AM-27",
     "Is the automatically selected return point among the goals of a {} workflow's mission?",
     {"a": "no, the goals are those of the request", "b": "yes, it follows them"},
-    "a",
     {part_of(kind): kind.value for kind in WORKFLOWS},
     alike=False,
 )

@@ -15,7 +15,6 @@ AS_01 = asked_of_each(
         "b": "the account's own robots are served, the others left out",
         "c": "the account's own robots are served until the stream ends with PERMISSION_DENIED",
     },
-    "a",
     SUBSCRIPTIONS,
     flagged="bc",
 )
@@ -23,7 +22,6 @@ AS_02 = asked_of_each(
     "AS-02",
     "{}: which code does a robot id get that no robot has?",
     {"a": "PERMISSION_DENIED, as somebody else's", "b": "NOT_FOUND"},
-    "a",
     CALLS,
     flagged="b",
 )
@@ -31,14 +29,12 @@ AS_03_UNKNOWN = asked_of_each(
     "AS-03.unknown",
     "{}: which code does a location get that does not exist?",
     {"a": "NOT_FOUND", "b": "PERMISSION_DENIED"},
-    "a",
     SUBSCRIPTIONS,
 )
 AS_03_EMPTY = asked_of_each(
     "AS-03.empty",
     "{}: what is answered for an own location at which no robot is?",
     {"c": "NOT_FOUND", "d": "a stream on which nothing comes"},
-    "c",
     SUBSCRIPTIONS,
     flagged="d",
 )
@@ -46,7 +42,6 @@ AS_03_OTHERS = asked_of_each(
     "AS-03.others",
     "{}: what is answered for an own location at which only robots of somebody else are?",
     {"c": "NOT_FOUND", "d": "a stream on which nothing comes", "g": "PERMISSION_DENIED"},
-    "c",
     SUBSCRIPTIONS,
     flagged="d",
 )
@@ -54,7 +49,6 @@ AS_03_MIXED = asked_of_each(
     "AS-03.mixed",
     "{}: what is answered for an own location at which own robots are and some of somebody else?",
     {"h": "the account's own robots are served", "g": "PERMISSION_DENIED"},
-    "h",
     SUBSCRIPTIONS,
     flagged="g",
 )
@@ -62,7 +56,6 @@ AS_03_SERVED = asked_of_each(
     "AS-03.served",
     "{}: does the stream of an own location show somebody else's robots that are there?",
     {"h": "no, the account's own alone", "s": "yes, all robots at the location"},
-    "h",
     SUBSCRIPTIONS,
     flagged="s",
 )
@@ -70,7 +63,6 @@ AS_03_FOREIGN = asked_of_each(
     "AS-03.foreign",
     "{}: which code does somebody else's location get?",
     {"e": "PERMISSION_DENIED", "f": "NOT_FOUND"},
-    "e",
     SUBSCRIPTIONS,
     flagged="f",
 )
@@ -78,7 +70,6 @@ AS_03_VACANT = asked_of_each(
     "AS-03.vacant",
     "{}: which code does somebody else's location get at which no robot is?",
     {"e": "PERMISSION_DENIED", "f": "NOT_FOUND"},
-    "e",
     SUBSCRIPTIONS,
 )
 AS_04 = asked_of_each(
@@ -89,7 +80,6 @@ AS_04 = asked_of_each(
         "b": "the location is followed, the later field of the two",
         "e": "the robot ids are followed, the earlier field of the two",
     },
-    "a",
     SUBSCRIPTIONS,
     flagged="be",
 )
@@ -98,7 +88,6 @@ AS_04_BLANK: Mapping[str, Mapping[str, Ambiguity]] = {
         f"AS-04.blank-{arm}",
         f"{{}}: a selector has {says}: what is answered?",
         {"a": "INVALID_ARGUMENT", "z": "the other one is followed, since what is empty is not set"},
-        "a",
         SUBSCRIPTIONS,
     )
     for arm, says in (
@@ -112,14 +101,12 @@ AS_05 = asked_of_each(
     "AS-05",
     "{}: a selector names a robot twice: what is answered?",
     {"a": "the robot is selected once", "c": "INVALID_ARGUMENT"},
-    "a",
     SUBSCRIPTIONS,
 )
 AS_06_EMPTY = asked_of_each(
     "AS-06.empty",
     "{}: an id among the robot ids is empty: which code?",
     {"a": "INVALID_ARGUMENT", "b": "PERMISSION_DENIED, as any id that is not the account's"},
-    "a",
     SUBSCRIPTIONS,
 )
 _ORDERS: Mapping[str, tuple[tuple[str, ...], str]] = {
@@ -135,7 +122,6 @@ AS_06_ORDER: Mapping[str, Mapping[str, Ambiguity]] = {
         f"AS-06.order.{situation}",
         f"{{}}: {says}: which code?",
         {"a": "INVALID_ARGUMENT: the form is checked first", "b": "the other: whose robots they are is checked first"},
-        "a",
         calls,
     )
     for situation, (calls, says) in _ORDERS.items()
@@ -152,7 +138,6 @@ AS_06_FIELD: Mapping[str, Mapping[str, Ambiguity]] = {
         f"AS-06.field.{level}",
         f"{{}}: is a request invalid where {says} has a field that is not documented?",
         {"a": "no, the field is ignored", "b": "yes, INVALID_ARGUMENT"},
-        "a",
         calls,
     )
     for level, (calls, says) in _LEVELS.items()
@@ -163,14 +148,12 @@ AS_06_LIST = asked_of_each(
     "AS-06.list",
     "{}: robot_ids is a bare list of ids, as in the page's example: is such a request invalid?",
     {"a": "yes, INVALID_ARGUMENT: it is no RobotIDs", "b": "no, those are the ids"},
-    "a",
     SUBSCRIPTIONS,
 )
 AS_34 = asked_of_each(
     "AS-34",
     "{}: may codes of the transport and of authentication come that no table lists?",
     {"a": "no", "b": "yes"},
-    "a",
     CALLS,
     flagged="b",
 )

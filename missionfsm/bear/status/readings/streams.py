@@ -9,8 +9,8 @@ AS_08 = asked_of_each(
     "AS-08.update",
     "{}: does an update of a map bring the robots that have not changed as well?",
     {"c": "yes, with the numbers that they had", "d": "no"},
-    "d",
     (ERRORS, NETWORK, ONLINE),
+    default="d",
 )
 AS_12_HYBRID = Ambiguity(
     "AS-12.hybrid",
@@ -26,7 +26,6 @@ AS_12_EVENT = asked_of_each(
     "AS-12.event",
     "{}: may a stream in event mode repeat what it showed last, under a new number?",
     {"a": "no", "b": "yes"},
-    "a",
     (BATTERY, ERRORS, NAVIGATION, NETWORK, ONLINE),
     flagged="b",
 )
@@ -34,7 +33,6 @@ AS_13_FIELDS = asked_of_each(
     "AS-13.fields",
     "{}: which changes are streamed?",
     {"a": "those of every field", "b": "those of its field `state` for sure"},
-    "a",
     (BATTERY, NAVIGATION),
     flagged="b",
 )
@@ -42,21 +40,19 @@ AS_13_SKIP = asked_of_each(
     "AS-13.skip",
     "{}: is every change a message?",
     {"c": "no, only the latest state is sure to be sent", "d": "yes"},
-    "d",
     SUBSCRIPTIONS,
+    default="d",
 )
 AS_13_SIGNAL = Ambiguity(
     "AS-13.signal",
     f"{NETWORK}: are changes of the Wi-Fi signal alone streamed?",
     {"a": "all of them", "b": "some of them"},
-    default="a",
-    flagged=frozenset("b"),
+    flagged="b",
 )
 AS_13_THROTTLE = asked_of_each(
     "AS-13.throttle",
     f"{{}}: does {ROBOT} stream a change of this part alone?",
     {"a": "always", "b": "sometimes"},
-    "a",
     ("pose", "twist"),
 )
 AS_25 = asked_of_each(
@@ -69,10 +65,9 @@ AS_25 = asked_of_each(
         "d": "those that were there at its start, and perhaps those that have come since",
         "e": "those that were there at its start, until they leave; with the last one it ends, NOT_FOUND",
     },
-    "a",
     SUBSCRIPTIONS,
     flagged="de",
 )
 AS_26 = asked_of_each(
-    "AS-26", "{}: may a stream just end, without an error?", {"a": "no", "b": "yes"}, "a", SUBSCRIPTIONS, flagged="b"
+    "AS-26", "{}: may a stream just end, without an error?", {"a": "no", "b": "yes"}, SUBSCRIPTIONS, flagged="b"
 )

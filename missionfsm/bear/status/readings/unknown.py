@@ -15,13 +15,11 @@ AS_07 = Ambiguity(
         "b": "INTERNAL",
         "c": "DISCONNECTED and nothing else",
     },
-    default="a",
 )
 AS_07_UNKNOWN = Ambiguity(
     "AS-07.unknown",
     "What does GetRobotStatus answer for a robot of which nothing is known?",
     {"a": "a state without values", "b": "INTERNAL"},
-    default="a",
 )
 AS_09_OFFLINE = asked_of_each(
     "AS-09.offline",
@@ -31,7 +29,6 @@ AS_09_OFFLINE = asked_of_each(
         "b": "nothing, until the robot is back",
         "c": "UNKNOWN values",
     },
-    "a",
     (BATTERY, ERRORS, NAVIGATION, ROBOT),
     flagged="c",
 )
@@ -50,7 +47,6 @@ AS_09_GONE = {
         f"AS-09.gone.{call}",
         f"{call}: what does a new stream show first of an offline robot of which nothing is known that it could show?",
         _NOTHING_KNOWN,
-        default="b",
     )
     for call in (BATTERY, ERRORS, NAVIGATION, ROBOT)
 }
@@ -62,7 +58,6 @@ AS_09_PART: Mapping[str, Mapping[str, Ambiguity]] = {
         f"AS-09.part.{part}",
         f"{{}}: how does the state of a robot show its {part} if that is not reported?",
         {**_UNREPORTED, "e": "as STATE_DISCONNECTED"} if part == "connection" else _UNREPORTED,
-        "a",
         STATES,
     )
     for part in ("connection", "battery", "emergency_stop", "error_codes", "navigation_state")
@@ -85,11 +80,9 @@ AS_27_OFFLINE = Ambiguity(
     "AS-27.offline",
     f"What does {NETWORK} tell of a robot that is offline?",
     _NETWORKS,
-    default="a",
 )
 AS_27_UNKNOWN = Ambiguity(
     "AS-27.unknown",
     f"What does {NETWORK} tell of a robot whose connection is not known?",
     _NETWORKS,
-    default="a",
 )

@@ -10,7 +10,6 @@ AS_14 = asked_of_each(
     "AS-14.timestamp",
     "{}: does every message say when it was recorded?",
     {"a": "yes", "b": "no, the timestamp may be absent"},
-    "a",
     SUBSCRIPTIONS,
     flagged="b",
 )
@@ -18,34 +17,30 @@ AS_15_FULL = Ambiguity(
     "AS-15.full",
     "What charge does a full battery have, in percent?",
     {"a": "100", "b": "95 or more"},
-    default="a",
 )
 AS_17_ZERO = asked_of_each(
     "AS-17.zero",
     "{}: is the velocity of a robot that stands sent?",
     {"a": "yes, as zeros", "b": "no, it is left out"},
-    "a",
     STATES,
 )
 AS_17_OFFLINE = asked_of_each(
     "AS-17.offline",
     "{}: is the velocity of a robot that is offline sent?",
     {"c": "no", "d": "yes, the last one"},
-    "d",
     STATES,
+    default="d",
 )
 AS_18 = asked_of_each(
     "AS-18",
     "{}: may a stuck state be STATE_UNKNOWN?",
     {"a": "no", "b": "yes, of a robot of which nothing is known; the client is to treat it as an error"},
-    "a",
     (GET, NAVIGATION, ROBOT),
 )
 AS_19 = asked_of_each(
     "AS-19",
     "{}: may a reserved reason come?",
     {"a": "no, they are not emitted at present", "z": "yes"},
-    "a",
     (GET, NAVIGATION, ROBOT),
     flagged="z",
 )
@@ -53,7 +48,6 @@ AS_21 = asked_of_each(
     "AS-21",
     "{}: what is the mission in the state of a robot that has none?",
     {"a": "left out", "b": "an empty one in STATE_DEFAULT or STATE_UNKNOWN"},
-    "a",
     STATES,
 )
 AS_22 = {
@@ -64,9 +58,8 @@ AS_22 = {
             "a": "as on the Mission page",
             "b": "each inside an object with the one field `goal`, which only JSON can say",
         },
-        default="a",
         alike="AS-22",
-        json_only=frozenset("b"),
+        json_only="b",
     )
     for call in STATES
 }
@@ -74,21 +67,18 @@ AS_28 = asked_of_each(
     "AS-28",
     "{}: what becomes of a reading of the robot that is out of its documented range?",
     {"a": "the nearest value in the range is sent", "b": "it is dropped"},
-    "a",
     ("battery", "wifi"),
 )
 AS_29_EMPTY = asked_of_each(
     "AS-29.empty",
     "{}: how does the state of a robot show that no error is active?",
     {"c": "an empty list of codes", "d": "the error codes are left out"},
-    "c",
     STATES,
 )
 AS_32 = asked_of_each(
     "AS-32",
     "{}: is the state that only the robot's type has always in its state?",
     {"a": "yes, if the robot reports it", "b": "it may be left out"},
-    "a",
     STATES,
     flagged="b",
 )

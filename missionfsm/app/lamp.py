@@ -30,7 +30,7 @@ PAGE = Document("Lamp", "The lamp's manual")
 
 # What the page leaves open: the first reading is the one that the reference follows.
 
-DIM = Ambiguity("LA-01", "What does Dim do to a light that is dim?", {"a": "it is full again", "b": "nothing"}, "a")
+DIM = Ambiguity("LA-01", "What does Dim do to a light that is dim?", {"a": "it is full again", "b": "nothing"})
 
 
 @frozen

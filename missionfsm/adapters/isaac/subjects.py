@@ -22,7 +22,7 @@ from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
 from missionfsm.isaac.runtime.robot import Channels, RobotCore, RobotEffect, Transmit
 from missionfsm.isaac.runtime.server import MissionServerCore, elapse
 from missionfsm.isaac.wire import strictjson
-from missionfsm.isaac.wire.framing import Decoder, encode
+from missionfsm.isaac.wire.framing import Decoder, as_line
 from missionfsm.isaac.wire.messages import MissionStatusProto, Payload, TextProto, Uuid, stamp
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.rules import INVALID_ARGUMENT
@@ -33,7 +33,7 @@ _NANOSECONDS = 1_000_000_000
 
 def _line(payload: Payload, channel: str, now: float, uuid: Uuid, *, bare: bool = False) -> str:
     message = stamp(payload, channel, pubtime=round(now * _NANOSECONDS), uuid=uuid)
-    return encode(message, header_uuid_as_numbers=bare).decode().removesuffix("\n")
+    return as_line(message, header_uuid_as_numbers=bare)
 
 
 class _Identifiers:

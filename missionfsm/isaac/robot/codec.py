@@ -10,7 +10,7 @@ from missionfsm.isaac.robot.state import Introduction, Other, Report, World
 from missionfsm.isaac.shared.drives import ADVANCE, text_line
 from missionfsm.isaac.shared.line import from_json, is_garbled, is_untyped, new_uuid, part_of, see, see_other, uuid_name
 from missionfsm.isaac.wire import strictjson
-from missionfsm.isaac.wire.framing import decode_line, encode
+from missionfsm.isaac.wire.framing import as_json, as_line, decode_line
 from missionfsm.isaac.wire.messages import (
     TYPE_IDS,
     Header,
@@ -125,13 +125,12 @@ _CONFIGURATIONS = {USABLE: "{}", NULL: "null", BLANK: "", SHALLOW: '{"node":1}',
 def _essence(event: Arrives, names: tuple[Name, ...]) -> dict[str, JSON]:
     """Of a line that arrives the essence."""
     if event.foreign:
-        return {"line": encode(Message(Header(event.channel), TextProto(""))).decode().rstrip()}
+        return {"line": as_line(Message(Header(event.channel), TextProto("")))}
     if event.mission is None:
         return {"line": "{}"}
     uuid = Uuid.of(names[0][1]) if names else None  # type: ignore[index]
     config = '{"node":{"component":{}}}' if event.nodes else _CONFIGURATIONS[event.mission]
-    message = Message(Header(event.channel), MissionProto(uuid, config))
-    return {"line": encode(message).decode().removesuffix("\n")}
+    return {"line": as_line(Message(Header(event.channel), MissionProto(uuid, config)))}
 
 
 # Lines that the robot sends.
@@ -143,7 +142,7 @@ def write_message(
     """The line that shows a report, or the name; or something else."""
     time = round(at * 1e9)
     if isinstance(view, Other):
-        return encode(Message(Header(view.another, time, time), TextProto("ready"))).decode().removesuffix("\n")
+        return as_line(Message(Header(view.another, time, time), TextProto("ready")))
     statuses = [one.value for one in WireStatus]
     # An event may cause several messages, each with an identifier of its own: those differ in what they say or of what.
     says = 0 if isinstance(view, Introduction) else 1 + statuses.index(view.status)
@@ -153,10 +152,9 @@ def write_message(
     header = Header(view.channel, time, time, uuid if uuid and meet(choice, (AI_27_UUID["b"],)) else own)
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     if isinstance(view, Introduction):
-        named = encode(Message(header, TextProto(view.name or ANY_NAME)), header_uuid_as_numbers=bare)
-        return named.decode().removesuffix("\n")
+        return as_line(Message(header, TextProto(view.name or ANY_NAME)), header_uuid_as_numbers=bare)
     reported = Message(header, MissionStatusProto(uuid, WireStatus(view.status)))
-    message = json.loads(encode(reported, header_uuid_as_numbers=bare))
+    message = as_json(reported, header_uuid_as_numbers=bare)
     if meet(choice, (AI_28_STATUS["c"],)):
         message["payload"]["missionStatus"] = view.status.upper()
     elif meet(choice, (AI_28_STATUS["e"],)):

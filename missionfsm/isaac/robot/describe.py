@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.robot.inputs import CONFIGURATIONS, Arrives
+from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
 from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.language import Happening, Malformed
 
-_CONFIGURED = dict(
-    zip(
-        CONFIGURATIONS,
-        (
-            "a mission",
-            "a mission with the configuration null",
-            "a mission with an empty text as configuration",
-            "a mission with a configuration in which something is no node",
-            "a mission with a configuration that is no object",
-            "a mission with a configuration that is no JSON",
-        ),
-        strict=True,
-    )
-)
+_CONFIGURED = {
+    USABLE: "a mission",
+    NULL: "a mission with the configuration null",
+    BLANK: "a mission with an empty text as configuration",
+    SHALLOW: "a mission with a configuration in which something is no node",
+    ODD: "a mission with a configuration that is no object",
+    UNUSABLE: "a mission with a configuration that is no JSON",
+}
 _HAPPENS = {
     "behaviorSucceeded": "the behavior tree reports success",
     "behaviorFailed": "the behavior tree reports failure",

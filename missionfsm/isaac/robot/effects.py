@@ -187,7 +187,7 @@ def _read(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
     found = tuple(_mission(here, event, refs))
     for odd, question in ((event.numeric, readings.AI_25_TAKEN), (event.untyped, readings.AI_27_TAKEN)):
         if odd:
-            fails = _all(_fails(here, _unread(event), readings.AI_33_PREEMPTS_WRITTEN), (question["c"],))
+            fails = _all(_fails(here, _unread(event), readings.AI_33_PREEMPTS["preempts-written"]), (question["c"],))
             found = (*_all(found, (question["a"],)), evolve(ignored, assumes=(question["b"],)), *fails)
     if event.garbled:
         # What is not written as documented need not be treated alike twice: no sentence is about it.
@@ -224,16 +224,16 @@ class Doubt:
 
 
 _CONFIGURED: dict[str, Doubt] = {
-    NULL: Doubt(readings.AI_33_NULL, readings.AI_33_PREEMPTS_NULL),
-    BLANK: Doubt(readings.AI_33_BLANK, readings.AI_33_PREEMPTS_BLANK),
-    SHALLOW: Doubt(readings.AI_33_NODE, readings.AI_33_PREEMPTS_NODE),
-    ODD: Doubt(readings.AI_33_VALUE, readings.AI_33_PREEMPTS_VALUE, "b", "a"),
-    UNUSABLE: Doubt(readings.AI_33_UNUSABLE, readings.AI_33_PREEMPTS, "b", "a"),
+    NULL: Doubt(readings.AI_33_CONFIGURED["null"], readings.AI_33_PREEMPTS["preempts-null"]),
+    BLANK: Doubt(readings.AI_33_CONFIGURED["blank"], readings.AI_33_PREEMPTS["preempts-blank"]),
+    SHALLOW: Doubt(readings.AI_33_CONFIGURED["node"], readings.AI_33_PREEMPTS["preempts-node"]),
+    ODD: Doubt(readings.AI_33_CONFIGURED["value"], readings.AI_33_PREEMPTS["preempts-value"], "b", "a"),
+    UNUSABLE: Doubt(readings.AI_33_UNUSABLE, readings.AI_33_PREEMPTS["preempts"], "b", "a"),
 }
 """What may be wrong with a configuration."""
 
-_MISPLACED = Doubt(readings.AI_28_TAKEN, readings.AI_33_PREEMPTS_WRITTEN, no_message=True)
-_UNKNOWN = Doubt(readings.AI_33_UNKNOWN, readings.AI_33_PREEMPTS_UNKNOWN)
+_MISPLACED = Doubt(readings.AI_28_TAKEN, readings.AI_33_PREEMPTS["preempts-written"], no_message=True)
+_UNKNOWN = Doubt(readings.AI_33_CONFIGURED["unknown"], readings.AI_33_PREEMPTS["preempts-unknown"])
 
 
 def _doubts(event: Arrives) -> tuple[Doubt, ...]:
@@ -263,7 +263,7 @@ def _passed_over(here: Codelet, doubt: Doubt) -> Iterator[Step]:
     if doubt.no_message or not here.running:
         yield ignored
         return
-    due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True),)
+    due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True),)
     preempts = _concluded(here, here.moved("an unusable mission arrives"), None, due, (rules.PREEMPTS,))
     yield from _all(preempts, (doubt.preempts["a"],))
     yield evolve(ignored, assumes=(doubt.preempts["b"],))
@@ -280,7 +280,7 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     because: tuple[Rule, ...] = (rules.STARTS,)
     due: tuple[Due, ...] = ()
     if here.running:
-        due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True),)
+        due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True),)
         because = (rules.PREEMPTS, *because)
     elif here.used:
         because = (rules.LISTENS, *because)
@@ -296,14 +296,14 @@ def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[S
     preempted, kept = ((asked["a"],), (asked["b"],)) if asked else ((), ())
     new = NEW if event.named else None
     for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
-        failure = Due("failure", new, readings.AI_31_UNUSABLE, offered)
+        failure = Due("failure", new, readings.AI_31_SENT["unusable"], offered)
         if not here.running:
             after = evolve(here, named=False).moved("an unusable mission arrives")
             because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
             yield from _all(_concluded(here, after, None, (failure,), because), (said,))
             continue
         ended = here.moved("an unusable mission arrives")
-        due = (Due("failure", _old(here), readings.AI_31_PREEMPTED, offered=True), failure)
+        due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True), failure)
         preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
         yield from _all(preempts, (said, *preempted))
         goes_on = _concluded(here, here, _old(here), (failure,), (rules.UNUSABLE,))
@@ -323,7 +323,7 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
     if here.running:
-        due = (Due(status, _old(here), readings.AI_31_END, offered=True),)
+        due = (Due(status, _old(here), readings.AI_31_SENT["end"], offered=True),)
         ends = tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
     elif here.connected:
         ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)

@@ -7,21 +7,14 @@ from attrs import frozen
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.codec import Happening
 
-USABLE, NULL, BLANK, SHALLOW, ODD, UNUSABLE = CONFIGURATIONS = (
-    "usable",
-    "null",
-    "blank",
-    "shallow",
-    "odd",
-    "unusable",
-)
+USABLE, NULL, BLANK, SHALLOW, ODD, UNUSABLE = "usable", "null", "blank", "shallow", "odd", "unusable"
 """What a configuration is: an object of nodes; ``null``; an empty text; an object in which something is no node with
 components; any other JSON; no JSON."""
 
 
 @frozen(cache_hash=True)
 class Arrives:
-    """A line arrives: a mission with a configuration of one of the `CONFIGURATIONS`, or something else (None).
+    """A line arrives: a mission, by what its configuration is, or something else (None).
 
     Attributes:
         numeric: whether 64-bit integers in it are numbers.

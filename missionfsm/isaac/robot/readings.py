@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from missionfsm.kernel.readings import Ambiguity, declared
+from missionfsm.isaac.shared import readings as shared
+from missionfsm.kernel.readings import Ambiguity, asked_of_each, declared
 
 AI_10 = Ambiguity(
     "AI-10",
@@ -35,13 +36,7 @@ AI_25_TAKEN = Ambiguity(
     {"a": "yes, both are", "b": "no, strings only: it is no message", "c": "no: it is a mission that fails"},
     rule="a-mission-starts-the-behavior-tree",
 )
-AI_25_HEADER = Ambiguity(
-    "AI-25.header",
-    "How are the halves of the header's uuid sent?",
-    {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
-    flagged="n",
-    rule="64-bit-integers-are-strings",
-)
+AI_25_HEADER = shared.AI_25_HEADER
 AI_27_TYPE = Ambiguity(
     "AI-27.type",
     "What is a message of another type on the mission channel?",
@@ -49,13 +44,7 @@ AI_27_TYPE = Ambiguity(
     flagged="b",
     rule="what-is-no-mission-has-no-effect",
 )
-AI_27_UUID = Ambiguity(
-    "AI-27.uuid",
-    "Whose is the uuid in a header?",
-    {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
-    flagged="b",
-    rule="a-line-is-one-message",
-)
+AI_27_UUID = shared.AI_27_UUID
 AI_27_TAKEN = Ambiguity(
     "AI-27.taken",
     "Is a mission understood whose header has no type id, or an unsigned one?",
@@ -76,24 +65,22 @@ AI_28_STATUS = Ambiguity(
     flagged="e",
     rule="a-line-is-one-message",
 )
-_TICK = {"a": "at once", "b": "on the codelet's own tick"}
-AI_31_END = Ambiguity(
-    "AI-31.end", "When is the final status sent?", _TICK, alike="AI-31", rule="one-success-at-the-end"
-)
-AI_31_PREEMPTED = Ambiguity(
-    "AI-31.preempted",
-    "When is the FAILURE of a preempted mission sent?",
-    _TICK,
-    alike="AI-31",
-    rule="a-new-mission-preempts",
-)
-AI_31_UNUSABLE = Ambiguity(
-    "AI-31.unusable",
-    "When is the FAILURE of a mission sent whose configuration cannot be used?",
-    _TICK,
-    alike="AI-31",
-    rule="an-unusable-configuration-fails-the-mission",
-)
+AI_31_SENT = {
+    status: Ambiguity(
+        f"AI-31.{status}", question, {"a": "at once", "b": "on the codelet's own tick"}, alike="AI-31", rule=rule
+    )
+    for status, question, rule in (
+        ("end", "When is the final status sent?", "one-success-at-the-end"),
+        ("preempted", "When is the FAILURE of a preempted mission sent?", "a-new-mission-preempts"),
+        (
+            "unusable",
+            "When is the FAILURE of a mission sent whose configuration cannot be used?",
+            "an-unusable-configuration-fails-the-mission",
+        ),
+    )
+}
+"""By the status that is due."""
+
 AI_31_IDLE = Ambiguity(
     "AI-31.idle",
     "What is it where the behavior tree stops while no mission runs?",
@@ -107,53 +94,34 @@ AI_32_SAME = Ambiguity(
     {"a": "a mission that preempts it, like any other", "b": "nothing: that mission runs already"},
     rule="a-new-mission-preempts",
 )
-AI_33_NULL = Ambiguity(
-    "AI-33.null",
-    "What is a configuration that is null?",
-    {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
-    flagged="c",
-    rule="an-unusable-configuration-fails-the-mission",
+_USED, _FAILS, _PASSED = (
+    "one that can be used",
+    "one that cannot be used: the mission fails",
+    "a reason to pass over the mission",
 )
-AI_33_BLANK = Ambiguity(
-    "AI-33.blank",
-    "What is a configuration that is an empty text?",
-    {"a": "an empty one", "b": "one that cannot be used: the mission fails", "c": "a reason to pass over the mission"},
-    flagged="c",
-    rule="an-unusable-configuration-fails-the-mission",
-)
-AI_33_VALUE = Ambiguity(
-    "AI-33.value",
-    "What is a configuration that is JSON, but no object?",
-    {
-        "a": "one that cannot be used: the mission fails",
-        "b": "one with nothing to set",
-        "c": "a reason to pass over the mission",
-    },
-    flagged="c",
-    rule="an-unusable-configuration-fails-the-mission",
-)
-AI_33_NODE = Ambiguity(
-    "AI-33.node",
-    "What is a configuration in which something is no node with components?",
-    {
-        "a": "one that can be used",
-        "b": "one that cannot be used, as in the shipped software: the mission fails",
-        "c": "a reason to pass over the mission",
-    },
-    flagged="c",
-    rule="an-unusable-configuration-fails-the-mission",
-)
-AI_33_UNKNOWN = Ambiguity(
-    "AI-33.unknown",
-    "What is a configuration of nodes of which nobody says whether the robot has them?",
-    {
-        "a": "one that can be used",
-        "b": "one that cannot be used: the mission fails",
-        "c": "a reason to pass over the mission",
-    },
-    flagged="bc",
-    rule="an-unusable-configuration-fails-the-mission",
-)
+AI_33_CONFIGURED = {
+    what: Ambiguity(
+        f"AI-33.{what}",
+        f"What is a configuration {says}?",
+        dict(zip("abc", answers, strict=True)),
+        flagged=flagged,
+        rule="an-unusable-configuration-fails-the-mission",
+    )
+    for what, says, answers, flagged in (
+        ("null", "that is null", ("an empty one", _FAILS, _PASSED), "c"),
+        ("blank", "that is an empty text", ("an empty one", _FAILS, _PASSED), "c"),
+        ("value", "that is JSON, but no object", (_FAILS, "one with nothing to set", _PASSED), "c"),
+        (
+            "node",
+            "in which something is no node with components",
+            (_USED, "one that cannot be used, as in the shipped software: the mission fails", _PASSED),
+            "c",
+        ),
+        ("unknown", "of nodes of which nobody says whether the robot has them", (_USED, _FAILS, _PASSED), "bc"),
+    )
+}
+"""By what the configuration is."""
+
 AI_33_UNUSABLE = Ambiguity(
     "AI-33.unusable",
     "What becomes of a mission whose configuration is no JSON?",
@@ -171,54 +139,19 @@ AI_33_RUNNING = Ambiguity(
     {"a": "no, only FAILURE", "b": "yes, before the FAILURE"},
     rule="an-unusable-configuration-fails-the-mission",
 )
-_PREEMPTS = {"a": "it is preempted all the same", "b": "it goes on"}
-AI_33_PREEMPTS = Ambiguity(
-    "AI-33.preempts",
-    "What becomes of a mission that runs when one comes whose configuration is no JSON?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_NULL = Ambiguity(
-    "AI-33.preempts-null",
-    "What becomes of a mission that runs when one comes that does not run since its configuration is null?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_BLANK = Ambiguity(
-    "AI-33.preempts-blank",
-    "What becomes of a mission that runs when one comes that does not run since its configuration is an empty text?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_VALUE = Ambiguity(
-    "AI-33.preempts-value",
-    "What becomes of a mission that runs when one comes that does not run since its configuration is no object?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_NODE = Ambiguity(
-    "AI-33.preempts-node",
-    "What becomes of a mission that runs when one comes that does not run since something in it is no node?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_UNKNOWN = Ambiguity(
-    "AI-33.preempts-unknown",
-    "What becomes of a mission that runs when one comes that does not run since its nodes are unknown?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
-    rule="a-new-mission-preempts",
-)
-AI_33_PREEMPTS_WRITTEN = Ambiguity(
-    "AI-33.preempts-written",
-    "What becomes of a mission that runs when one comes that fails since it is written otherwise?",
-    _PREEMPTS,
-    alike="AI-33.preempts",
+AI_33_PREEMPTS = asked_of_each(
+    "AI-33",
+    "What becomes of a mission that runs when one comes {}?",
+    {"a": "it is preempted all the same", "b": "it goes on"},
+    {
+        "preempts": "whose configuration is no JSON",
+        "preempts-null": "that does not run since its configuration is null",
+        "preempts-blank": "that does not run since its configuration is an empty text",
+        "preempts-value": "that does not run since its configuration is no object",
+        "preempts-node": "that does not run since something in it is no node",
+        "preempts-unknown": "that does not run since its nodes are unknown",
+        "preempts-written": "that fails since it is written otherwise",
+    },
     rule="a-new-mission-preempts",
 )
 

@@ -8,6 +8,7 @@ from missionfsm.isaac.robot import effects, readings, rules, stream
 from missionfsm.isaac.robot.describe import describe
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
 from missionfsm.isaac.shared.drives import later
+from missionfsm.isaac.shared.stream import sequence
 from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec
 
 _SAYS: Callable[[str], Invariant] = lambda state: Invariant(  # noqa: E731 - one line of a table
@@ -38,7 +39,7 @@ SPEC = Spec(
     delivery=stream.delivery,
     unowed=stream.unowed,
     undelivered=stream.undelivered,
-    sequence=stream.sequence,
+    sequence=sequence,
     names=lambda here: here.identifiers,
     ambiguities=readings.AMBIGUITIES,
     describe=describe,

@@ -11,6 +11,7 @@ from missionfsm.isaac.robot.effects import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
 from missionfsm.isaac.shared.line import LineContent
+from missionfsm.isaac.shared.stream import miswritten
 from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch, Refs
 
 RULES = {"running": rules.RUNNING, **FINAL}
@@ -22,13 +23,9 @@ def matches(view: Report | Introduction | Other, content: LineContent | Malforme
     """The ways in which a line shows what is owed, or why it does not."""
     if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
-    if content.unsigned:
-        return Mismatch(
-            rules.TYPES.id, "header.proto is the unsigned type id; it is sent as its signed value", near=True
-        )
-    wrong = [path for path in content.bare if path != "header.uuid"]
+    wrong = miswritten(content, rules.TYPES, rules.INTEGERS)
     if wrong:
-        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)
+        return wrong
     assumes = (AI_25_HEADER["n" if content.bare else "s"],) if content.stamped else ()
     if content.borrowed:
         assumes = (*assumes, AI_27_UUID["b"])
@@ -80,11 +77,6 @@ def _reports(
     if not content.named:
         return (Match((*assumes, AI_10["a"]), rules=(rule.id, *common)),)
     return (Match((*assumes, AI_10["b"]), ((0, 0),), (rule.id, rules.ABOUT.id, rules.CHANNEL.id, *common)),)
-
-
-def sequence(relation: str) -> tuple[Assumption, ...]:
-    """How the uuid in a header compares with the one before: it is another one, or (AI-27.uuid b) the same."""
-    return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
 def undelivered(view: Report | Introduction | Other) -> tuple[str, ...]:

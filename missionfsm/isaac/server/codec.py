@@ -40,7 +40,7 @@ from missionfsm.isaac.shared.line import (
     uuid_name,
 )
 from missionfsm.isaac.wire import strictjson
-from missionfsm.isaac.wire.framing import WireError, decode_line, encode
+from missionfsm.isaac.wire.framing import WireError, as_json, decode_line
 from missionfsm.isaac.wire.messages import Header, Message, MissionProto, MissionStatusProto, TextProto, Uuid
 from missionfsm.kernel.codec import JSON, Codec, DriveForm, Malformed, Part, UnreadableError
 from missionfsm.kernel.history import Answer, Name
@@ -368,7 +368,7 @@ def write_message(view: Sends | Closes, names: tuple[Name, ...], choice: int, nu
     bare = bool(meet(choice, (AI_25_HEADER["n"],)))
     stated = uuid if meet(choice, (AI_28_UUID["y"],)) else None
     header = Header(view.channel, time, time, own)
-    message = json.loads(encode(Message(header, MissionProto(stated, view.config)), header_uuid_as_numbers=bare))
+    message = as_json(Message(header, MissionProto(stated, view.config)), header_uuid_as_numbers=bare)
     if meet(choice, (AI_28_CONFIG["a"],)):
         message["payload"]["config"] = json.loads(view.config)
     return strictjson.compact(message)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from missionfsm.isaac.shared import readings as shared
 from missionfsm.kernel.readings import Ambiguity, declared
 
 AI_02_CANCELED = Ambiguity(
@@ -299,13 +300,7 @@ AI_25_TAKEN = Ambiguity(
     "Is a message understood whose 64-bit integers are numbers instead of strings?",
     {"a": "yes, both are", "b": "no, strings only"},
 )
-AI_25_HEADER = Ambiguity(
-    "AI-25.header",
-    "How are the halves of the header's uuid sent?",
-    {"s": "as strings, like every 64-bit integer", "n": "as numbers, as the shipped software does"},
-    flagged="n",
-    rule="64-bit-integers-are-strings",
-)
+AI_25_HEADER = shared.AI_25_HEADER
 AI_26 = Ambiguity(
     "AI-26",
     "What does a line do that cannot be read?",
@@ -316,13 +311,7 @@ AI_26_BLANK = Ambiguity(
     "What does a line do on which nothing stands?",
     {"e": "nothing", "f": "its connection is closed, as by one that cannot be read"},
 )
-AI_27_UUID = Ambiguity(
-    "AI-27.uuid",
-    "Whose is the uuid in a header?",
-    {"a": "the message's own, another one for each", "b": "the mission's, or the same again for the next message"},
-    flagged="b",
-    rule="a-line-is-one-message",
-)
+AI_27_UUID = shared.AI_27_UUID
 AI_27_TAKEN = Ambiguity(
     "AI-27.taken",
     "Is a message understood whose header has no type id, or an unsigned one?",

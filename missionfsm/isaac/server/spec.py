@@ -54,10 +54,11 @@ from missionfsm.isaac.server.state import (
     missions_of,
     topic,
 )
-from missionfsm.isaac.server.stream import agrees, matches, may_be_called, sequence, status_answers
+from missionfsm.isaac.server.stream import agrees, matches, may_be_called, status_answers
 from missionfsm.isaac.server.time import calmed, elapsed, nothing_open_happened, passes, unseen
 from missionfsm.isaac.shared.drives import Elapsed, Passes, elapses, later
 from missionfsm.isaac.shared.line import LineContent
+from missionfsm.isaac.shared.stream import sequence
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.focus import DRIVEN, RETURNED, SETTLED, Focus
 from missionfsm.kernel.history import Answer

@@ -28,6 +28,7 @@ from missionfsm.isaac.server.rules import OPERATIONS
 from missionfsm.isaac.server.state import Closes, Mission, Sends, Server, Status, handle_ref
 from missionfsm.isaac.server.time import nothing_open_happened
 from missionfsm.isaac.shared.line import LineContent
+from missionfsm.isaac.shared.stream import miswritten
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Answer
 from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
@@ -154,12 +155,9 @@ def matches(view: Sends | Closes, content: LineContent | Malformed) -> tuple[Mat
         return Mismatch(rules.SENT.id, "the connection has to end")
     if content.kind != "mission":
         return Mismatch(rules.SENT.id, f"a mission is due, not a {content.kind} message")
-    if content.unsigned:
-        says = "header.proto is the unsigned type id; it is sent as its signed value"
-        return Mismatch(rules.ENVELOPE.id, says, near=True)
-    wrong = [path for path in content.bare if path != "header.uuid"]
+    wrong = miswritten(content, rules.ENVELOPE, rules.INTEGERS)
     if wrong:
-        return Mismatch(rules.INTEGERS.id, f"{wrong[0]} is a number", near=True)
+        return wrong
     if content.channel != view.channel:
         says = f"the mission came on channel {content.channel!r}, not {view.channel!r}"
         return Mismatch(rules.CHANNEL.id, says, near=content.what == view.config)
@@ -180,11 +178,6 @@ def _header(content: LineContent) -> tuple[tuple[Assumption, ...], ...]:
     if content.borrowed:
         return (AI_27_UUID["b"],), (AI_10["c"],)
     return ((AI_10.besides("c"),),) if content.named else ((),)
-
-
-def sequence(relation: str) -> tuple[Assumption, ...]:
-    """How the uuid in a header compares with the one before: it is another one, or (AI-27.uuid b) the same."""
-    return (AI_27_UUID["b"],) if relation == "equal" else ()
 
 
 def may_be_called(server: Server, index: int, word: object) -> bool:

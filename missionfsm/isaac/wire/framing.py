@@ -261,7 +261,17 @@ class _Reader:
 
 
 def encode(message: Message, *, header_uuid_as_numbers: bool = False) -> bytes:
-    """The message as a line, its end included.
+    """The message as a line, its end included."""
+    return as_line(message, header_uuid_as_numbers=header_uuid_as_numbers).encode("ascii") + b"\n"
+
+
+def as_line(message: Message, *, header_uuid_as_numbers: bool = False) -> str:
+    """The message as a line of text, without its end."""
+    return strictjson.compact(as_json(message, header_uuid_as_numbers=header_uuid_as_numbers))
+
+
+def as_json(message: Message, *, header_uuid_as_numbers: bool = False) -> dict[str, Any]:
+    """The object that the line of a message holds.
 
     `header_uuid_as_numbers` is a deviation of the shipped server: the two halves of the header's identifier go as
     numbers there, although every 64-bit integer is documented to go as a string. TypeError for any other payload.
@@ -278,8 +288,7 @@ def encode(message: Message, *, header_uuid_as_numbers: bool = False) -> bytes:
     header["proto"] = str(signed(TYPE_IDS[kind]))
     if (uuid := message.header.uuid) is not None:
         header["uuid"] = {"lower": uuid.lower, "upper": uuid.upper} if header_uuid_as_numbers else _halves(uuid)
-    line = strictjson.compact({"header": header, "payload": _payload(message.payload)})
-    return line.encode("ascii") + b"\n"
+    return {"header": header, "payload": _payload(message.payload)}
 
 
 def _payload(payload: Payload) -> dict[str, object]:

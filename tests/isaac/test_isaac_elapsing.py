@@ -100,3 +100,18 @@ def test_a_mission_that_is_never_sent_is_late_by_the_times_of_the_lines(seconds:
     """With `--settled-after`, a mission may wait for its robot for some seconds, and not for hours."""
     history = History(*SEEN).submit(1).at(0).robot(1).at(1).shows("QUEUED").at(seconds)
     assert history.judged(settled_after=60).outcome is outcome
+
+
+@pytest.mark.parametrize("letter", "bcd")
+def test_a_start_limit_of_0_may_be_over_when_a_mission_could_first_be_sent(letter: str) -> None:
+    """Whatever it counts from, the mission need not be sent first, and the next one is sent at once."""
+    at_once = {"AI-05": letter, "AI-39": "a", "AI-39.limits": "a"}
+    led = History().robot(1).submit(1, start_timeout=0).waits(0.2).shows("FAILED_TIMEDOUT").submit(2, start_timeout=1.9)
+    led.sends(1, 2).settles.shows("FAILED_TIMEDOUT", "STARTED").waits(0.2).settles
+    assert led.judged(readings=at_once).conforms
+    log = History(*SEEN).submit(1, start_timeout=0).robot(1).at(0.5).shows("FAILED_TIMEDOUT")
+    log.submit(2, start_timeout=1.9).sends(1, 2).submit(3, start_timeout=0.5).at(0.7)
+    log.shows("FAILED_TIMEDOUT", "STARTED", "FAILED_TIMEDOUT").at(1.3)
+    for seconds in (1.5, 21.5):
+        log.shows("FAILED_TIMEDOUT", "STARTED" if seconds < 2 else "FAILED_TIMEDOUT", "FAILED_TIMEDOUT").at(seconds)
+    assert log.judged(readings=at_once, settled_after=2.5).conforms

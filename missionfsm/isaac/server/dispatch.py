@@ -23,6 +23,7 @@ from missionfsm.isaac.server.lifecycle import (
     forgotten,
     sent_again,
     settled,
+    strikes,
 )
 from missionfsm.isaac.server.readings import (
     AI_03,
@@ -391,13 +392,8 @@ def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
 def sends(move: Move, link: Link, index: int) -> Moves:
     """A mission is sent on a connection."""
     mission = move.state.missions[index]
-    if mission.start == 0 and "a" in move.state.letters(AI_05):
-        # Nothing can be acknowledged before no time has passed, so a server may as well not set the robot going.
-        ours, _ = split(move, AI_05, "a")
-        needs = None if ours is None else split(ours, AI_07, "ab")[0]
-        needs = None if needs is None else split(needs, AI_24_WHOLE, "x")[0]
-        if needs is not None:
-            yield ends(needs, index, "time out", rules.ABORTED.id)
+    if mission.start == 0:
+        yield from _without_time(move, index)
     if mission.robot is None:
         chosen, _ = split(move, AI_19, "b")
         if chosen is None:
@@ -411,6 +407,23 @@ def sends(move: Move, link: Link, index: int) -> Moves:
         because.append(rules.UPSTREAM.id)
     view = Sends(mission.channel, mission.config)
     yield move.emit(link.slot, index, view).to(move.state, *because)
+
+
+def _without_time(move: Move, index: int) -> Moves:
+    """A mission with a start limit of 0 is aborted when it could be sent: it is never sent.
+
+    Nothing can be acknowledged before no time has passed, whatever the limit counts from, so a server may as well not
+    set the robot going.
+    """
+    if "a" in move.state.letters(AI_05):
+        ours, _ = split(move, AI_05, "a")
+        needs = None if ours is None else split(ours, AI_07, "ab")[0]
+        needs = None if needs is None else split(needs, AI_24_WHOLE, "x")[0]
+        if needs is not None:
+            yield ends(needs, index, "time out", rules.ABORTED.id)
+    for clock in move.state.missions[index].clocks:
+        if clock.kind == START and not clock.whole and clock.lo <= move.at[1]:
+            yield from strikes(move, index, clock, due=False)[0]
 
 
 def urgent(move: Move, part: Part) -> tuple[Move, ...]:

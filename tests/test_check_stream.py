@@ -138,9 +138,9 @@ RUNS = {"mission_id": "A", "state": "STATE_RUNNING", "goals": GOALS, "current_go
         ({"current_mission": RUNS, "current_goal": GOALS[1]}, None),
         ({"current_mission": {**RUNS, "mission_feedback": None}, "current_goal": {**GOALS[1], "pose": None}}, None),
         ({"current_mission": None, "current_goal": None}, None),
-        ({"current_goal": GOALS[0]}, "the-current-goal-index-is-the-active-goal"),
+        ({"current_goal": {"destination_id": "table-7"}}, "the-current-goal-index-is-the-active-goal"),
         (
-            {"current_mission": {**RUNS, "state": "STATE_PAUSED"}, "current_goal": GOALS[1]},
+            {"current_mission": {**RUNS, "owner": "touchscreen"}, "current_goal": GOALS[1]},
             "the-current-mission-index-is-the-active-mission",
         ),
         ({"current_mission": 7, "current_goal": None}, "the-current-mission-index-is-the-active-mission"),
@@ -158,6 +158,32 @@ def test_what_a_webhook_repeats_says_the_same(
     assert (ended.status, len(found)) == (0, 0 if rule is None else 1)
     assert rule is None or rule in found[0]
     assert command_line("check", str(path), "--no-flagged").status == (1 if rule else 0)
+
+
+@pytest.mark.parametrize(
+    ("repeated", "says"),
+    [
+        (
+            {"current_mission": {**RUNS, "mission_id": "B"}},
+            "current_mission is not the one in missions at current_mission_index 0: it is 'B', not 'A'",
+        ),
+        (
+            {"current_goal": GOALS[0]},
+            "current_goal is not the one in goals at current_goal_index 1: it is the one at 0",
+        ),
+    ],
+)
+def test_a_webhook_that_names_another_mission_or_goal_violates(
+    command_line: CommandLine, tmp_path: Path, repeated: Any, says: str
+) -> None:
+    """The current mission is one, and so is its goal: two that differ cannot both be it."""
+    metadata = {"timestamp": "2025-01-01T00:00:00Z", "sequence_number": 1}
+    state = {"metadata": metadata, "missions": [RUNS], "current_mission_index": 0, **repeated}
+    ended = command_line("check", written(tmp_path / "s.jsonl", {"robot_id": "r1", "state": state}))
+    assert (ended.status, says in ended.out) == (1, True)
+    ended_mission = {**RUNS, "state": "STATE_SUCCEEDED"}
+    state = {"metadata": metadata, "missions": [ended_mission], "current_mission_index": -1, **repeated}
+    assert command_line("check", written(tmp_path / "t.jsonl", {"robot_id": "r1", "state": state})).status == 0
 
 
 @pytest.mark.parametrize("first", [True, False])

@@ -161,7 +161,9 @@ def watch_messages(numbered: Iterable[Numbered], tell: Callable[[str], None], *,
         repeated = tuple(contradictions(message)) if topic == MISSIONS and "state" in message else ()
         named, message = unwrapped({name: value for name, value in message.items() if name not in ("at", "robot")})
         problems = list(one.feed(robot or named, message))
-        problems += (Problem(one.events, robot or named, rule.id, says, flagged=True) for rule, says in repeated)
+        problems += (
+            Problem(one.events, robot or named, other.rule.id, other.says, flagged=other.flagged) for other in repeated
+        )
         for problem in problems:
             tell(f"line {number}: {problem}" + (" (tolerated)" if problem.flagged else ""))
             one.note(number, problem)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from attrs import frozen
+
 from missionfsm.bear.mission.promises import CURRENT, GOAL_INDEX
 from missionfsm.bear.status.state import MAPS, SINGLES
 from missionfsm.kernel.codec import JSON, UnreadableError
@@ -59,22 +61,55 @@ def _posted(robot: JSON, state: JSON) -> tuple[str, JSON]:
     return "", {**metadata, "robotId": robot, **known}
 
 
-def contradictions(message: JSON) -> Iterator[tuple[Rule, str]]:
-    """What the body of a webhook says of the current mission that differs from its list of missions."""
+@frozen
+class Contradiction:
+    """What the body of a webhook says of the current mission that differs from its list of missions.
+
+    Attributes:
+        rule: the rule that it breaks.
+        says: what it is, in words.
+        flagged: whether it is an oddity: it names the same mission and goal, or none that the list has.
+    """
+
+    rule: Rule
+    says: str
+    flagged: bool = True
+
+
+def contradictions(message: JSON) -> Iterator[Contradiction]:
+    """What the body of a webhook repeats otherwise than it says it."""
     state = _without_nulls(message.get("state"))
     missions = state.get("missions", []) if isinstance(state, dict) else None
     if not isinstance(missions, list):
         return
-    mission = _at(missions, state.get("current_mission_index", state.get("currentMissionIndex", 0)))
+    at = state.get("current_mission_index", state.get("currentMissionIndex", 0))
+    mission = _at(missions, at)
     shown = state.get("current_mission")
     if shown is not None and shown != mission:
-        yield CURRENT, "current_mission is not the one in missions at current_mission_index"
+        says = f"current_mission is not the one in missions at current_mission_index {at}"
+        other = next((f": it is {one}, not {two}" for one, two in _told(shown, mission) if one != two), "")
+        yield Contradiction(CURRENT, says + other, flagged=not other)
         mission = shown
     of = mission if isinstance(mission, dict) else {}
     index = of.get("current_goal_index", of.get("currentGoalIndex", 0))
-    goal = state.get("current_goal")
-    if goal is not None and goal != _at(of.get("goals"), index):
-        yield GOAL_INDEX, "current_goal is not the one in goals at current_goal_index"
+    goal, goals = state.get("current_goal"), of.get("goals")
+    goals = goals if isinstance(goals, list) else []
+    if goal is not None and goal != _at(goals, index):
+        says = "current_goal is not the one in goals at current_goal_index"
+        active = of.get("state") in ("STATE_RUNNING", "STATE_PAUSED") and _at(goals, index) is not None
+        named = active and goal in goals
+        yield Contradiction(
+            GOAL_INDEX, f"{says} {index}: it is the one at {goals.index(goal)}" if named else says, flagged=not named
+        )
+
+
+def _told(shown: JSON, listed: JSON) -> Iterator[tuple[str, str]]:
+    """The id of a mission as it is shown twice, and its state, where both say it."""
+    if isinstance(shown, dict) and isinstance(listed, dict):
+        for names in (("mission_id", "missionId"), ("state",)):
+            one, two = (next((it[name] for name in names if name in it), None) for it in (shown, listed))
+            if one is not None and two is not None:
+                yield brief(one), brief(two)
 
 
 def _at(listed: JSON, index: JSON) -> JSON:

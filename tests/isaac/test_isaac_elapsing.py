@@ -107,8 +107,8 @@ def test_a_start_limit_of_0_may_be_over_when_a_mission_could_first_be_sent(lette
     """Whatever it counts from, the mission need not be sent first, and the next one is sent at once."""
     at_once = {"AI-05": letter, "AI-39": "a", "AI-39.limits": "a"}
     led = History().robot(1).submit(1, start_timeout=0).waits(0.2).shows("FAILED_TIMEDOUT").submit(2, start_timeout=1.9)
-    led.sends(1, 2).settles.shows("FAILED_TIMEDOUT", "STARTED").waits(0.2).settles
-    assert led.judged(readings=at_once).conforms
+    led.sends(1, 2).settles.shows("FAILED_TIMEDOUT", "STARTED")
+    assert led.waits(0.2).settles.judged(readings=at_once).conforms
     log = History(*SEEN).submit(1, start_timeout=0).robot(1).at(0.5).shows("FAILED_TIMEDOUT")
     log.submit(2, start_timeout=1.9).sends(1, 2).submit(3, start_timeout=0.5).at(0.7)
     log.shows("FAILED_TIMEDOUT", "STARTED", "FAILED_TIMEDOUT").at(1.3)

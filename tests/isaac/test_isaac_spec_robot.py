@@ -106,6 +106,44 @@ def test_running_that_was_due_has_to_come() -> None:
     assert rules(judged(arrives(ONE), says("running"), SETTLED, five, five, says("running"), SETTLED))
 
 
+NODES = '{"goals":{"Selector":{"desired":"path"}}}'
+FAILED = {"drive": {"event": "behaviorFailed"}}
+RUNS = (arrives(ONE, NODES), says("running"), SETTLED)
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ((*RUNS, FAILED, says("success")), ["status/one-failure-at-the-end"]),
+        ((*RUNS, FAILED, passes(1), SETTLED), ["status/one-failure-at-the-end"]),
+        (
+            (arrives(ONE, NODES), says("running", Uuid(1, 0))),
+            ["status/a-status-is-about-its-mission", "codelet/a-mission-starts-the-behavior-tree"],
+        ),
+        (
+            (*RUNS, arrives(TWO, NODES), passes(1), says("running"), SETTLED),
+            [
+                "status/running-while-the-tree-runs",
+                "codelet/a-new-mission-preempts",
+                "codelet/a-mission-starts-the-behavior-tree",
+            ],
+        ),
+    ],
+)
+def test_no_configuration_is_accused_where_none_is_odd(lines: tuple[Any, ...], told: list[str]) -> None:
+    """A mission that fails since its configuration cannot be used has no part in what goes wrong with others."""
+    assert rules(judged(*lines)) == told
+
+
+def test_of_which_mission_something_is_missing_is_said_by_its_uuid() -> None:
+    """The line that is missing and the line that came last are each shown with the uuid of their mission."""
+    verdict = judged(*RUNS, arrives(TWO, NODES), passes(1), says("running"), SETTLED)
+    missing, last = (
+        f"RUNNING of its mission on mission_status (uuid (lower {one}, upper {one | 1 << 60}))" for one in (2, 1)
+    )
+    assert f"connection 1 did not show {missing}; it showed {last} last" in str(verdict)
+
+
 @pytest.mark.parametrize(
     ("lines", "rule"),
     [

@@ -6,14 +6,16 @@ A message that does not come breaks a rule about messages. The rules of the step
 from __future__ import annotations
 
 import itertools
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from typing import Any
 
 from missionfsm.kernel.history import Called, Driven, Received, Returned, Settled
+from missionfsm.kernel.readings import meet
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Explanation
+from missionfsm.oracle.successors import ExhaustedError
 
 MAX_LOOKED_AT = 20
 """How many explanations of each event are searched."""
@@ -22,20 +24,54 @@ MAX_LOOKED_AT = 20
 def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | None:
     """Ids of the rules of the latest step that owes a view to a topic and says why; None if no step is known to owe it.
 
-    A step whose rules only say that the view is sent, as it is again and again, does not say why.
+    A step whose rules only say that the view is sent does not say why, unless somebody has just made it happen. Of the
+    steps at one event only those count that need the fewest unusual readings, of those that are not ruled out.
     """
     found = False
     for symbol, node in belief.walked:
         rules: dict[str, None] = {}
-        for here in node.explanations[:MAX_LOOKED_AT]:
-            for step in _steps(belief, symbol, here):
-                if any(one.view == view and one.topic == topic for one in step.emits):
-                    found = True
-                    sent = delivering(belief.spec, step)
-                    rules.update(dict.fromkeys(rule for rule in step.rules if rule not in sent))
-        if rules:
+        begun = False
+        for step, made in _usual(belief, symbol, node.explanations, view, topic):
+            found, begun = True, begun or made
+            sent = delivering(belief.spec, step)
+            rules.update(dict.fromkeys(rule for rule in step.rules if rule not in sent))
+        if rules or begun:
             return tuple(rules)
     return () if found else None
+
+
+def _usual(
+    belief: Belief, symbol: tuple[Any, ...], before: Sequence[Explanation], view: object, topic: Hashable
+) -> list[tuple[Step, bool]]:
+    """The steps at an event that owe a view to a topic, of those that are left the most usual ones.
+
+    Each with whether somebody made it happen, other than by letting time pass.
+    """
+    left = [one.assumed for one in belief.node.explanations]
+    owing = [
+        (_unusual(step, left), step, made)
+        for here in _become(belief, before)
+        for step, made in _steps(belief, symbol, here)
+        if any(one.view == view and one.topic == topic for one in step.emits)
+    ]
+    least = min((unusual for unusual, _, _ in owing), default=None)
+    return [(step, made) for unusual, step, made in owing if unusual == least]
+
+
+def _become(belief: Belief, before: Sequence[Explanation]) -> Sequence[Explanation]:
+    """Explanations, and what they can become before an event: some of them, the nearest first."""
+    successors = belief.automaton.successors
+    successors.reset()
+    try:
+        return [way.explanation for way in itertools.islice(successors.closure(tuple(before), None), MAX_LOOKED_AT)]
+    except ExhaustedError:
+        return before[:MAX_LOOKED_AT]
+
+
+def _unusual(step: Step, left: Sequence[int]) -> tuple[bool, int]:
+    """Whether a step needs readings that are ruled out, and how many that are not usual."""
+    possible = any(meet(one, step.assumes) for one in left)
+    return not possible, sum(one.ambiguity.default not in one.letters for one in step.assumes)
 
 
 def delivering(spec: Spec, step: Step) -> set[str]:
@@ -84,18 +120,21 @@ def driven(belief: Belief) -> tuple[str, ...]:
     return tuple(rules)
 
 
-def _steps(belief: Belief, symbol: tuple[Any, ...], here: Explanation) -> Iterator[Step]:
-    """What can have happened at an event, in one explanation of what was before."""
+def _steps(belief: Belief, symbol: tuple[Any, ...], here: Explanation) -> Iterator[tuple[Step, bool]]:
+    """What can have happened at an event, in an explanation of what was before; whether somebody made it happen."""
     successors, spec = belief.automaton.successors, belief.spec
     kind, *what = symbol
     if kind is Driven:
         event, names = what
-        yield from spec.drives[event.name].steps(here.state, event, successors.refs(here, names))
+        drive = spec.drives[event.name]
+        steps = drive.steps(here.state, event, successors.refs(here, names))
+        yield from ((step, drive.later is None) for step in steps)
     elif kind is Called:
         request, names, *_ = what
-        yield from successors.outcomes(here.state, request, successors.refs(here, names))
+        yield from ((step, True) for step in successors.outcomes(here.state, request, successors.refs(here, names)))
     for call in here.calls:
         if call.done is None:
-            yield from successors.outcomes(here.state, call.request, successors.refs(here, call.args))
-    yield from successors.urgent(here.state)
-    yield from successors.unseen(here.state)
+            steps = successors.outcomes(here.state, call.request, successors.refs(here, call.args))
+            yield from ((step, False) for step in steps)
+    yield from ((step, False) for step in successors.urgent(here.state))
+    yield from ((step, False) for step in successors.unseen(here.state))

@@ -299,24 +299,36 @@ def _owing_most_surely(nearest: Nearest) -> list[tuple[Successor, list[tuple[Cha
 
 
 def _still_due(nearest: Nearest) -> Accusation:
-    """Things have settled although messages are owed: what is owed in the explanations that owe least."""
+    """Things have settled although messages are owed: what is owed in the explanations that owe least.
+
+    Those are accused that need the fewest unusual readings.
+    """
     ways = _owing_most_surely(nearest)
     least = min((len(due) for _, due in ways), default=0)
+    ways = sorted((way for way in ways if len(way[1]) == least), key=lambda way: nearest.unusual(way[0].explanation))
     found: list[Candidate] = []
     rules: list[str] = []
     notes: list[str] = []
     for successor, due in ways:
-        for channel, owed in due if len(due) == least else ():
+        usual = nearest.unusual(successor.explanation) == nearest.unusual(ways[0][0].explanation)
+        for channel, owed in due:
             where = _called(nearest, channel)
-            wanted = described(nearest.spec, owed.view)
             delivery = nearest.spec.delivery(channel.topic)
-            shows = f"{where} shows {wanted}"
+            shows = f"{where} shows {described(nearest.spec, owed.view)}"
             found.append(Candidate(what=shows, unseen=successor.rules, owed=(channel, owed)))
-            rules += nearest.missing(delivery, owed.view, at_first=channel.last is None)
-            last = f"; it showed {described(nearest.spec, channel.last.view)} last" if channel.last else ""
-            notes.append(f"{where} did not show {wanted}{last}")
+            if usual:
+                rules += nearest.missing(delivery, owed.view, at_first=channel.last is None)
+                last = f"; it showed {_shown(nearest, channel.last)} last" if channel.last else ""
+                notes.append(f"{where} did not show {_shown(nearest, owed)}{last}")
     before = _before(nearest, found[0] if found else None)
     return found, _alternately(list(dict.fromkeys(rules)), before), notes[:2]
+
+
+def _shown(nearest: Nearest, owed: Owed) -> str:
+    """What is owed, or was shown, with the names of what it is about."""
+    names = [name_words(known) for one in owed.names if (known := nearest.belief.name(one)) is not None]
+    about = f" ({', '.join(names)})" if names else ""
+    return f"{described(nearest.spec, owed.view)}{about}"
 
 
 def _called(nearest: Nearest, channel: Channel) -> str:

@@ -108,6 +108,10 @@ class Nearest:
         """Whether a channel has shown last all that it owes, so that nobody misses it."""
         return self._unsaid.is_told(channel, here.assumed)
 
+    def unusual(self, here: Explanation) -> int:
+        """How many questions an explanation does not read in their usual way."""
+        return sum(one.default not in one.possible(here.assumed) for one in self.spec.ambiguities)
+
     # Answers.
 
     def answers(self, event: Returned) -> Iterator[Candidate]:

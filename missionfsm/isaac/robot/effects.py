@@ -1,8 +1,8 @@
 """What becomes of a robot when something happens to it: the steps of its drives.
 
-Time passes only where the tester says so. No period is documented: RUNNING and the name may come at any time, and have
-to come within their bounds. Of a time that is shorter it is asked whether they came in it, and what they may still say
-then counts from there.
+What it has to say then is in `due`. Time passes only where the tester says so. No period is documented: RUNNING and the
+name may come at any time, and have to come within their bounds. Of a time that is shorter it is asked whether they came
+in it, and what they may still say then counts from there.
 """
 
 from __future__ import annotations
@@ -13,147 +13,26 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, Arrives
-from missionfsm.isaac.robot.state import (
-    NAME_BOUND,
-    RUNNING_BOUND,
-    TICK,
-    Codelet,
-    Introduction,
-    Other,
-    Report,
-    Waiting,
-    World,
+from missionfsm.isaac.robot.due import (
+    FINAL,
+    NAMES,
+    OTHERS,
+    STATUSES,
+    Due,
+    all_waiting,
+    anything,
+    concluded,
+    emission,
+    introduction,
+    may_report,
 )
+from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, Arrives
+from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet, Waiting
 from missionfsm.isaac.shared.drives import Passes
-from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Happening, Opening, Refs, Rule, Step
-
-STATUSES, NAMES, OTHERS = "statuses", "names", "others"
-"""The topics of the one connection: statuses, names and what else is sent come in any order among one another."""
-
-MAX_WAITING = 32
-"""How many statuses wait before the codelet is taken to have ticked when another one is due."""
+from missionfsm.kernel.language import Ambiguity, Assumption, Happening, Opening, Refs, Rule, Step
 
 NEW = -1
 """The reference to the identifier that a line brings along."""
-
-FINAL = {"success": rules.SUCCESS, "failure": rules.FAILURE}
-
-
-@frozen
-class Due:
-    """A status that is due: what it says, of the mission with which identifier (None for none), and when it is sent."""
-
-    status: str
-    about: int | None
-    when: Ambiguity
-    offered: bool = False
-    """Whether RUNNING may come before it."""
-
-
-def _emission(world: World, status: str, about: int | None, *, offer: bool = False) -> Emission:
-    view = Report(status, about is not None, world.status_channel)
-    return Emission(STATUSES, view, () if about is None else (about,), stays=offer, certain=not offer)
-
-
-def _offer(here: Codelet, about: int | None) -> Emission:
-    """RUNNING that may be said."""
-    return _emission(here.world, "running", about, offer=True)
-
-
-def introduction(world: World, *, offer: bool = False) -> Emission:
-    """The name that is owed, or may be said."""
-    return Emission(NAMES, Introduction(world.name, world.name_channel), (), stays=offer, certain=not offer)
-
-
-def _anything(world: World) -> Emission:
-    """What the application around the codelet may send besides."""
-    return Emission(OTHERS, Other(world.channels), (), stays=True)
-
-
-def _kept_names(here: Codelet) -> tuple[int, ...]:
-    """The positions of the identifiers of the statuses that wait and are not lost for want of a connection."""
-    named = [one for one in here.waiting if one.named]
-    return tuple(at for at, one in enumerate(named) if one.kept)
-
-
-def _said(here: Codelet, status: str, about: int | None, *, offered: bool) -> tuple[Emission, ...]:
-    """A status, behind RUNNING where that may come before it."""
-    said = _emission(here.world, status, about)
-    return (_offer(here, about), said) if offered else (said,)
-
-
-def _all_waiting(here: Codelet) -> Iterator[Emission]:
-    """The statuses that waited, in order."""
-    places = iter(here.waits)
-    for one in here.waiting:
-        yield from _said(here, one.status, next(places) if one.named else None, offered=one.offered)
-
-
-def _concluded(
-    here: Codelet, after: Codelet, mission: int | None, due: tuple[Due, ...], because: tuple[Rule, ...]
-) -> Iterator[Step]:
-    """The ways in which statuses become due: each is sent at once, or with those before it waits for the tick.
-
-    Args:
-        after: the codelet after it, what waits left out.
-        mission: the reference to the identifier of the mission that runs then; None for none.
-        due: the statuses, in order.
-    """
-    runs = () if mission is None else (mission,)
-    ids = tuple(one.id for one in because)
-    if not here.connected:
-        yield from _unconnected(here, after, runs, due, ids)
-        return
-    for now, later, assumes in _divided(due):
-        flushed = bool(now) or not (here.waiting or later) or len(here.waiting) >= MAX_WAITING
-        waiting = (*(() if flushed else here.waiting), *(_waits(one) for one in later))
-        waited = 0 if flushed else here.waited
-        emits = (
-            *(_all_waiting(here) if flushed else ()),
-            *_sent(here, now),
-            *((_offer(here, mission),) if after.running and not waiting else ()),
-        )
-        names = (*(() if flushed else here.waits), *_names_in(later), *runs)
-        conclusion = evolve(after, waiting=waiting, waited=waited)
-        yield Step(conclusion, names=names, emits=emits, rules=ids, assumes=assumes)
-
-
-def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due, ...], tuple[Assumption, ...]]]:
-    """Those that are sent at once and those that wait, with what that assumes: one that waits holds up those behind."""
-    for sent in range(len(due), -1, -1):
-        now, later = due[:sent], due[sent:]
-        assumes = (*(one.when["a"] for one in now[-1:]), *(one.when["b"] for one in later[:1]))
-        if len({one.ambiguity for one in assumes}) == len(assumes):
-            yield now, later, assumes
-
-
-def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
-    return (said for one in due for said in _said(here, one.status, one.about, offered=one.offered))
-
-
-def _names_in(due: tuple[Due, ...]) -> Iterator[int]:
-    return (one.about for one in due if one.about is not None)
-
-
-def _waits(due: Due) -> Waiting:
-    return Waiting(due.status, due.about is not None, due.offered)
-
-
-def _unconnected(
-    here: Codelet, after: Codelet, runs: tuple[int, ...], due: tuple[Due, ...], ids: tuple[str, ...]
-) -> Iterator[Step]:
-    ids = (*ids, rules.LINKED.id)
-    before = here.waits
-    yield Step(
-        evolve(after, waiting=here.waiting), names=(*before, *runs), rules=ids, assumes=(readings.AI_15_STATUS["a"],)
-    )
-    reports = tuple(_waits(one) for one in due)
-    names = (*before, *_names_in(due), *runs)
-    kept = Step(evolve(after, waiting=(*here.waiting, *reports)), names=names, rules=ids)
-    yield evolve(kept, assumes=(readings.AI_15_STATUS["b"],))
-    # What waits for the codelet's tick is not due before that: whether it is lost shows only where time passes.
-    yield evolve(kept, assumes=tuple(one.when["b"] for one in due[:1]))
 
 
 # Lines.
@@ -169,7 +48,7 @@ def arrives(here: Codelet, event: Arrives, refs: Refs) -> tuple[Step, ...]:
 
 def _talks(here: Codelet, step: Step) -> Iterator[Step]:
     """What is said again and again may be said on any occasion, not only when time passes."""
-    reported = _reports(step, _old(here), 0) if step.after == here and here.quiet else (step,)
+    reported = _reports(step, here.about, 0) if step.after == here and here.quiet else (step,)
     for one in reported:
         yield from _introduces(one, 0) if here.nameless else (one,)
 
@@ -263,28 +142,28 @@ def _passed_over(here: Codelet, doubt: Doubt) -> Iterator[Step]:
     if doubt.no_message or not here.running:
         yield ignored
         return
-    due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True),)
-    preempts = _concluded(here, here.moved("an unusable mission arrives"), None, due, (rules.PREEMPTS,))
+    preempts = concluded(here, here.moved("an unusable mission arrives"), None, _preempted(here), _following(here))
     yield from _all(preempts, (doubt.preempts["a"],))
     yield evolve(ignored, assumes=(doubt.preempts["b"],))
 
 
-def _old(here: Codelet) -> int | None:
-    return here.mission[0] if here.mission else None
+def _preempted(here: Codelet) -> tuple[Due, ...]:
+    """What is due of the mission that runs, if one does, where another one ends it."""
+    return (Due("failure", here.about, readings.AI_31_SENT["preempted"], offered=True),) if here.running else ()
+
+
+def _following(here: Codelet) -> tuple[Rule, ...]:
+    """What a mission that arrives is to the one before it."""
+    if here.running:
+        return (rules.PREEMPTS,)
+    return (rules.LISTENS,) if here.used else ()
 
 
 def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     """A mission arrives that can be run."""
-    new = NEW if event.named else None
     after = evolve(here, named=event.named).moved("a mission arrives")
-    because: tuple[Rule, ...] = (rules.STARTS,)
-    due: tuple[Due, ...] = ()
-    if here.running:
-        due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True),)
-        because = (rules.PREEMPTS, *because)
-    elif here.used:
-        because = (rules.LISTENS, *because)
-    yield from _concluded(here, after, new, due, because)
+    new = NEW if event.named else None
+    yield from concluded(here, after, new, _preempted(here), (*_following(here), rules.STARTS))
 
 
 def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[Step]:
@@ -293,21 +172,16 @@ def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[S
     Args:
         asked: the question what becomes of the mission that runs then; None where that may be this or that each time.
     """
-    preempted, kept = ((asked["a"],), (asked["b"],)) if asked else ((), ())
+    preempted, kept = ((asked["a"],), (asked["b"],)) if asked and here.running else ((), ())
     new = NEW if event.named else None
+    idle = here.moved("an unusable mission arrives")
     for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
         failure = Due("failure", new, readings.AI_31_SENT["unusable"], offered)
-        if not here.running:
-            after = evolve(here, named=False).moved("an unusable mission arrives")
-            because = (rules.UNUSABLE, *((rules.LISTENS,) if here.used else ()))
-            yield from _all(_concluded(here, after, None, (failure,), because), (said,))
-            continue
-        ended = here.moved("an unusable mission arrives")
-        due = (Due("failure", _old(here), readings.AI_31_SENT["preempted"], offered=True), failure)
-        preempts = _concluded(here, ended, None, due, (rules.UNUSABLE, rules.PREEMPTS))
-        yield from _all(preempts, (said, *preempted))
-        goes_on = _concluded(here, here, _old(here), (failure,), (rules.UNUSABLE,))
-        yield from _all(goes_on, (said, *kept))
+        because = (rules.UNUSABLE, *_following(here))
+        yield from _all(concluded(here, idle, None, (*_preempted(here), failure), because), (said, *preempted))
+        if here.running:
+            goes_on = concluded(here, here, here.about, (failure,), (rules.UNUSABLE,))
+            yield from _all(goes_on, (said, *kept))
 
 
 # The behavior tree.
@@ -323,8 +197,8 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
     if here.running:
-        due = (Due(status, _old(here), readings.AI_31_SENT["end"], offered=True),)
-        ends = tuple(_concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
+        due = (Due(status, here.about, readings.AI_31_SENT["end"], offered=True),)
+        ends = tuple(concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
     elif here.connected:
         ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
     else:
@@ -337,9 +211,9 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     if not (here.connected and here.waiting):
         return ()
     because = dict.fromkeys(FINAL[one.status].id for one in here.waiting)
-    offers = (_offer(here, _old(here)),) if here.running else ()
+    offers = (may_report(here, here.about),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
-    return (Step(after, names=here.mission, emits=(*_all_waiting(here), *offers), rules=tuple(because)),)
+    return (Step(after, names=here.mission, emits=(*all_waiting(here), *offers), rules=tuple(because)),)
 
 
 # Time.
@@ -359,8 +233,14 @@ def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
         starts = ticks(here)
         if here.waited + event.time < TICK:
             starts += (Step(evolve(here, waited=here.waited + event.time)),)
-    reported = (step for start in starts for step in _reports(start, _old(here), event.time))
+    reported = (step for start in starts for step in _reports(start, here.about, event.time))
     return tuple(step for one in reported for step in _introduces(one, event.time))
+
+
+def _kept_names(here: Codelet) -> tuple[int, ...]:
+    """The positions of the identifiers of the statuses that wait and are not lost for want of a connection."""
+    named = [one for one in here.waiting if one.named]
+    return tuple(at for at, one in enumerate(named) if one.kept)
 
 
 def _awaits(here: Codelet, time: int) -> Iterator[Step]:
@@ -386,7 +266,7 @@ def _reports(step: Step, about: int | None, time: int) -> Iterator[Step]:
     if not here.running or here.waiting:
         yield step
         return
-    said = (_emission(here.world, "running", about), _offer(here, about))
+    said = (emission(here.world, "running", about), may_report(here, about))
     reported = evolve(here, quiet=0)
     yield evolve(step, after=reported, emits=step.emits + said, rules=(*step.rules, rules.RUNNING.id))
     if here.quiet + time < RUNNING_BOUND and not step.emits:
@@ -450,9 +330,9 @@ def _failed(gone: Step) -> Step:
 
 def _connected(here: Codelet) -> Step:
     after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
-    emits = [introduction(here.world, offer=True), _anything(here.world)]
+    emits = [introduction(here.world, offer=True), anything(here.world)]
     if here.running and not here.waiting:
-        emits.append(_offer(here, _old(here)))
+        emits.append(may_report(here, here.about))
     return Step(after, emits=tuple(emits), clears=(STATUSES, NAMES, OTHERS), rules=(rules.NAMED.id,))
 
 
@@ -463,6 +343,6 @@ def begins(here: Codelet) -> tuple[Step, ...]:
     openings = (
         Opening(STATUSES, 0, kind="connection"),
         Opening(NAMES, 0, (introduction(here.world, offer=True),), kind="connection"),
-        Opening(OTHERS, 0, (_anything(here.world),), kind="connection"),
+        Opening(OTHERS, 0, (anything(here.world),), kind="connection"),
     )
     return (Step(evolve(here, begun=True, connected=True), opens=openings),)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from attrs import evolve
 
 from missionfsm.isaac.robot import rules
-from missionfsm.isaac.robot.effects import NAMES, STATUSES, introduction
+from missionfsm.isaac.robot.due import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.isaac.shared.mutations import line_mutations, mission_type, spoils, swapped, unsigned_type
 from missionfsm.kernel.language import Emission, Step, StepMutator, breaks, each_sent, sent_last, sent_twice, unsent

@@ -140,9 +140,14 @@ class Codelet:
         return evolve(self, running=runs, named=self.named and runs, used=True, quiet=0)
 
     @property
+    def about(self) -> int | None:
+        """The position of the identifier of the mission that runs, among the names; None where it has none."""
+        return len(self.waits) if self.running and self.named else None
+
+    @property
     def mission(self) -> tuple[int, ...]:
-        """The position of the identifier of the mission that runs, among the names: none where it has none."""
-        return (len(self.waits),) if self.running and self.named else ()
+        """The same, as the names that a step keeps."""
+        return () if self.about is None else (self.about,)
 
     @property
     def waits(self) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Hashable
 from attrs import evolve
 
 from missionfsm.isaac.robot import rules
-from missionfsm.isaac.robot.effects import FINAL
+from missionfsm.isaac.robot.due import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
 from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
 from missionfsm.isaac.shared.line import LineContent

@@ -31,6 +31,10 @@ _Move = tuple[int, int, int, bool, bool, _Ops]
 """An edit as numbers: the frame after it where missions wait then, and where none does; how many missions it adds, and
 whether it makes room by taking the ended ones off the list, and those that wait; what becomes of the lists."""
 
+_Step = tuple[int, bool, tuple[int, ...], tuple[int, ...]]
+"""A step of robots for which the same missions wait: the frame after it, whether it takes the ended ones off the list,
+those that come to them, and those that wait then."""
+
 
 class Shortcut:
     """The steps of robots that change them, within `most` listed missions, on robots as numbers.
@@ -61,6 +65,7 @@ class Shortcut:
         self._frame: list[_Frame] = []
         self._missions: dict[Mission, int] = {}
         self._mission: list[Mission] = []
+        self._steps: dict[tuple[int, tuple[int, ...], int], tuple[_Step, ...]] = {}
         self._menus: dict[tuple[int, bool, bool], tuple[_Move, ...]] = {}
         self._starts: dict[tuple[int, int], tuple[_Move, ...]] = {}
         self._counted = self._number(_COUNTED)
@@ -81,27 +86,26 @@ class Shortcut:
     def successors(self, code: Code) -> list[Code]:
         """The robots after every step, in any order and perhaps some twice."""
         frame, done, pending = code
-        moves = self._menus.get((frame, not pending, not done))
-        if moves is None:
-            moves = self._menus[frame, not pending, not done] = self._menu(code)
+        known = frame, pending, len(done)
+        steps = self._steps.get(known)
+        if steps is None:
+            steps = self._steps[known] = tuple(self._possible_steps(code))
+        return [(after, ended if forgets else done + ended, waiting) for after, forgets, ended, waiting in steps]
+
+    def _possible_steps(self, code: Code) -> Iterator[_Step]:
+        """The steps for which there is room: which missions have ended before decides nothing, only how many."""
+        frame, done, pending = code
+        menu = frame, not pending, not done
+        if menu not in self._menus:
+            self._menus[menu] = self._menu(code)
+        start = frame, pending[0] if pending else -1
+        if start not in self._starts:
+            self._starts[start] = self._due(code)
         room = self._most - len(done) - (self._frame[frame][1] is not None) - len(pending)
-        found: list[Code] = []
-        add = found.append
-        for busy, idle, added, forgets, drops, ops in moves:
+        for busy, idle, added, forgets, drops, ops in (*self._menus[menu], *self._starts[start]):
             if added <= room or added <= room + forgets * len(done) + drops * len(pending):
-                if not ops:
-                    add((busy if pending else idle, done, pending))
-                else:
-                    ended, waiting = self._moved(ops, done, pending)
-                    add((busy if waiting else idle, ended, waiting))
-        head = pending[0] if pending else -1
-        starts = self._starts.get((frame, head))
-        if starts is None:
-            starts = self._starts[frame, head] = self._due(code)
-        for busy, idle, _, _, _, ops in starts:
-            ended, waiting = self._moved(ops, done, pending)
-            add((busy if waiting else idle, ended, waiting))
-        return found
+                ended, waiting = self._moved(ops, (), pending)
+                yield busy if waiting else idle, forgets, ended, waiting
 
     def _moved(
         self, ops: _Ops, done: tuple[int, ...], pending: tuple[int, ...]

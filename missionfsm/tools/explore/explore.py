@@ -286,8 +286,9 @@ def explore(
     quotient = _quotient(spec, forget_ended=forget_ended)
     possible = () if forget_ended and spec.abstraction.forget_ended else spec.possibilities
     unmet = tuple(one.says for one in possible if not any(map(one.holds, found)))
-    groups = Counter(map(spec.abstraction.enabled_key, found))
-    representatives = {spec.abstraction.enabled_key(here): here for here in found}
+    keys = [spec.abstraction.enabled_key(here) for here in found]
+    groups = Counter(keys)
+    representatives = dict(zip(keys, found, strict=True))
     tally = _Tally(spec)
     for key, here in representatives.items():
         tally.add(here, actions, groups[key], assumed)

@@ -29,6 +29,7 @@ from missionfsm.kernel.focus import Focus
 from missionfsm.kernel.history import Event
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.rules import Citation, Operation, Rule, Waiver, promise
+from missionfsm.kernel.shelving import Shelving
 from missionfsm.kernel.step import Match, Mismatch, Step, Unowed
 from missionfsm.kernel.terms import Content, Incident, Refs, Request, Shape, State, Topic, View, World
 
@@ -287,6 +288,7 @@ class Spec:
         others: whether others use the system as well, whose calls are not observed.
         used: world → the state after a soft reset, in which ids that were given before stay used; None if that is the
             initial state.
+        shelving: how things are put away that decide nothing any more; None if it has none.
     """
 
     system: str
@@ -336,6 +338,7 @@ class Spec:
     anywhere: bool = False
     others: bool = False
     used: Callable[[World], State] | None = None
+    shelving: Shelving | None = None
 
     def __attrs_post_init__(self) -> None:
         registered = {name: one.registered(self.system) for name, one in self.operations.items()}

@@ -9,10 +9,12 @@ from collections.abc import Iterable, Mapping
 from attrs import define, evolve, field
 
 from missionfsm.kernel.readings import UNCONSTRAINED, meet
+from missionfsm.kernel.shelving import Shelving
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.calls import FEW, is_of_calls_alone
 from missionfsm.oracle.explanation import GONE, Explanation, rename
 from missionfsm.oracle.memory import ENTRY, MEMORY, NODES, explanation_bytes
+from missionfsm.oracle.shelf import Plan, plan
 from missionfsm.oracle.subsumption import surviving_names
 from missionfsm.oracle.successors import EVENT_BUDGET, Successor, Successors
 from missionfsm.oracle.symbols import Part, Symbol
@@ -29,12 +31,16 @@ class Node:
     Attributes:
         width: how many names have numbers here.
         next: the edges, by symbol.
+        away: how things are put away here (see `missionfsm.oracle.shelf`), or None.
+        knows_away: from how many things on they are put away, as far as `away` says; 0 before somebody has asked.
         bytes: what the node takes, without its edges (see `missionfsm.oracle.memory`).
     """
 
     explanations: tuple[Explanation, ...]
     width: int
     next: dict[Symbol, Edge] = field(factory=dict, repr=False)
+    away: tuple[Plan, Edge] | None = field(default=None, repr=False)
+    knows_away: int = field(default=0, repr=False)
     bytes: int = field(init=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
@@ -63,6 +69,7 @@ class Edge:
         appends: whether nothing becomes of the names before but that others follow them.
         cuts: whether nothing becomes of the names but that the last ones are left out.
         presumes: whether nothing but a restart that nobody has seen yet explains the event.
+        beyond_system: whether the system itself does not explain the event.
     """
 
     node: Node
@@ -73,6 +80,7 @@ class Edge:
     appends: bool = False
     cuts: bool = False
     presumes: bool = False
+    beyond_system: bool = False
 
 
 class Automaton:
@@ -168,6 +176,7 @@ class Automaton:
         """Forget everything but what the rules are that were exercised."""
         for node in self._nodes.values():
             node.next.clear()
+            node.away, node.knows_away = None, 0
         self._nodes.clear()
         self._edges = self.bytes = 0
         self.successors.forget()
@@ -181,11 +190,11 @@ class Automaton:
         if self._has_calls_alone and not successors.live and all(map(is_of_calls_alone, node.explanations)):
             successors.limit = min(successors.budget, FEW)  # a search through calls is quicker than many explanations
         try:
-            found, presumes = self._step(node.explanations, kind, *what)
+            found, used = self._step(node.explanations, kind, *what)
             edge = self.arrive(node, found)
         finally:
             successors.limit = successors.budget
-        edge.presumes = presumes
+        edge.presumes, edge.beyond_system = used.presumes, used.beyond_system
         node.next[symbol] = edge
         self._edges += 1
         self.bytes += ENTRY
@@ -193,16 +202,31 @@ class Automaton:
 
     def _step(
         self, explanations: tuple[Explanation, ...], kind: type, *what: Part
-    ) -> tuple[tuple[Successor, ...], bool]:
-        """What explains an event, and whether it presumes a restart.
+    ) -> tuple[tuple[Successor, ...], TransitionFunction]:
+        """What explains an event, and the transition function that says so.
 
         Live, what may happen unwatched is thought of only where nothing else is left.
         """
         if self._watched is not None and self.successors.live:
             found = self._watched.step(explanations, kind, *what)
             if found:
-                return found, self._watched.presumes
-        return self.transitions.step(explanations, kind, *what), self.transitions.presumes
+                return found, self._watched
+        return self.transitions.step(explanations, kind, *what), self.transitions
+
+    @property
+    def shelving(self) -> Shelving | None:
+        """How things are put away; None where they are not: the system has none, or anything may happen unseen."""
+        spec = self.spec
+        kept = self.successors.live or self.transitions.eager or spec.anywhere or spec.others
+        return None if kept else spec.shelving
+
+    def away(self, node: Node, shelving: Shelving, least: int) -> tuple[Plan, Edge] | None:
+        """How things are put away at a node where so many are there at least, and where that leads; None: none are."""
+        if node.knows_away != least:
+            found = plan(shelving, node.explanations, least=least)
+            arrived = found and self.arrive(node, tuple(map(Successor, found.explanations)))
+            node.away, node.knows_away = (found, arrived) if found and arrived else None, least
+        return node.away
 
     def arrive(self, node: Node, found: tuple[Successor, ...]) -> Edge:
         """Where explanations that were found lead from a node. An empty node means: no explanation is left."""

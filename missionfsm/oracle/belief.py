@@ -15,9 +15,10 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from missionfsm.kernel.history import Cancelled, Driven, Ended, Event, Name, Received, Settled
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle import memory
-from missionfsm.oracle.automaton import Automaton, Node, Tally
+from missionfsm.oracle.automaton import Automaton, Edge, Node, Tally
 from missionfsm.oracle.numbering import Numbered, Numbering
-from missionfsm.oracle.successors import Successor
+from missionfsm.oracle.shelf import LEAST, Shelves
+from missionfsm.oracle.successors import ExhaustedError, Successor
 from missionfsm.oracle.symbols import Symbol
 
 MAX_WALKED = 32
@@ -42,7 +43,18 @@ class Belief:
         past: the names of what was there before, where the instance was used; None for a fresh one.
     """
 
-    __slots__ = ("_numbering", "_tally", "_walked", "automaton", "broken", "node", "presumed", "touched", "unfollowed")
+    __slots__ = (
+        "_numbering",
+        "_shelves",
+        "_tally",
+        "_walked",
+        "automaton",
+        "broken",
+        "node",
+        "presumed",
+        "touched",
+        "unfollowed",
+    )
 
     def __init__(
         self, automaton: Automaton, world: object, tally: Tally | None = None, past: Iterable[Name] | None = None
@@ -55,7 +67,8 @@ class Belief:
         self.unfollowed = 0
         self.presumed: Belief | None = None
         self._numbering = Numbering(automaton.spec, automaton.memory // memory.NAMES, past or ())
-        self._walked: deque[tuple[Symbol, Node]] = deque(maxlen=MAX_WALKED)
+        self._walked: deque[tuple[Symbol, Node, Shelves | None]] = deque(maxlen=MAX_WALKED)
+        self._shelves = Shelves(automaton.shelving) if automaton.shelving else None
 
     @property
     def spec(self) -> Spec:
@@ -73,24 +86,62 @@ class Belief:
         kind, numbering = type(event), self._numbering
         if numbering.given_up and (kind is Received or kind is Ended) and event.channel in numbering.given_up:  # type: ignore[union-attr]
             return True  # what still comes on a stream that was given up means nothing
+        if self._shelves is not None and self._shelves.names and self._shelves.concern(event):
+            self._bring_back()
         symbol, new = numbering.symbol(event)
-        edge = self.node.next.get(symbol)
-        if edge is None:
-            edge = self.automaton.edge(self.node, symbol)
+        edge = self._edge(symbol)
+        if self._shelves and self._shelves.names and (edge.beyond_system or not edge.node.explanations):
+            self._bring_back()
+            symbol, new = numbering.symbol(event)
+            edge = self._edge(symbol)
         self._tally[edge.exercises] += 1
         if not edge.node.explanations:
             self.broken = True
             return False
         if edge.presumes and self.presumed is None:
             self.presumed = self._as_it_was()
-        self._walked.append((symbol, self.node))
+        self._walked.append((symbol, self.node, self._shelves))
         self.node = edge.node
         self.touched |= edge.touched
         if edge.keep is not None:
             numbering.follow(edge, new)
         if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
             numbering.note(event)
+        if self._shelves is not None:
+            self._put_away(self._shelves)
         return True
+
+    def _edge(self, symbol: Symbol) -> Edge:
+        edge = self.node.next.get(symbol)
+        if edge is None:
+            try:
+                edge = self.automaton.edge(self.node, symbol)
+            except ExhaustedError:
+                self._bring_back()  # what comes next is searched for, from here on
+                raise
+        return edge
+
+    def _put_away(self, shelves: Shelves) -> None:
+        """Put away what decides nothing any more."""
+        found = self.automaton.away(self.node, shelves.shelving, 2 if shelves.names else LEAST)
+        if found:
+            what, edge = found
+            self._shelves = shelves.with_more(what, [self._numbering.name(number) for number in what.names])
+            self._go(edge)
+
+    def _bring_back(self) -> None:
+        """Bring back what was put away."""
+        shelves, numbering = self._shelves, self._numbering
+        if shelves is None or not shelves.names:
+            return
+        whole = tuple(map(Successor, shelves.brought(self.node.explanations, len(numbering))))
+        numbering.append(shelves.names)
+        self._shelves = Shelves(shelves.shelving)
+        self._go(self.automaton.arrive(Node(self.node.explanations, len(numbering)), whole))
+
+    def _go(self, edge: Edge) -> None:
+        self.node = edge.node
+        self._numbering.follow(edge, [])
 
     def _as_it_was(self) -> Belief:
         """A belief at the same point that goes on by itself, and never presumes a restart."""
@@ -127,7 +178,9 @@ class Belief:
 
     def lookout(self) -> Belief:
         """A belief at the same point to number events with, of which this one learns nothing."""
+        self._bring_back()
         other = copy.copy(self)
+        other._shelves = None  # noqa: SLF001 - of the same class
         other._numbering = self._numbering.copy()  # noqa: SLF001 - of the same class
         return other
 
@@ -157,8 +210,7 @@ class Belief:
         edge = self.automaton.arrive(Node(self.node.explanations, len(numbering)), found)
         for rules in exercised:
             self._tally[self.automaton.numbered(rules)] += 1
-        self.node = edge.node
-        numbering.follow(edge, [])
+        self._go(edge)
 
     def symbol(self, event: Event) -> Numbered:
         """The event with numbers for names, as the automaton knows it, and the names that are new."""
@@ -179,13 +231,20 @@ class Belief:
     @property
     def walked(self) -> Iterator[tuple[Symbol, Node]]:
         """The last events with numbers for names, each with the node before it, the latest first."""
-        yield from reversed(self._walked)
+        for symbol, node, shelves in reversed(self._walked):
+            if shelves is not None and shelves.names:
+                node = Node(tuple(shelves.brought(node.explanations, node.width)), 0)  # noqa: PLW2901 - as it was
+            yield symbol, node
+
+    def whole(self, before: Node) -> Node:
+        """The node before the last event, with all that was put away there."""
+        return before if self._shelves is None else next((node for _, node in self.walked), before)
 
     @property
     def exercised_last(self) -> Iterator[tuple[Symbol, tuple[str, ...]]]:
         """The same events, each with ids of the rules that it exercised."""
         sets = self.automaton.numbers
-        for symbol, node in reversed(self._walked):
+        for symbol, node, _ in reversed(self._walked):
             edge = node.next.get(symbol)
             yield symbol, () if edge is None else sets[edge.exercises]
 

@@ -115,7 +115,7 @@ class Successors(Said):
         """
         if self.ahead and step.assumes and not self.meet(explanation.assumed, step.assumes):
             return None
-        if explanation.calls and step.after is not explanation.state:
+        if explanation.calls and step.after is not explanation.state and step.after != explanation.state:
             explanation = self._remember(explanation, besides)
         passing = bool(step.opens or (step.emits and explanation.channels)) and bool(self.urgent(step.after))
         return take(explanation, step, given, passing=passing, concerns=self.spec.concerns)

@@ -34,13 +34,14 @@ class TransitionFunction:
 
     Attributes:
         presumes: whether nothing but a restart that nobody has seen yet explains the event of the last step.
+        beyond_system: whether the system itself does not explain it.
     """
 
     def __init__(self, successors: Successors, *, eager: bool = False) -> None:
         self.successors = successors
         self.spec = successors.spec
         self.eager = eager and self.reckons
-        self.presumes = False
+        self.presumes = self.beyond_system = False
         self._observing, *self._lenient = (Observing(successors, level) for level in range(3))
 
     def step(self, explanations: Iterable[Explanation], kind: type, *what: Part) -> tuple[Successor, ...]:
@@ -65,7 +66,7 @@ class TransitionFunction:
             if self.eager:
                 found = (*found, *self._eagerly(explanations, kind, *what))
             kept = prune(self.successors, found, about)
-        self.presumes = False
+        self.presumes, self.beyond_system = False, not kept
         for restarts, more in () if kept else self._beyond(explanations, kind, *what):
             if not kept:
                 kept = prune(self.successors, more, about)

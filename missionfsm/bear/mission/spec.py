@@ -23,6 +23,7 @@ from missionfsm.bear.mission.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.bear.mission.readings import AMBIGUITIES
 from missionfsm.bear.mission.readings.messages import AM_36, AM_47_REPEAT, AM_47_SKIP, AM_52, AM_54
 from missionfsm.bear.mission.readings.unlisted import AM_58_SENT, AM_61
+from missionfsm.bear.mission.shelving import SHELVING
 from missionfsm.bear.mission.state import (
     AUTOMATIC,
     LIFECYCLE,
@@ -367,6 +368,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, assumed: int
         restarted=_restarted,
         added=frozenset({"CreateMissionBatch", "AppendMissionBatch", "ClearMissionStatus"}),
         middle=MIDDLE,
+        shelving=SHELVING,
     )
 
 

@@ -125,6 +125,7 @@ class Eliminations:
         self._left &= left
         spec = self._belief.spec
         request = asked if isinstance(event, Returned) else None
+        before = before and self._belief.of_last_event.whole(before)
         elimination = Elimination(spec, event, request, len(self.found), before)
         for ambiguity in spec.ambiguities:
             if gone & ambiguity.group:  # of hundreds, few

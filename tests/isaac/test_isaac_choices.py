@@ -6,7 +6,7 @@ import orjson
 import pytest
 from server_history import History
 
-from missionfsm.isaac.server.lifecycle import lost
+from missionfsm.isaac.server.losing import lost
 from missionfsm.isaac.server.state import Link, Mission, Move, Server, Status
 from missionfsm.isaac.wire.framing import encode
 from missionfsm.isaac.wire.messages import Header, Message, TextProto, Uuid

@@ -12,10 +12,10 @@ from server_history import SERVER, SETTLED, History
 from test_isaac_runtime_profiles import Live
 
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
-from missionfsm.isaac.server import dispatch, spec
+from missionfsm.isaac.server import effects, elapsing, queues, scheduling, silent, unseen
 from missionfsm.isaac.server import time as passing
-from missionfsm.isaac.server.dispatch import makes_no_difference
 from missionfsm.isaac.server.independence import Part, concerned, parts
+from missionfsm.isaac.server.indifference import makes_no_difference
 from missionfsm.isaac.server.spec import SPEC
 from missionfsm.isaac.server.state import Link, Mission, Server, Status
 from missionfsm.isaac.shared.drives import Passes
@@ -228,8 +228,9 @@ def queue_of(count: int, *, start: float = 2.5) -> History:
 
 def in_any_order(monkeypatch: pytest.MonkeyPatch, *, whatever: bool) -> None:
     """From here on clocks strike before or after everything else, also (`whatever`) where that makes no difference."""
-    spec._advance.cache_clear()
-    monkeypatch.setattr(passing, "makes_no_difference", (lambda *_: False) if whatever else makes_no_difference)
+    effects.advance.cache_clear()
+    for module in (passing, elapsing, unseen):
+        monkeypatch.setattr(module, "makes_no_difference", (lambda *_: False) if whatever else makes_no_difference)
 
 
 def test_clocks_of_missions_in_a_queue_do_not_multiply() -> None:
@@ -344,8 +345,8 @@ def looked_at(history: History, monkeypatch: pytest.MonkeyPatch) -> int:
             count += 1
             yield move
 
-    spec._advance.cache_clear()
-    monkeypatch.setattr(spec, "passes", passes)
+    effects.advance.cache_clear()
+    monkeypatch.setattr(effects, "passes", passes)
     assert history.judged().conforms
     return count
 
@@ -444,11 +445,11 @@ def in_whatever_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for history in (it, spoilt(draw, it), spoilt(draw, it), spoilt(draw, it)):
         found = []
         for alone in (False, True):
-            for cache in (spec._advance, spec._line, spec._silent_in, passing._urgent):
+            for cache in (effects.advance, effects.line, silent._silent_in, scheduling._urgent):
                 cache.cache_clear()
             with monkeypatch.context() as patch:
                 if alone:
-                    patch.setattr(dispatch, "first_of_alike", lambda server, ready: ((one, server) for one in ready))
+                    patch.setattr(queues, "first_of_alike", lambda server, ready: ((one, server) for one in ready))
                 found.append(told(history, SERVER, readings))
         assert found[0] == found[1]
 

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.matrix import MATRIX
 from missionfsm.bear.status.matrix import OFFLINE, ONE, PLACE, SOME
 from missionfsm.bear.status.state import STATE_PARTS, TOPICAL, Endpoint
 from missionfsm.isaac.robot.scripts import script
-from missionfsm.isaac.server.scripts import A, B, Script
+from missionfsm.isaac.server.script import A, B, Script
 from missionfsm.systems import system
 from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
 from missionfsm.tools.conform.conform import conform

@@ -10,11 +10,7 @@ from collections.abc import Iterable, Iterator
 from attrs import evolve
 
 from missionfsm.isaac.server.deciding import counts, ways
-from missionfsm.isaac.server.readings import (
-    AI_24,
-    AI_39,
-    AI_39_LIMITS,
-)
+from missionfsm.isaac.server.readings import AI_24, AI_39, AI_39_LIMITS
 from missionfsm.isaac.server.state import (
     DAY,
     DOOM,

@@ -8,7 +8,7 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
+from missionfsm.isaac.server.losing import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
 from missionfsm.isaac.server.readings import (
     AI_16,
     AI_16_AGAIN,
@@ -30,16 +30,7 @@ from missionfsm.isaac.server.readings import (
     AI_39_ORDER,
 )
 from missionfsm.isaac.server.reports import believed, means_nothing, reports
-from missionfsm.isaac.server.state import (
-    ENDED,
-    PASS_PERIOD,
-    START,
-    UNDER_WAY,
-    Link,
-    Move,
-    Report,
-    Server,
-)
+from missionfsm.isaac.server.state import ENDED, PASS_PERIOD, START, UNDER_WAY, Link, Move, Report, Server
 from missionfsm.kernel.readings import Ambiguity
 
 

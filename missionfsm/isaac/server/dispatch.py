@@ -6,37 +6,22 @@ in its state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.alike import first_of_alike
 from missionfsm.isaac.server.clocks import Moves, started, with_later_clocks
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.independence import Part
-from missionfsm.isaac.server.lifecycle import (
-    becomes,
-    cancellations,
-    ends,
-    failures_that_cancel,
-    forgotten,
-    sent_again,
-    settled,
-    strikes,
-)
+from missionfsm.isaac.server.indifference import holds_up, upstream_overdue
+from missionfsm.isaac.server.lifecycle import becomes, cancellations, ends, failures_that_cancel
+from missionfsm.isaac.server.losing import forgotten, sent_again
+from missionfsm.isaac.server.queues import busy, choices_on, waiting_for
 from missionfsm.isaac.server.readings import (
     AI_03,
     AI_03_WHEN,
     AI_05,
     AI_07,
-    AI_08,
-    AI_11,
-    AI_12,
-    AI_13,
     AI_15_SENT,
-    AI_16,
-    AI_16_UNDER_WAY,
     AI_19,
     AI_24_WHOLE,
     AI_36,
@@ -45,22 +30,8 @@ from missionfsm.isaac.server.readings import (
     AI_39_LIMITS,
     AI_39_ORDER,
 )
-from missionfsm.isaac.server.state import (
-    DOOM,
-    HEARD,
-    RUN,
-    SENT,
-    START,
-    UNDER_WAY,
-    WAITS,
-    Clock,
-    Link,
-    Mission,
-    Move,
-    Sends,
-    Server,
-    Status,
-)
+from missionfsm.isaac.server.state import RUN, START, WAITS, Link, Move, Sends, Server, Status
+from missionfsm.isaac.server.striking import settled, strikes
 
 
 def lapses(state: Server, link: Link) -> list[Move]:
@@ -72,7 +43,7 @@ def lapses(state: Server, link: Link) -> list[Move]:
     if letters not in ("p", "h", "ph"):
         return []
     first = _maybe_first(state, link)
-    queue = _waiting_for(state.missions, link.name)
+    queue = waiting_for(state.missions, link.name)
     sure = [] if _is_in_no_order(state, queue) else queue[:1]
     return [one for at in first if letters == "p" or [at] != sure for one in _lapsed(Move(state), link, at)]
 
@@ -114,7 +85,7 @@ def _lapsed(move: Move, link: Link, index: int | None) -> list[Move]:
     """A doomed mission is cancelled that is the first in the queue of an idle robot; None: whichever is."""
     state = move.state
     if index is None:
-        queue = _waiting_for(state.missions, link.name)
+        queue = waiting_for(state.missions, link.name)
         index = None if not queue or _is_in_no_order(state, queue) else queue[0]
     if index is None or not state.missions[index].doomed or busy(state, link):
         return []
@@ -123,24 +94,6 @@ def _lapsed(move: Move, link: Link, index: int | None) -> list[Move]:
     if here is not None and head.waits:
         here, _ = split(here, AI_36, "a")
     return [] if here is None else [ends(here, index, "cancel", rules.CANCELED.id)]
-
-
-def busy(state: Server, link: Link) -> set[str]:
-    """The channels of the missions that keep a connection's robot busy."""
-    return {one.channel for one in _given(state, link) if one.status in UNDER_WAY}
-
-
-def _lingering(state: Server, link: Link, *words: str) -> set[str]:
-    """The channels of the missions that were aborted and that a connection's robot may still run (AI-08 d, e)."""
-    return {one.channel for one in _given(state, link) if one.lingers in words}
-
-
-def _given(state: Server, link: Link) -> Iterator[Mission]:
-    """The missions of a connection's robot, but for those that were sent elsewhere and keep nobody busy."""
-    apart = state.letters(AI_16_UNDER_WAY) == "m" or state.letters(AI_16) == "s"
-    for one in state.missions:
-        if one.robot == link.name and not (apart and one.sent_on is not None and one.sent_on != link.slot):
-            yield one
 
 
 def dispatches(move: Move, part: Part) -> Moves:
@@ -164,7 +117,7 @@ def dispatches_to(move: Move, link: Link) -> Moves:
     if undecided:
         yield from undecided
         return
-    choices = list(_choices(move, link))
+    choices = list(choices_on(move, link))
     # Where it is decided whether anything may be sent, that it may be is decided although nothing is sent yet.
     decides = any(index is None and chosen is not move for index, chosen in choices)
     for index, chosen in choices:
@@ -198,195 +151,15 @@ def _sent_later(later: Move, chosen: Move, *, decides: bool) -> Moves:
         yield later
 
 
-def possible(state: Server, link: Link) -> list[tuple[int, Move]]:
-    """What a server that looks now and then (AI-39 b) may send on a connection when it looks."""
-    return [(index, chosen) for index, chosen in _choices(Move(state), link) if index is not None]
-
-
-def _choices(move: Move, link: Link) -> Iterator[tuple[int | None, Move]]:
-    """Missions that may be sent on a connection, each with what that decides; None for deciding to send nothing."""
-    missions = move.state.missions
-    queue = _queue(move.state, link)
-    if not any(missions[index].ready for index in queue):
-        return
-    taken = busy(move.state, link)
-    sent, heard = _lingering(move.state, link, SENT), _lingering(move.state, link, HEARD)
-    idle, held = split(move, AI_08, "ac" if heard else "ace") if sent or heard else (move, None)
-    if idle is not None:
-        yield from _with_taken(idle, queue, taken)
-    if held is None:
-        return
-    for letter, way in ways(held, AI_08, "d", "e"):
-        yield from _with_taken(way, queue, taken | heard | (sent if letter == "d" else set()))
-
-
-def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple[int | None, Move]]:
-    """What may be sent of a robot's queue while these channels of it are taken."""
-    missions = move.state.missions
-    if not taken:
-        yield from _from_free(move, queue)
-        return
-    apart = _lanes(missions, [index for index in queue if missions[index].channel not in taken])
-    holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
-    held, several = split(move, AI_11, holding)
-    if several is not None:
-        for letter, way in ways(several, AI_11, "b", "c"):
-            yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
-    if held is not None:
-        yield None, held
-
-
-def _queue(state: Server, link: Link) -> list[int]:
-    """The missions that wait for the robot of a connection, or (AI-19 b) for any."""
-    whose = (link.name, None) if "b" in state.letters(AI_19) else (link.name,)
-    return _waiting_for(state.missions, *whose)
-
-
-def _waiting_for(missions: tuple[Mission, ...], *robots: str | None) -> list[int]:
-    """The missions that wait for robots, in the order of submission; None is for any robot."""
-    return [index for index, one in enumerate(missions) if one.robot in robots and one.queued]
-
-
-def _lanes(missions: tuple[Mission, ...], queue: list[int]) -> list[list[int]]:
-    """The missions of a queue, those of each channel by themselves."""
-    lanes: dict[str, list[int]] = {}
-    for index in queue:
-        lanes.setdefault(missions[index].channel, []).append(index)
-    return list(lanes.values())
-
-
-def makes_no_difference(state: Server, index: int, clock: Clock, until: int) -> bool:
-    """Whether nothing that may happen by then depends on whether a clock ends a queued mission before it or after.
-
-    It would not be the first to be sent, or nothing is sent to its robot; and those that wait for it, who may be
-    cancelled, hold nobody up. What is sent again or is anybody's is left as it comes.
-    """
-    missions, mission = state.missions, state.missions[index]
-    if not mission.queued or clock.kind not in (START, RUN, DOOM) or mission.robot is None or mission.sent:
-        return False
-    if not _is_blocked(state, mission.robot, mission.channel, until):
-        queue = _waiting_for(missions, mission.robot)
-        if any(index in _first_ready(missions, lane) for lane in (queue, *_lanes(missions, queue))):
-            return False
-        if _holds_up(state, index):
-            return False
-    return not any(_holds_up(state, one) for one in downstream(missions, index))
-
-
-def downstream(missions: tuple[Mission, ...], index: int) -> list[int]:
-    """The missions that wait for one, and those that wait for them, in the order of submission."""
-    found: list[int] = []
-    upstream = {index}
-    for at in range(index + 1, len(missions)):  # what waits for a mission was submitted later
-        if not upstream.isdisjoint(missions[at].waits):
-            upstream.add(at)
-            found.append(at)
-    return found
-
-
-def upstream_overdue(missions: tuple[Mission, ...], index: int) -> list[int]:
-    """Those among the missions for which one waits, and for which they wait, that have ended, nobody knows how."""
-    found = [index]
-    for at in found:
-        found += [one for one in missions[at].waits if one not in found]
-    return sorted(one for one in found[1:] if missions[one].overdue)
-
-
-def _holds_up(state: Server, index: int) -> bool:
-    """Whether it may make a difference to others of its robot whether a mission that waits has been cancelled."""
-    missions, robot = state.missions, state.missions[index].robot
-    if not missions[index].queued or not any(one.name == robot for one in (*state.links, *state.gone)):
-        return robot is None
-    return "b" in state.letters(AI_12) and any(one.robot == robot and one.ready for one in missions[index:])
-
-
-def _is_blocked(state: Server, robot: str, channel: str, until: int) -> bool:
-    """Whether nothing is sent to a robot on a channel by then: it is busy for longer, or not there."""
-    links = [one for one in (*state.links, *state.gone) if one.name == robot]
-    if any(one.over is not None or one.slot < 0 or one in state.gone for one in links):
-        return False
-    return all(_is_kept_busy(state, one, channel, until) for one in links if one.serves)
-
-
-def _is_kept_busy(state: Server, link: Link, channel: str, until: int) -> bool:
-    letters = state.letters(AI_11)
-    if "b" in letters:
-        return False
-    return any(
-        one.status in UNDER_WAY
-        and (one.channel == channel or "c" not in letters)
-        and all(clock.lo > until for clock in one.clocks)
-        for one in _given(state, link)
-    )
-
-
 def _settling(move: Move, part: Part) -> Moves:
     """How missions have ended of which that was left open, once it may make a difference to the queue of a robot."""
     missions = move.state.missions
     for index in part.missions:
-        if missions[index].queued and missions[index].waits and _holds_up(move.state, index):
+        if missions[index].queued and missions[index].waits and holds_up(move.state, index):
             open_ones = upstream_overdue(missions, index)
             if open_ones:
                 yield from settled(move, open_ones[0])
                 return
-
-
-def _first_ready(missions: tuple[Mission, ...], lane: list[int]) -> list[int]:
-    """The first mission of a queue that is ready."""
-    return [index for index in lane if missions[index].ready][:1]
-
-
-def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
-    """What may be sent of several queues that do not wait for one another."""
-    missions = move.state.missions
-    surely = any(missions[lane[0]].ready for lane in lanes)
-    for lane in lanes:
-        for index, way in _from_lane(move, lane):
-            if index is not None or not surely:
-                yield index, way
-
-
-def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
-    """Nothing is under way: the queue as one, or (AI-11 c) by channels, where that makes a difference."""
-    missions = move.state.missions
-    lanes = _lanes(missions, queue)
-    if len(lanes) == 1:
-        yield from _from_lane(move, queue)
-        return
-    first = queue[0]
-    if missions[first].ready:
-        yield first, move
-    found: dict[int | None, list[Move]] = {}
-    whole, apart = split(move, AI_11, "ab")
-    if whole is not None:
-        for index, way in _from_lane(whole, queue):
-            found.setdefault(index, []).append(way)
-    if apart is not None:
-        for index, way in _from_lanes(apart, lanes):
-            found.setdefault(index, []).append(way)
-    for index, moves in found.items():
-        if index != first:
-            yield from ((index, way) for way in dict.fromkeys(moves))
-
-
-def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
-    """Of missions in the order of submission: the first that is ready, or (AI-13 b) another that is."""
-    missions = move.state.missions
-    ready = [index for index in queue if missions[index].ready]
-    if not ready:
-        return
-    overtakes, holds = (move, None) if ready[0] == queue[0] else split(move, AI_12, "a")
-    if overtakes is not None:
-        yield ready[0], overtakes
-    if len(ready) > 1:
-        any_order, _ = split(move, AI_13, "b")
-        free = None if any_order is None else split(any_order, AI_12, "a")[0]
-        if free is not None:
-            for index, after in first_of_alike(free.state, ready):
-                if index != ready[0] or after is not free.state:
-                    yield index, free if after is free.state else free.to(after)
-    if holds is not None:
-        yield None, holds
 
 
 def sends(move: Move, link: Link, index: int) -> Moves:
@@ -434,7 +207,7 @@ def urgent(move: Move, part: Part) -> tuple[Move, ...]:
 
 def in_vain(move: Move, gone: Link) -> Moves:
     """AI-39.order s: a pass sends on a connection that has dropped, and then notices that."""
-    choices = _choices(move, gone) if move.state.letters(AI_39) == "b" else ()
+    choices = choices_on(move, gone) if move.state.letters(AI_39) == "b" else ()
     for index, chosen in choices:
         here, _ = (None, None) if index is None else split(forgotten(chosen, gone), AI_39_ORDER, "s")
         if index is None or here is None:

@@ -18,7 +18,7 @@ from missionfsm.isaac.server.inputs import (
     Submission,
 )
 from missionfsm.isaac.server.reports import STATUS_CHANNEL
-from missionfsm.isaac.server.scripts import PAUSE, A, B, Script
+from missionfsm.isaac.server.script import PAUSE, A, B, Script
 from missionfsm.isaac.server.state import ENDED, FAILURES, PASS_PERIOD, UNDER_WAY, Link, Mission, Server, Status
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.kernel.alphabet import Bounds, ScriptStep

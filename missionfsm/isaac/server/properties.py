@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import functools
 
-from missionfsm.isaac.server.state import (
-    ENDED,
-    LIFECYCLE,
-    UNDER_WAY,
-    Server,
-    Status,
-)
+from missionfsm.isaac.server.state import ENDED, LIFECYCLE, UNDER_WAY, Server, Status
 from missionfsm.kernel.spec import Invariant
 
 

@@ -9,7 +9,6 @@ from attrs import evolve
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.alike import told_apart
 from missionfsm.isaac.server.deciding import assumed as decided_between
-from missionfsm.isaac.server.lifecycle import all_settled
 from missionfsm.isaac.server.readings import (
     AI_02_ABORTED,
     AI_02_CANCELED,
@@ -26,7 +25,8 @@ from missionfsm.isaac.server.readings import (
 )
 from missionfsm.isaac.server.rules import OPERATIONS
 from missionfsm.isaac.server.state import Closes, Mission, Sends, Server, Status, handle_ref
-from missionfsm.isaac.server.time import nothing_open_happened
+from missionfsm.isaac.server.striking import all_settled
+from missionfsm.isaac.server.unseen import nothing_open_happened
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.isaac.shared.stream import miswritten
 from missionfsm.kernel.codec import Malformed

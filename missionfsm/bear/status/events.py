@@ -33,7 +33,7 @@ from missionfsm.bear.status.state import (
 )
 from missionfsm.bear.status.stream import UPDATES
 from missionfsm.bear.status.values import clamped
-from missionfsm.bear.status.views import BLANK, About, Assumed, Tie, View, blank, each, view
+from missionfsm.bear.status.views import BLANK, MEMBERS, About, Assumed, Tie, View, blank, each, view
 from missionfsm.kernel.readings import Ambiguity, Assumption
 from missionfsm.kernel.step import Emission, Step
 from missionfsm.kernel.terms import Refs
@@ -172,28 +172,38 @@ def _addressed(
         return [((message,), ())]
     if only is None and (optional or stays):
         return [(tuple(_offered(message, about, question)), ())]
-    come = evolve(message, topic=evolve(about, ties=_COME), only=only or question["d"])
-    stayed = evolve(message, topic=evolve(about, ties=_STAYED), optional=True)
-    return [
-        # Of those that have come nobody sees whether the stream began before they did, so that nothing of them is owed.
-        ((evolve(message, topic=about), come), (question["a", "d"],)),
-        ((evolve(message, topic=evolve(about, ties=_THERE)),), (question["b"],)),
-        # It may have left in between, and a stream that it has left does not follow it when it is back.
-        ((evolve(message, topic=evolve(about, ties=_NAMED)), stayed), (question["c", "e"],)),
-    ]
+    ways: list[Way] = []
+    for letters, owed, besides in _FOLLOWING:
+        emits = [evolve(message, topic=evolve(about, ties=owed))]
+        for ties, some in besides.items():
+            also = evolve(message, topic=evolve(about, ties=ties))
+            emits.append(evolve(also, optional=True) if some == letters else evolve(also, only=only or question[some]))
+        ways.append((tuple(emits), (question[letters],)))
+    return ways
 
 
-_NAMED, _STAYED = (Tie.NAMED,), (Tie.STAYED,)
-_THERE = (Tie.NAMED, Tie.STAYED, Tie.COME)
-_COME = (Tie.COME, Tie.PASSED)
-_FOLLOWED: Mapping[Tie, tuple[str, ...]] = {
-    Tie.NAMED: ("a", "b", "c", "d", "e"),
-    Tie.STAYED: ("a", "b", "c", "d", "e"),
-    Tie.GONE: ("a", "d"),
-    Tie.COME: ("b", "d"),
-    Tie.PASSED: ("d",),
-}
-"""For each tie the letters of AS-25 under which a stream may show a robot that has moved."""
+_Letters = tuple[str, ...]
+_Ties = tuple[Tie, ...]
+_FOLLOWING: tuple[tuple[_Letters, _Ties, Mapping[_Ties, _Letters]], ...] = (
+    # Of those that have come nobody sees whether the stream began before they did, so that nothing of them is owed.
+    (("a", "d"), MEMBERS, {(Tie.COME, Tie.PASSED): ("d",)}),
+    (("b",), (Tie.NAMED, Tie.STAYED, Tie.COME), {}),
+    # It may have left in between, and a stream that it has left does not follow it when it is back.
+    (("c", "e"), (Tie.NAMED,), {(Tie.STAYED,): ("c", "e")}),
+)
+"""Letters of AS-25: the ties of the streams on which a robot that has moved is due, and by which ties, and letters of
+those, it may be shown besides."""
+
+
+def _follow(tie: Tie) -> Iterator[str]:
+    """The letters of AS-25 under which a stream may show a robot that has moved and belongs to it so."""
+    for letters, owed, besides in _FOLLOWING:
+        yield from letters if tie in owed else ()
+        for ties, some in besides.items():
+            yield from some if tie in ties else ()
+
+
+_FOLLOWED: Mapping[Tie, _Letters] = {tie: tuple(sorted(_follow(tie))) for tie in Tie}
 
 
 def _offered(message: Emission, about: About, question: Ambiguity) -> Iterator[Emission]:
@@ -337,7 +347,7 @@ _HERE = (Tie.STAYED, Tie.COME)
 
 def _joining(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator[tuple[View, Assumption]]:
     """What a stream of a location may show of a robot that has come: what a new one could begin with (AS-09)."""
-    followed = AS_25[endpoint.value]["b", "d"]
+    followed = AS_25[endpoint.value][_FOLLOWED[Tie.COME]]
     if fleet.unheard:
         yield View(robot.id, endpoint, unheard=True), followed
         return

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from attrs import evolve
-
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.alike import one_of_each
 from missionfsm.isaac.server.clocks import Moves
@@ -34,14 +32,6 @@ from missionfsm.isaac.server.state import (
     Server,
     Status,
 )
-
-
-def connects(move: Move) -> Move:
-    """Somebody connects."""
-    slots = {one.slot for one in move.state.ends}
-    free = next(slot for slot in range(len(slots) + 1) if slot not in slots)
-    return move.to(evolve(move.state, links=(*move.state.links, Link(free))))
-
 
 STATUS_CHANNEL = "mission_status"
 

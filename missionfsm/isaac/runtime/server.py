@@ -12,30 +12,24 @@ what an event really changes is touched (a failure cancels all that depends on i
 Always kept: a mission is not sent before all its upstreams have succeeded, nor twice, save by AI-15 b.
 """
 
-import hmac
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 from missionfsm.isaac.runtime.again import restore, run_again, runnable_again
+from missionfsm.isaac.runtime.links import Links
 from missionfsm.isaac.runtime.missions import (
     DEFAULT_STATUS_CHANNEL,
     TOKEN_CHANNEL,
-    Close,
     Effect,
-    Ignored,
     MissionRequest,
     Refused,
-    RobotOffline,
-    RobotOnline,
-    RobotTakenOver,
     RobotView,
     Snapshot,
     Status,
     too_long,
 )
 from missionfsm.isaac.runtime.profile import DOCUMENTED, Profile
-from missionfsm.isaac.runtime.records import ConnectionRecord, MissionRecord, RobotRecord
-from missionfsm.isaac.runtime.scheduler import Scheduler
+from missionfsm.isaac.runtime.records import ConnectionRecord, MissionRecord
 from missionfsm.isaac.wire.framing import MAX_LINE, WireError
 from missionfsm.isaac.wire.messages import (
     Header,
@@ -46,7 +40,6 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.isaac.wire.strictjson import brief_json
 
 _ENDS: Final = {WireStatus.SUCCESS: Status.SUCCESS, WireStatus.FAILURE: Status.FAILED}
 _EARLY: Final = 64  # messages kept of a connection without a name, under AI-18 b
@@ -73,13 +66,8 @@ class MissionServerCore:
         self.profile = profile
         self.name_channel = name_channel
         self._line_limit = line_limit
-        self._scheduler = Scheduler(profile, self._close, self._notice)
-        keys = None if tokens is None else {self._scheduler.key(name): token for name, token in tokens.items()}
-        self._tokens = keys
-        self._connections: dict[int, ConnectionRecord] = {}
-        self._arrived = 0
-        self._dropped: list[ConnectionRecord] = []
-        self._named: dict[tuple[ConnectionRecord, str], None] = {}
+        self._links = Links(profile, tokens, self._receive)
+        self._scheduler = self._links.scheduler
 
     # what can be asked
 
@@ -241,27 +229,17 @@ class MissionServerCore:
 
     def connected(self, connection: int, now: float) -> tuple[Effect, ...]:
         """Somebody has connected. `connection` is a number never used before; ValueError if it is in use."""
-        if connection in self._connections:
+        if connection in self._links.connections:
             msg = f"connection {connection} is open already"
             raise ValueError(msg)
         self._scheduler.begin(now)
-        self._arrived += 1
-        self._connections[connection] = made = ConnectionRecord(connection, self._arrived)
-        if self.profile.ai_18_silent == "d":
-            self._scheduler.deadlines.push(self._scheduler.now + self.profile.name_timeout, "name", made)
+        self._links.add(connection)
         return self._scheduler.end()
 
     def disconnected(self, connection: int, now: float) -> tuple[Effect, ...]:
         """A connection has dropped. One that is unknown, or was closed from here, is no matter."""
         self._scheduler.begin(now)
-        gone = self._connections.pop(connection, None)
-        if gone is not None:
-            gone.open = False
-            if self.profile.ai_15_when == "p":
-                self._dropped.append(gone)
-                self._scheduler.wait_for_pass()
-            else:
-                self._unbind(gone)
+        self._links.drop(connection)
         return self._scheduler.end()
 
     def leaving(self, connection: int) -> None:
@@ -269,14 +247,14 @@ class MissionServerCore:
 
         No mission goes to a connection that ends.
         """
-        found = self._connections.get(connection)
+        found = self._links.connections.get(connection)
         if found is not None:
             found.leaving = True
 
     def received(self, connection: int, message: Message | WireError, now: float) -> tuple[Effect, ...]:
         """A message has arrived, or something that is none."""
         self._scheduler.begin(now)
-        source = self._connections.get(connection)
+        source = self._links.connections.get(connection)
         if source is not None:
             self._receive(source, message)
         return self._scheduler.end()
@@ -286,133 +264,37 @@ class MissionServerCore:
         self._scheduler.begin(now)
         return self._scheduler.end()
 
-    # connections
-
-    def _close(self, connection: ConnectionRecord, reason: str) -> None:
-        del self._connections[connection.id]
-        connection.open = False
-        self._scheduler.effects.append(Close(connection.id, reason))
-        self._unbind(connection)
-
-    def _unbind(self, connection: ConnectionRecord) -> None:
-        robot, connection.robot = connection.robot, None
-        self._scheduler.ended(connection)
-        if robot is None:
-            return
-        robot.connection = None
-        self._scheduler.effects.append(RobotOffline(robot.name, connection.id))
-        self._scheduler.lost(robot)
-
-    def _notice(self) -> None:
-        """A scheduling pass begins: drops and names that waited for it."""
-        dropped, self._dropped = self._dropped, []
-        for gone in dropped:
-            self._unbind(gone)
-        named, self._named = self._named, {}
-        for connection, text in named:
-            if connection.open:
-                self._name(connection, text)
-
-    def _says_name(self, connection: ConnectionRecord, text: str) -> None:
-        known = connection.robot is not None and connection.robot.key == self._scheduler.key(text)
-        if not self.profile.names_wait_for_pass or known:  # robots say it again and again
-            self._name(connection, text)
-        else:
-            self._named[connection, text] = None
-            self._scheduler.wait_for_pass()
-
-    def _name(self, connection: ConnectionRecord, text: str) -> None:
-        key = self._scheduler.key(text)
-        bound = connection.robot
-        if bound is not None and bound.key == key:
-            return  # said again, as robots do
-        refused = self._refused(connection, key)
-        if refused:
-            self._ignore(connection, refused)
-        elif self._tokens is not None and not _same(self._tokens.get(key), connection.token):
-            self._close(connection, f"it says the name {brief_json(text)} without its token")
-        else:
-            self._claim(connection, text)
-
-    def _refused(self, connection: ConnectionRecord, key: str) -> str:
-        """Why a connection cannot take a name, whoever has it; empty where it can."""
-        if not key:
-            return "an empty name is no name"
-        if connection.displaced and self.profile.ai_16_back == "r":
-            return "another connection took its name over"
-        if connection.robot is not None and self.profile.ai_17 == "a":
-            return "it has a name already and cannot take another"
-        return ""
-
-    def _claim(self, connection: ConnectionRecord, text: str) -> None:
-        """A connection takes a name; where another has it, the profile says what becomes of the two."""
-        robot = self._scheduler.robot(text)
-        if robot.connection is not None and not robot.connection.open:
-            self._unbind(robot.connection)  # dropped, and no pass has come since
-        other = robot.connection
-        if other is None:
-            self._unbind(connection)
-            self._scheduler.effects.append(RobotOnline(text, connection.id))
-            self._bind(connection, robot, text)
-        elif self.profile.ai_16 == "d":
-            self._close(connection, "another connection has that name")
-        elif self.profile.ai_16 == "n" or (self.profile.ai_16 == "a" and connection.number > other.number):
-            self._take_over(connection, robot, other, text)
-        else:
-            self._ignore(connection, "another connection has that name")
-
-    def _take_over(self, connection: ConnectionRecord, robot: RobotRecord, other: ConnectionRecord, text: str) -> None:
-        self._unbind(connection)
-        other.robot = robot.connection = None
-        other.displaced = True
-        self._scheduler.effects.append(RobotTakenOver(text, other.id, connection.id))
-        if self.profile.ai_16_under_way == "m":
-            self._scheduler.left(robot, other)
-        else:
-            self._scheduler.lost(robot)
-        self._bind(connection, robot, text)
-
-    def _bind(self, connection: ConnectionRecord, robot: RobotRecord, name: str) -> None:
-        connection.robot, robot.connection, robot.name = robot, connection, name
-        early, connection.early = connection.early, []
-        for message in early:
-            self._receive(connection, message)
-        self._scheduler.found(robot)
-
-    # messages
-
-    def _ignore(self, connection: ConnectionRecord, reason: str) -> None:
-        self._scheduler.effects.append(Ignored(connection.id, reason))
+    # what is said
 
     def _receive(self, source: ConnectionRecord, message: Message | WireError) -> None:
         if isinstance(message, WireError):
             closes = self.profile.ai_38 == "d" if message.kind == "type" else self.profile.ai_26_bad == "f"
             if closes:
-                self._close(source, str(message))
+                self._links.close(source, str(message))
             else:
-                self._ignore(source, str(message))
+                self._links.ignore(source, str(message))
         elif isinstance(message.payload, TextProto):
             if message.header.channel == self.name_channel:
-                self._says_name(source, message.payload.text)
-            elif message.header.channel == TOKEN_CHANNEL and self._tokens is not None:
+                self._links.says_name(source, message.payload.text)
+            elif message.header.channel == TOKEN_CHANNEL and self._links.guarded:
                 source.token = message.payload.text
             else:
-                self._ignore(source, "a text on a channel that is not the name channel")
+                self._links.ignore(source, "a text on a channel that is not the name channel")
         elif isinstance(message.payload, MissionProto):
-            self._ignore(source, "a mission from a robot")
+            self._links.ignore(source, "a mission from a robot")
         elif source.robot is not None or source.kept:
             self._status(source, message.header, message.payload)
         elif self.profile.ai_18_early == "b" and len(source.early) < _EARLY:
             source.early.append(message)
         else:
-            self._ignore(source, "a status before the name")
+            self._links.ignore(source, "a status before the name")
 
     def _status(self, source: ConnectionRecord, header: Header, payload: MissionStatusProto) -> None:
         mission = self._meant(source, header, payload)
         if mission is None:
-            self._ignore(source, "a status of no mission of this robot")
+            self._links.ignore(source, "a status of no mission of this robot")
         elif not _may_report(source, mission) or mission.status_channel != header.channel or not mission.was_sent:
-            self._ignore(source, f"a status of mission {mission.uuid}, which is not waited for here")
+            self._links.ignore(source, f"a status of mission {mission.uuid}, which is not waited for here")
         elif not mission.in_flight:
             self._late(source, mission, payload.mission_status)
         elif payload.mission_status is WireStatus.RUNNING:
@@ -424,7 +306,7 @@ class MissionServerCore:
                 if self.profile.ai_31 == "a":
                     self._scheduler.arm(mission, "silence", self._scheduler.now + self.profile.silence_timeout)
         elif self.profile.ai_07 == "b" and not mission.acknowledged:
-            self._ignore(source, f"mission {mission.uuid} ended before it was acknowledged")
+            self._links.ignore(source, f"mission {mission.uuid} ended before it was acknowledged")
         else:
             self._scheduler.finish(mission, _ENDS[payload.mission_status])
 
@@ -449,7 +331,7 @@ class MissionServerCore:
         if mission.ended and believed and status is not WireStatus.RUNNING:
             self._scheduler.change(mission, _ENDS[status])
         else:
-            self._ignore(source, f"a status of mission {mission.uuid}, which does not run any more")
+            self._links.ignore(source, f"a status of mission {mission.uuid}, which does not run any more")
 
 
 def _may_report(source: ConnectionRecord, mission: MissionRecord) -> bool:
@@ -458,11 +340,6 @@ def _may_report(source: ConnectionRecord, mission: MissionRecord) -> bool:
     if mission.in_flight and link is not None and link.kept.get(mission.uuid) is mission:
         return link is source
     return source.robot is not None and mission.key == source.robot.key
-
-
-def _same(wanted: str | None, said: str) -> bool:
-    """Whether a token is the wanted one; the time that this takes tells nothing of it."""
-    return wanted is not None and hmac.compare_digest(wanted.encode(), said.encode("utf-8", "replace"))
 
 
 def elapse(core: MissionServerCore, now: float) -> tuple[Effect, ...]:

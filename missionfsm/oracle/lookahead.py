@@ -25,6 +25,7 @@ from missionfsm.oracle.explanation import GONE, Channel, Explanation, Names, tid
 from missionfsm.oracle.foresight import Foresight
 from missionfsm.oracle.foretold import foretold
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
+from missionfsm.oracle.shelf import Depot
 
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
@@ -74,6 +75,7 @@ class Lookahead(Coming):
         excerpt: the events.
         horizon: how many of them may be known beforehand.
         rules: by the positions of messages the rules that those exercise which are foretold; added to.
+        depot: what explanations have put away; None if nothing ever is.
 
     Attributes:
         required: the bits of readings that have to stay possible; what contradicts one of them is withheld.
@@ -86,9 +88,17 @@ class Lookahead(Coming):
             come to the same under other readings of all others.
     """
 
-    def __init__(self, spec: Spec, excerpt: Excerpt, horizon: Horizon, rules: dict[int, tuple[str, ...]]) -> None:
+    def __init__(
+        self,
+        spec: Spec,
+        excerpt: Excerpt,
+        horizon: Horizon,
+        rules: dict[int, tuple[str, ...]],
+        depot: Depot | None = None,
+    ) -> None:
         super().__init__(excerpt, horizon)
         self.spec = spec
+        self._depot = depot
         self.required, self.withheld, self.stopped = 0, False, False
         self.blamed: dict[int, int] = {}
         self.consulted = self.depends = 0
@@ -265,7 +275,8 @@ class Lookahead(Coming):
         if not forgets or not self.last or self.at < self._shown_from or self.spec.anywhere or self.spec.others:
             return explanation.state
         if all(self._is_over(explanation, channel) for channel in explanation.channels if channel.name > GONE):
-            return forgets(explanation.state)
+            counted = forgets(explanation.state)
+            return self._depot.by_names(explanation.state, counted) if self._depot else counted
         return explanation.state
 
     def _is_over(self, explanation: Explanation, channel: Channel) -> bool:
@@ -426,4 +437,5 @@ class Lookahead(Coming):
 
     def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
         """Whether the state may come to be shown so before an event."""
-        return self._foresight.may_show(explanation, message, self.at, position)
+        whole = self._depot.whole(explanation) if self._depot else explanation
+        return self._foresight.may_show(whole, message, self.at, position)

@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from attrs import define, field
 
-from missionfsm.kernel.history import Received
+from missionfsm.kernel.history import Called, Driven, Ended, Received, Returned
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.transport import REDELIVERED, TR_05
 from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
@@ -24,9 +24,10 @@ from missionfsm.oracle.explanation import Explanation, Lost, within
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, bytes_besides
 from missionfsm.oracle.restarts import NONE, Restarts, apparent_restarts
+from missionfsm.oracle.shelf import Depot
 from missionfsm.oracle.subsumption import prune
 from missionfsm.oracle.successors import ExhaustedError, Place, Successor, Successors, place, weight
-from missionfsm.oracle.symbols import Observer
+from missionfsm.oracle.symbols import Observer, names_of
 from missionfsm.oracle.transition import TransitionFunction
 
 T = TypeVar("T")
@@ -159,6 +160,9 @@ class Search:
         self.restarts = NONE
         self._rules: dict[int, tuple[str, ...]] = {}
         self._alone = self._stopped = False
+        self._depot = self._new_depot()
+        self._named: dict[int, int] = {}
+        self._read = 0
         self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
 
     @property
@@ -234,10 +238,10 @@ class Search:
         It goes on where it has explained those up to a nearer one: what it tried before leads nowhere still.
         """
         before, self._explained = self._explained, None
-        anew = before is None or before > horizon or self._built & ~self._required or self._alone
+        anew = self._reads_on() or before is None or before > horizon or self._built & ~self._required or self._alone
         last = self.whole and (self._alone or horizon == len(self._symbols))
         known = Horizon(horizon, last, self.beyond | self.restarts.shown)
-        self._ahead = ahead = Lookahead(self.transitions.spec, self._excerpt, known, self._rules)
+        self._ahead = ahead = Lookahead(self.transitions.spec, self._excerpt, known, self._rules, self._depot)
         self._horizon, self._built = horizon, self._required
         self.successors.reset()
         if anew:
@@ -253,6 +257,25 @@ class Search:
             self.reached = max(self.reached, min(self._stuck, horizon))
         self._explained = horizon if found else None
         return found
+
+    def _reads_on(self) -> bool:
+        """Note where calls and answers name something for the last time. Whether that was put away."""
+        if self._depot is None:
+            return False
+        names: set[int] = set()
+        for position in range(self._read, len(self._symbols)):
+            if self._symbols[position][0] in (Called, Returned, Driven):
+                names.update(names_of(self._symbols[position]))
+                self._named.update(dict.fromkeys(names_of(self._symbols[position]), position))
+        self._read = len(self._symbols)
+        if self._depot.names.isdisjoint(names):
+            return False
+        self._depot = self._new_depot()
+        return True
+
+    def _new_depot(self) -> Depot | None:
+        spec = self.transitions.spec
+        return None if spec.anywhere or spec.others or not spec.shelving else Depot(spec.shelving)
 
     def _begin_anew(self) -> None:
         """Forget what was tried, and stand before the first event; no reading has to stay for what was before."""
@@ -387,9 +410,18 @@ class Search:
         kind, *what = self._symbols[position]
         explains = self._explaining(position)
         before = [one for one in here.explanations if not self._ahead.withholds(one.assumed)]
+        if self._depot and self._concerns_all(position):
+            before = list(map(self._depot.whole, before))
         here.more = self._usual_first(before, explains(before, kind, *what))
         if self._reckons_at(position):
             here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
+
+    def _concerns_all(self, position: int) -> bool:
+        """Whether an event may tell of what was put away, or something besides the system is asked for it."""
+        kind, *what = self._symbols[position]
+        shelving = self.transitions.spec.shelving
+        asks = kind is Called and shelving is not None and shelving.asks(what[0])
+        return asks or kind in (Received, Ended) or self._reckons_at(position)
 
     def _explaining(self, position: int) -> Observer[Iterator[Successor]]:
         """What explains the event in a place."""
@@ -429,7 +461,13 @@ class Search:
         ahead.at = position + 1
         narrow = ahead.narrowed(explanation)
         ahead.at = position
-        return narrow
+        if narrow is None or self._depot is None:
+            return narrow
+        return self._depot.without(narrow, lambda name: self._named.get(name, -1) > position)
+
+    def brought(self, explanation: Explanation) -> Explanation:
+        """An explanation of a layer with all that it has put away."""
+        return explanation if self._depot is None else self._depot.whole(explanation)
 
     def _reckons_at(self, position: int) -> bool:
         """Whether something besides the system itself is asked for an event."""

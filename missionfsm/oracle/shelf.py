@@ -11,16 +11,19 @@ What can be said of such a node by the rules of the system itself holds for the 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+import itertools
+from collections.abc import Callable, Hashable, Iterator, Sequence
 
 from attrs import define, evolve, field, frozen
 
 from missionfsm.kernel.history import Called, Ended, Event, Name, Received
 from missionfsm.kernel.shelving import Shelving
+from missionfsm.kernel.terms import State
 from missionfsm.oracle.explanation import GONE, Explanation, mentioned_besides
+from missionfsm.oracle.symbols import Part
 
-LEAST = 64
-"""How many things have to be there before the first are put away."""
+LEAST, MORE = 64, 16
+"""How many things have to be there before the first are put away, and before a search puts away more."""
 
 
 @frozen(eq=False)
@@ -28,10 +31,10 @@ class _Shelf:
     """What one thing stands for: what was put away before, and what more."""
 
     before: _Shelf | None
-    names: tuple[Name, ...]
+    names: tuple[Part, ...]
     things: tuple[Hashable, ...]
 
-    def all(self) -> tuple[list[Name], list[Hashable]]:
+    def all(self) -> tuple[list[Part], list[Hashable]]:
         """Everything on it, the first first: the names of all but the last thing, and the things."""
         shelves: list[_Shelf] = []
         shelf: _Shelf | None = self
@@ -156,3 +159,65 @@ class Shelves:
 def _kept(shelf: _Shelf | None) -> _Shelf:
     assert shelf is not None, "what stands for things stands for some"  # noqa: S101
     return shelf
+
+
+class Depot:
+    """What the explanations of a search have put away, each for itself; names keep their numbers there.
+
+    Args:
+        shelving: how the system puts things away.
+
+    Attributes:
+        names: the numbers of all names that were put away.
+    """
+
+    def __init__(self, shelving: Shelving) -> None:
+        self._shelving = shelving
+        self._shelves: list[_Shelf] = []
+        self._numbers: dict[Hashable, int] = {}
+        self._named: dict[Hashable, int] = {}
+        self._same_names: list[int] = []
+        self._last: tuple[Explanation, Explanation] | None = None
+        self.names: set[int] = set()
+
+    def without(self, explanation: Explanation, named_later: Callable[[int], bool]) -> Explanation:
+        """The explanation once things are put away, if there are many; not those that calls or answers name later."""
+        shelving = self._shelving
+        state, shelf = explanation.state, shelving.shelf(explanation.state)
+        front = shelving.front(state)
+        if front < (LEAST if shelf is None else MORE) or _is_told(explanation, shelving):
+            return explanation
+        names = tuple(itertools.takewhile(lambda name: name > GONE and not named_later(name), explanation.names))
+        names = names[: front - 1]
+        if not names or not _apart(names, explanation):
+            return explanation
+        things = shelving.things(state, len(names) + 1)[shelf is not None :]
+        put = shelving.put(state, len(names) + 1, self._number(shelf, names, things))
+        self.names.update(names)
+        return evolve(explanation, state=put, names=explanation.names[len(names) :])
+
+    def _number(self, before: int | None, names: tuple[int, ...], things: tuple[Hashable, ...]) -> int:
+        key = before, names, things
+        number = self._numbers.get(key)
+        if number is None:
+            number = self._numbers[key] = len(self._shelves)
+            self._shelves.append(_Shelf(None if before is None else self._shelves[before], names, things))
+            named = None if before is None else self._same_names[before], names
+            self._same_names.append(self._named.setdefault(named, number))
+        return number
+
+    def whole(self, explanation: Explanation) -> Explanation:
+        """The explanation with all that was put away."""
+        shelf = self._shelving.shelf(explanation.state)
+        if shelf is None:
+            return explanation
+        if self._last is None or self._last[0] is not explanation:
+            names, things = self._shelves[shelf].all()
+            state = self._shelving.brought(explanation.state, tuple(things))
+            self._last = explanation, evolve(explanation, state=state, names=(*names, *explanation.names))
+        return self._last[1]
+
+    def by_names(self, state: State, counted: State) -> State:
+        """A state of which what has ended only counts, so that it is told apart by the names that were put away."""
+        shelf = self._shelving.shelf(state)
+        return counted if shelf is None else self._shelving.put(counted, 1, self._same_names[shelf])

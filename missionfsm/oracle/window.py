@@ -122,5 +122,5 @@ class Window:
             if layer.unfinished:
                 for one in layer.explanations:
                     belief.unfollowed |= one.assumed
-        found = tuple(Successor(reopened(one)) for one in layers[-1].explanations)
+        found = tuple(Successor(reopened(search.brought(one))) for one in layers[-1].explanations)
         belief.leap(self._lookout, found, [layer.rules for layer in layers[1:]])

@@ -277,6 +277,16 @@ def test_bench_traffic_missions_in_pairs(tmp_path: Path, pairs: int) -> None:
     shown(f"{pairs} pairs of missions", written(tmp_path / "log.jsonl", [*lines, {"settled": True}]))
 
 
+@pytest.mark.parametrize("missions", [1_000, 2_000, 4_000])
+def test_bench_traffic_list_that_nobody_watches(tmp_path: Path, missions: int) -> None:
+    """Missions that are created one after another, every one of which stays listed; nothing else is known."""
+    lines: list[Any] = [{"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}}]
+    for number in range(1, missions + 1):
+        lines.append({"call": number, "method": "CreateMission", "params": navigate(f"table-{number % 3 + 1}")})
+        lines.append({"return": number, "result": {"missionId": f"mission-{number}"}})
+    shown(f"{missions} missions that nobody watches", written(tmp_path / "log.jsonl", lines))
+
+
 def test_bench_traffic_list_that_is_never_cleared(tmp_path: Path) -> None:
     """2,400 missions one after another, every one of which stays listed, and now and then somebody looks."""
     log = Recorder(drives=True)

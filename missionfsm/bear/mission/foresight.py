@@ -37,7 +37,7 @@ def foresees(
         return True
     if not shown:
         return not names or _CLEARS in calls
-    later = _Later(robot, names, content.states.missions, shown, calls)
+    later = _Later(robot, names, content.states.missions, shown, calls, frozenset(names))
     forgets = not calls.isdisjoint(_FORGETS)
     if robot.assigned:
         return later.started_are_kept() or (forgets and frozenset(shown).isdisjoint(names[: len(robot.done)]))
@@ -83,6 +83,13 @@ _FORGETS = frozenset({_CLEARS, *AM_13})
 """Operations that may make a robot forget missions that have ended."""
 
 
+MOST_KEPT = 64
+"""Of how many messages it is remembered which missions they list that have ended."""
+
+_KEPT: dict[int, tuple[Sequence[MissionState], tuple[Mission, ...], tuple[int, ...]]] = {}
+"""By the identity of the missions of a message: those missions, and the first that have ended, which it lists."""
+
+
 @frozen
 class _Later:
     """A robot, and a message that may come later.
@@ -93,6 +100,7 @@ class _Later:
         missions: the missions that the message lists.
         shown: their names.
         calls: the operations that may have been called in between.
+        known: the names of the missions of the robot.
     """
 
     robot: Robot
@@ -100,6 +108,7 @@ class _Later:
     missions: Sequence[MissionState]
     shown: tuple[int, ...]
     calls: frozenset[str]
+    known: frozenset[int]
 
     def all_kept(self) -> bool:
         """Whether the message may list every mission that has started, and those first."""
@@ -107,11 +116,29 @@ class _Later:
         ended, started = len(robot.done), len(robot.done) + (robot.active is not None)
         return (
             started <= len(self.shown)
-            and all(self._is(mission, at, at) for at, mission in enumerate(robot.done))
-            and all(self.missions[at].state == mission.state for at, mission in enumerate(robot.done))
+            and self._ended_are_kept()
             and (robot.active is None or self._is(robot.active, ended, ended))
             and self._waiting(0, started, survived=started > 0)
         )
+
+    def _ended_are_kept(self) -> bool:
+        """Whether the message may list the missions that have ended, and those first.
+
+        Those that it lists by all that is known are not looked at again when more have ended.
+        """
+        done, names = self.robot.done, self.names[: len(self.robot.done)]
+        missions, kept, kept_names = _KEPT.get(id(self.missions), ((), (), ()))
+        first = len(kept)
+        if missions is not self.missions or done[:first] != kept or names[:first] != kept_names:
+            first = 0
+        for at in range(first, len(done)):
+            if not self._is(done[at], at, at) or self.missions[at].state != done[at].state:
+                return False
+        if names[first:] == self.shown[first : len(names)]:
+            if len(_KEPT) >= MOST_KEPT:
+                _KEPT.clear()
+            _KEPT[id(self.missions)] = self.missions, done, names
+        return True
 
     def started_are_kept(self) -> bool:
         """Whether the message may list every mission that has started, whatever the order of the turns is."""
@@ -158,7 +185,7 @@ class _Later:
 
     def _is_new(self, place: int) -> bool:
         """Whether no mission of the robot has the name in that place of the message."""
-        return self.shown[place] not in self.names
+        return self.shown[place] not in self.known
 
     def _is_charge(self, place: int) -> bool:
         """Whether a new mission in that place of the message may be a charge that goes before waiting missions."""
@@ -199,7 +226,7 @@ class _Later:
     def _end_here(self, name: int, place: int, *, survived: bool) -> bool:
         """Whether the missions from a name on may have vanished, and those from a place on may be new."""
         new = range(place, len(self.shown))
-        if new and (self.calls.isdisjoint(_MAKES) or not all(map(self._is_new, new))):
+        if new and (self.calls.isdisjoint(_MAKES) or not self.known.isdisjoint(self.shown[place:])):
             return False
         if name == len(self.names) or not survived:
             return True

@@ -52,9 +52,10 @@ def _selected(missions: tuple[Mission, ...]) -> tuple[Mission, ...]:
 
 @functools.lru_cache(maxsize=64)
 def listing(robot: Robot) -> Listing:
-    """What a subscriber of the robot is shown."""
+    """What a subscriber of the robot is shown; of missions that have ended, all is visible."""
+    going_on = robot.turns[len(robot.done) :]
     return Listing(
-        robot.listed(tuple([mission.visible for mission in robot.turns])),
+        robot.listed((*robot.done, *[mission.visible for mission in going_on])),
         (robot.assigned[len(robot.done)] if robot.assigned else len(robot.done)) if robot.active else None,
         robot.world.family,
         robot.fresh,

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import missionfsm
+from missionfsm.systems import names
 
 ROOT = Path(missionfsm.__file__).parent
 MODULES = {
@@ -120,6 +121,15 @@ def test_the_page_speaks_of_what_is_there() -> None:
         text for text in ticked(PAGE.read_text(encoding="utf-8")) if re.fullmatch(r"[a-z_]+/[a-z_/]*(\.py)?", text)
     }
     assert {text for text in named if not ((ROOT / text).exists() or (ROOT.parent / text).exists())} == set()
+
+
+def test_every_room_is_on_the_page() -> None:
+    """The tables of rooms name every file of the four systems, and no room that none of them has."""
+    section = PAGE.read_text(encoding="utf-8").partition("## The same rooms")[2].partition("Files of more than")[0]
+    systems = tuple(f"missionfsm.{one}." for one in names())
+    there = {name.removeprefix(one).partition(".")[0] for name in MODULES for one in systems if name.startswith(one)}
+    named = {text for text in ticked(section) if re.fullmatch("[a-z_]+", text)}
+    assert (there - named - {"__init__"}, named - there - {"conform"}) == (set(), set())
 
 
 def test_every_dependency_has_its_reason() -> None:

@@ -9,7 +9,7 @@ from missionfsm.bear.mission.promises import FEEDBACK, GOAL_INDEX, GOALS, STATE,
 from missionfsm.bear.mission.readings.messages import AM_08, AM_50_MEMBER, AM_50_SHAPE, AM_51
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_26
-from missionfsm.bear.mission.state import FAMILY, GOALLESS, NOT_CHOSEN, RETURN_POINT, Family, Kind, Mission
+from missionfsm.bear.mission.state import AUTOMATIC, FAMILY, GOALLESS, NOT_CHOSEN, RETURN_POINT, Family, Kind, Mission
 from missionfsm.bear.wire.messages import (
     BaseStatus,
     BaseType,
@@ -188,7 +188,8 @@ def _goal_index(mission: Mission, message: MissionState) -> None:
     active = mission.state in (State.STATE_RUNNING, State.STATE_PAUSED)
     if active and mission.kind not in GOALLESS and mission.goal != NOT_CHOSEN:
         if index != mission.goal:
-            raise MismatchError(GOAL_INDEX.id, f"has current_goal_index {index}, expected {mission.goal}")
+            chosen = ": free goals are taken in their order" if mission.kind in AUTOMATIC else ""
+            raise MismatchError(GOAL_INDEX.id, f"has current_goal_index {index}, expected {mission.goal}{chosen}")
     elif not -1 <= index <= last:
         raise MismatchError(GOAL_INDEX.id, f"has current_goal_index {index}, outside of its goals")
 

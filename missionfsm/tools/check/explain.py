@@ -23,12 +23,14 @@ from missionfsm.tools.check.candidates import (
     SHAPE,
     UNDRIVEN,
     UNOWED,
+    VALUE,
     Candidate,
     Circumstances,
     Problem,
 )
 from missionfsm.tools.check.nearest import Nearest
 from missionfsm.tools.check.phrases import answer_words, described, event_words, name_words, rules_in_words
+from missionfsm.tools.check.untimely import untimely
 from missionfsm.tools.check.verdict import Allowed, Violation
 from missionfsm.tools.check.wrongcode import wrong_code
 
@@ -106,9 +108,9 @@ def _operation(nearest: Nearest, event: Event, expected: Iterable[Candidate]) ->
 
 
 def _allowed(spec: Spec, candidates: Iterable[Candidate], operation: str) -> tuple[Allowed, ...]:
-    """What could have come, each once, with the fewest assumptions."""
+    """What could have come, each once, with the fewest assumptions; the candidates come in order."""
     merged: dict[str, Candidate] = {}
-    for one in sorted(candidates, key=lambda one: one.weight):
+    for one in candidates:
         before = merged.get(one.what)
         if one.what and one.allowed and (before is None or len(one.assumes) < len(before.assumes)):
             merged[one.what] = one
@@ -122,6 +124,27 @@ def _lightest(candidates: Sequence[Candidate]) -> list[Candidate]:
     """Those with the least problems."""
     least = min((one.weight for one in candidates), default=0)
     return [one for one in candidates if one.weight == least]
+
+
+ODD, MOST_ODD = 2, 3
+"""What an unusual reading adds to the weight of a message, and how many of them count at most."""
+
+
+def _likeliest_first(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Messages, first those with the least problems and the most usual readings, before which least happened unseen."""
+    found = list(candidates)
+    usual = min((one.unusual for one in found), default=0)
+    return sorted(found, key=lambda one: (_unlikely(one, usual), len(one.unseen)))
+
+
+def _unlikely(candidate: Candidate, usual: int) -> int:
+    return candidate.weight + ODD * min(candidate.unusual - usual, MOST_ODD)
+
+
+def _likeliest(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The first of them, with all that are as likely but for what happened unseen."""
+    usual = min(one.unusual for one in candidates)
+    return [one for one in candidates if _unlikely(one, usual) == _unlikely(candidates[0], usual)]
 
 
 def _problems(candidates: Iterable[Candidate]) -> list[Problem]:
@@ -138,8 +161,9 @@ def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
 
 
 def _against_answer(nearest: Nearest, event: Returned) -> Accusation:
-    candidates = list(nearest.answers(event))
-    lightest = _lightest(candidates)
+    candidates = sorted(nearest.answers(event), key=lambda one: one.weight)
+    said = answer_words(event.answer, tuple(map(name_words, event.names)))
+    lightest = sorted(_lightest(candidates), key=lambda one: abs(len(one.what) - len(said)))
     if not lightest or lightest[0].weight < CODE:
         return candidates, *_wrong_in_it(nearest, event, candidates, lightest)
     return candidates, *wrong_code(nearest, event, [one for one in candidates if one.allowed] or candidates)
@@ -208,10 +232,10 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     wrong = _wrong_mark(nearest, event)
     if wrong is not None:
         return (), [wrong.rule], [wrong.says]
-    candidates = list(nearest.messages(event))
+    candidates = _likeliest_first(nearest.messages(event))
     if not candidates:
         return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
-    lightest = _lightest(candidates)
+    lightest = _likeliest(candidates)
     rules = list(dict.fromkeys(_broken(lightest)))
     weights = [problem.weight for problem in lightest[0].problems]
     if UNDRIVEN in weights:
@@ -219,7 +243,7 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
         rules = _alternately(causes.latest(nearest.belief), rules)
     elif (
         FAILED not in weights
-        and max(weights, default=0) >= LEFT_OUT
+        and any(weight == LEFT_OUT or weight >= UNOWED for weight in weights)
         and not any(SHAPE <= weight < UNOWED for weight in weights)
     ):
         # Either the message shows wrongly what happened, or something else happened than should have.
@@ -227,6 +251,9 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     notes = [problem.says for problem in _problems(lightest)]
     if isinstance(event.content, Malformed):
         return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
+    refused = untimely(nearest, event) if max(weights, default=0) >= VALUE else None
+    if refused is not None:
+        return candidates, _alternately(refused[0], rules), [refused[1]]
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
 
 
@@ -276,7 +303,8 @@ def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
     owing: tuple[str, ...] | None = None
     if candidate is not None and candidate.owed is not None:
         channel, owed = candidate.owed
-        owing = causes.owing(nearest.belief, owed.view, channel.topic)
+        first = nearest.spec.delivery(channel.topic).first if channel.last is None else ()
+        owing = first or causes.owing(nearest.belief, owed.view, channel.topic)
     unseen = reversed(candidate.unseen) if candidate else ()
     return list(dict.fromkeys((*unseen, *(causes.latest(nearest.belief) if owing is None else owing))))
 
@@ -321,7 +349,21 @@ def _still_due(nearest: Nearest) -> Accusation:
                 last = f"; it showed {_shown(nearest, channel.last)} last" if channel.last else ""
                 notes.append(f"{where} did not show {_shown(nearest, owed)}{last}")
     before = _before(nearest, found[0] if found else None)
+    if not found:
+        rules, notes = _nothing_new(nearest)
     return found, _alternately(list(dict.fromkeys(rules)), before), notes[:2]
+
+
+def _nothing_new(nearest: Nearest) -> tuple[list[str], list[str]]:
+    """What was shown before the last call, and nothing after it: that a message is missing is known from later ones."""
+    here = next((one for one in nearest.reachable() if nearest.at_rest(one)), None)
+    shown = [one for one in here.channels if one.last is not None] if here is not None else []
+    if not shown or not nearest.about.recent:
+        return [], []
+    call = nearest.about.recent[-1].words(nearest.spec)
+    rules = [rule for one in shown for rule in nearest.spec.delivery(one.topic).unowed]
+    lasts = ((_called(nearest, one), _shown(nearest, one.last)) for one in shown if one.last is not None)
+    return rules, [f"after {call} {where} showed nothing new; it showed {last} last" for where, last in lasts]
 
 
 def _shown(nearest: Nearest, owed: Owed) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import itertools
+import re
 from collections.abc import Iterable, Iterator
 
 from attrs import evolve, frozen
@@ -39,6 +40,7 @@ from missionfsm.tools.check.candidates import (
     UNDRIVEN,
     UNOWED,
     VALUE,
+    AnsweredCall,
     Candidate,
     Circumstances,
     Problem,
@@ -53,6 +55,10 @@ MAX_LOOKED_AT = 200
 """How many explanations are looked at, the nearest first."""
 
 
+WORD = re.compile(r"-?\w+")
+"""A word or a number in a description."""
+
+
 @frozen
 class _Message:
     """A message that came: the event, its content, its names and its channel as the oracle numbers them."""
@@ -65,7 +71,8 @@ class _Message:
 
 def _distance(one: str, other: str) -> int:
     """How far two texts are from each other, from 0 to 9."""
-    return round(9 * (1 - difflib.SequenceMatcher(None, one.split(), other.split(), autojunk=False).ratio()))
+    matcher = difflib.SequenceMatcher(None, WORD.findall(one), WORD.findall(other), autojunk=False)
+    return round(9 * (1 - matcher.ratio()))
 
 
 def rules_about(spec: Spec, assumption: Assumption) -> tuple[str, ...]:
@@ -211,8 +218,9 @@ class Nearest:
                 if channel.name == number or (channel.name < GONE and self._is_new(here, number))
                 for one in self._showing(here, channel, message, before)
             )
+            unusual = self.unusual(here)
             for one in itertools.chain(found, self._undriven(here, message)):
-                yield evolve(one, unseen=successor.rules)
+                yield evolve(one, unseen=successor.rules, unusual=unusual + one.unusual)
 
     def _sequence(self, here: Explanation, relations: Iterable[str]) -> Iterator[Problem]:
         """The problems of the readings that a message's numbers need. Wrong numbers are judged elsewhere."""
@@ -242,7 +250,10 @@ class Nearest:
             words = SOME_STATE if owed.view is ANY else described(self.spec, owed.view)
             possible = not before_it and not self._clash(here, needs)
             due = (channel, before_it[0] if before_it else owed)
-            yield Candidate(what=words, problems=tuple(problems), allowed=possible, passing=owed.passing, owed=due)
+            unusual = sum(one.ambiguity.default not in one.letters for one in needs)
+            yield Candidate(
+                what=words, problems=tuple(problems), allowed=possible, passing=owed.passing, owed=due, unusual=unusual
+            )
             if not owed.passing and delivery.skips:
                 skipped = (delivery.skips,)
         if not channel.owed:
@@ -352,14 +363,20 @@ class Nearest:
             for event in drive.by_itself if drive.name in self.successors.driven else ():
                 says = f"{described(self.spec, event)} would have to happen first, and nobody made it happen"
                 yield from ((step, says, drive.impossible, UNDRIVEN) for step in drive.steps(here.state, event, ()))
+        for call in self._failed_last():
+            refs = self.successors.refs(here, tuple(map(self.belief.number, call.about)))
+            says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
+            effects = self.successors.effects(here.state, call.request, refs)
+            yield from ((step, says, step.rules, FAILED) for step in effects if step.answer and step.answer.code == OK)
+
+    def _failed_last(self) -> Iterator[AnsweredCall]:
+        """The calls that failed since one took effect, the latest first: what they did would have shown by then."""
         for call in reversed(self.about.recent):
+            operation = self.spec.operations.get(self.spec.request_operation(call.request))
             if call.answer.code != OK:
-                refs = self.successors.refs(here, tuple(map(self.belief.number, call.about)))
-                says = f"it shows what a call would have done that failed: {call.words(self.spec)}"
-                effects = self.successors.effects(here.state, call.request, refs)
-                yield from (
-                    (step, says, step.rules, FAILED) for step in effects if step.answer and step.answer.code == OK
-                )
+                yield call
+            elif operation is None or not operation.streaming:
+                return
 
     # Problems.
 
@@ -388,7 +405,8 @@ class Nearest:
         if unordered:
             return self._named_together(own, called)
         if len(own) != len(seen):
-            return [Problem(f"it names {len(seen)}, expected {self._list(own)}", (), NAME)]
+            names = ", ".join(map(name_words, called)) or "nothing"
+            return [Problem(f"it names {names}, expected {self._list(own)}", (), NAME)]
         if unify(here, list(zip(own, seen, strict=True))):
             return []
         found = []
@@ -396,7 +414,8 @@ class Nearest:
             if mine == number or (mine < GONE and self._is_new(here, number)):
                 continue
             expected = self._known(mine) if mine >= 0 else "a name that nothing had before"
-            found.append(f"it names {name_words(name)} where it should name {expected}")
+            gone = ", which is gone," if number in here.gone else ""
+            found.append(f"it names {name_words(name)}{gone} where it should name {expected}")
         return [Problem("; ".join(found) or f"it names {self._list(own)} twice", (), NAME)]
 
     def _named_together(self, own: Names, called: tuple[Name, ...]) -> list[Problem]:

@@ -1,0 +1,186 @@
+"""What a person is told of a message or an answer that is wrong: the right rule first, and nothing that has no part."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from missionfsm.app.asked import judged_system
+from missionfsm.kernel.codec import JSON
+from missionfsm.oracle.transcript import head
+from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.verdict import Violation
+
+DRIVES = ["goalReached", "missionSucceeded", "missionFailed", "world", "fault"]
+KINDS = {
+    "delivery": ("serviMission", "deliveryMission", {"serviType": "SERVI_TYPE_SERVING"}),
+    "auto": ("baseMission", "navigateAutoMission", {"baseType": "BASE_TYPE_NAVIGATE_AUTO"}),
+}
+
+
+def goals(*tables: str) -> list[JSON]:
+    return [{"destinationId": table} for table in tables]
+
+
+def mission(kind: str, *tables: str) -> JSON:
+    family, name, _ = KINDS[kind]
+    return {"mission": {family: {name: {"goals": goals(*tables)}}}}
+
+
+def command(name: str, what: str) -> JSON:
+    return {"missionCommand": {"missionId": name, "command": f"COMMAND_{what}"}}
+
+
+class Log:
+    """Lines of a log, with one stream."""
+
+    def __init__(self, **first: Any) -> None:
+        self.head = {"missionfsm": 1, "system": "bear.mission", "world": {"family": "servi"}, **first}
+        self.lines: list[JSON] = []
+        self.calls = self.shown = 0
+        self.asks("SubscribeMissionStatus", stream=1)
+        if "begins" not in first:
+            self.shows(index=-1)
+
+    def asks(self, method: str, params: JSON = None, status: str = "", **result: Any) -> Log:
+        """A call and its answer."""
+        self.calls += 1
+        self.lines.append({"call": self.calls, "method": method, "params": params or {}})
+        self.lines.append({"return": self.calls, **({"error": {"status": status}} if status else {"result": result})})
+        return self
+
+    def creates(self, name: str, kind: str, *tables: str) -> Log:
+        return self.asks("CreateMission", mission(kind, *tables), missionId=name)
+
+    def shows(self, *missions: tuple[str, str, str, tuple[str, ...]], index: int = 0, at: int = 0) -> Log:
+        """A message: of each mission its id, its kind, its state and its goals."""
+        listed = [
+            {
+                "missionId": name,
+                "state": f"STATE_{state}",
+                "goals": goals(*tables),
+                "currentGoalIndex": at if state == "RUNNING" else 0,
+                "missionType": KINDS[kind][2],
+                "owner": "api",
+            }
+            for name, kind, state, tables in missions
+        ]
+        self.shown += 1
+        metadata = {"timestamp": f"2026-01-01T00:00:{self.shown:02}Z", "sequenceNumber": self.shown}
+        states = {"missions": listed, "currentMissionIndex": index}
+        self.lines.append({"stream": 1, "message": {"metadata": metadata, "missionStates": states}})
+        return self
+
+    def settles(self) -> Log:
+        self.lines.append({"settled": True})
+        return self
+
+    @property
+    def told(self) -> Violation:
+        first = head(self.head)
+        judged_by = judged_system(first.system, strict=first.strict, anywhere=first.anywhere)
+        found = check(judged_by, first, self.lines).violation
+        assert found is not None
+        return found
+
+
+def rules(violation: Violation) -> list[str]:
+    return [rule.id.removeprefix("bear.mission/") for rule in violation.rules]
+
+
+A = ("table-1", "table-2")
+
+
+def test_a_call_that_failed_long_ago_is_no_cause() -> None:
+    """Once another call has taken effect, what shows is not what one would have done that failed before."""
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    begun.asks("AppendMission", mission("delivery", "table-3"), missionId="m2")
+    waits = ("m2", "delivery", "DEFAULT", ("table-3",))
+    begun.shows(("m1", "delivery", "RUNNING", A), waits)
+    begun.asks("UpdateMission", command("m2", "CANCEL"), "NOT_FOUND").asks("UpdateMission", command("m1", "FINISH"))
+    ended = ("m1", "delivery", "SUCCEEDED", A)
+    begun.shows(ended, ("m2", "delivery", "RUNNING", ("table-3",)), index=1)
+    begun.asks("UpdateMission", command("m2", "FINISH"))
+    found = begun.shows(ended, ("m2", "delivery", "CANCELED", ("table-3",)), index=-1).told
+    assert found.notes == ("mission 1 is STATE_CANCELED, expected STATE_SUCCEEDED",)
+    assert rules(found) == ["SubscribeMissionStatus/the-state-is-reported", "UpdateMission/finish"]
+
+
+def test_a_call_that_failed_last_is_one() -> None:
+    """A message right after a refusal shows what the call would have done."""
+    begun = Log(drives=DRIVES[:4]).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    begun.asks("AppendMission", mission("delivery", "table-3"), "INTERNAL")
+    found = begun.shows(("m1", "delivery", "RUNNING", A), ("m2", "delivery", "DEFAULT", ("table-3",))).told
+    assert found.notes[0].startswith("it shows what a call would have done that failed: AppendMission(")
+
+
+def test_a_mission_that_was_created_during_another() -> None:
+    """Where nobody says what ends by itself, the message tells that nothing has, and the refusal is named first."""
+    begun = Log().creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    begun.creates("m2", "delivery", "table-3")
+    found = begun.shows(("m1", "delivery", "RUNNING", A), ("m2", "delivery", "DEFAULT", ("table-3",))).told
+    assert rules(found)[0] == "CreateMission/FAILED_PRECONDITION/another-mission-is-active-or-queued"
+    says = (
+        "it shows what CreateMission(servi delivery to 'table-3') has done, which was answered OK and had to be refused"
+    )
+    assert found.notes == (f"{says}: A mission is running, paused or waiting, so a first mission cannot be created",)
+
+
+def test_missions_of_a_batch_the_wrong_way_round() -> None:
+    """All of them are listed, so what is wrong is their order, which their goals tell."""
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    batch = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-3")]}
+    begun.asks("AppendMissionBatch", batch, missionIds=["m2", "m3"])
+    turned = (("m2", "delivery", "DEFAULT", ("table-3",)), ("m3", "delivery", "DEFAULT", ("table-1",)))
+    found = begun.shows(("m1", "delivery", "RUNNING", A), *turned).told
+    assert found.notes == ("mission 1 has the goals [table-3], expected [table-1]",)
+    assert rules(found)[0] == "SubscribeMissionStatus/the-goals-are-those-requested"
+
+
+def test_a_snapshot_that_leaves_missions_out() -> None:
+    """Of what could be shown the list is nearest that has the mission that is shown, whatever may have happened."""
+    begun = Log().creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    begun.asks("AppendMission", mission("delivery", "table-3"), missionId="m2")
+    begun.asks("UpdateMission", command("m1", "CANCEL"))
+    ended = ("m1", "delivery", "CANCELED", A)
+    begun.shows(ended, ("m2", "delivery", "RUNNING", ("table-3",)), index=1)
+    found = begun.shows(ended, index=1).told
+    assert found.notes[0] == "1 mission is listed; the robot has 2"
+    assert rules(found)[0] == "SubscribeMissionStatus/all-missions-are-listed"
+
+
+def test_another_id_accuses_no_state() -> None:
+    """Where only the id is wrong, nothing is said of how the mission came to run."""
+    found = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m9", "delivery", "RUNNING", A)).told
+    assert found.notes[0] == "it names m9 where it should name m1"
+    assert rules(found) == ["SubscribeMissionStatus/all-missions-are-listed"]
+
+
+def test_the_first_free_goal() -> None:
+    """A mission that chooses its goal says that free goals are taken in their order."""
+    found = Log(drives=DRIVES).creates("m1", "auto", *A).shows(("m1", "auto", "RUNNING", A), at=1).told
+    assert found.notes[0] == "mission 0 has current_goal_index 1, expected 0: free goals are taken in their order"
+
+
+def test_an_answer_without_an_id() -> None:
+    """The nearest answer has one."""
+    workflow = {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": goals(*A)}}}}
+    found = Log(drives=DRIVES).asks("CreateMissionWorkflow", workflow, missionIds=[]).told
+    assert found.notes == ("it names nothing, expected 1 new name",)
+
+
+def test_nothing_came_after_a_call() -> None:
+    """Also where only later messages show that none comes: what was shown last is said, with the call after it."""
+    three, waits = (
+        ("table-1", "table-2", "table-3"),
+        (("m2", "delivery", "DEFAULT", A), ("m3", "delivery", "DEFAULT", A)),
+    )
+    begun = Log(begins="anywhere", transport="strict").shows(("m1", "delivery", "RUNNING", three), *waits).settles()
+    for what, state in (("PAUSE", "PAUSED"), ("RESUME", "RUNNING")) * 3:
+        begun.asks("UpdateMission", command("m1", what)).shows(("m1", "delivery", state, three), *waits).settles()
+    begun.asks("ClearMissionStatus", missionIds=["m1", "m2", "m3"]).settles().asks(
+        "UpdateMission", command("m1", "PAUSE")
+    )
+    found = begun.shows(("m1", "delivery", "PAUSED", three), *waits).settles().told
+    last = "[RUNNING at goal 0, WAITING, WAITING], current_mission_index 0 (m1, m2, m3)"
+    says = f"after ClearMissionStatus() → OK m1, m2, m3 stream 1 showed nothing new; it showed {last} last"
+    assert (found.observed, found.notes) == ("everything settled", (says,))

@@ -152,7 +152,8 @@ def test_another_id_accuses_no_state() -> None:
     """Where only the id is wrong, nothing is said of how the mission came to run."""
     found = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m9", "delivery", "RUNNING", A)).told
     assert found.notes[0] == "it names m9 where it should name m1"
-    assert rules(found) == ["SubscribeMissionStatus/all-missions-are-listed"]
+    named = ["SubscribeMissionStatus/all-missions-are-listed", "CreateMission/the-answer-names-the-new-mission"]
+    assert rules(found) == named
 
 
 def test_the_first_free_goal() -> None:

@@ -116,7 +116,10 @@ RUNS = (arrives(ONE, NODES), says("running"), SETTLED)
     [
         ((*RUNS, FAILED, says("success")), ["status/one-failure-at-the-end"]),
         ((*RUNS, FAILED, passes(1), SETTLED), ["status/one-failure-at-the-end"]),
-        ((arrives(ONE, NODES), says("running", Uuid(1, 0))), ["status/a-status-is-about-its-mission"]),
+        (
+            (arrives(ONE, NODES), says("running", Uuid(1, 0))),
+            ["status/a-status-is-about-its-mission", "codelet/a-mission-starts-the-behavior-tree"],
+        ),
         (
             (*RUNS, arrives(TWO, NODES), passes(1), says("running"), SETTLED),
             [

@@ -21,17 +21,26 @@ MAX_LOOKED_AT = 20
 """How many explanations of each event are searched."""
 
 
-def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | None:
+def owing(belief: Belief, view: object, topic: Hashable, *, made_only: bool = False) -> tuple[str, ...] | None:
     """Ids of the rules of the latest step that owes a view to a topic and says why; None if no step is known to owe it.
 
     A step whose rules only say that the view is sent does not say why, unless somebody has just made it happen. Of the
     steps at one event only those count that need the fewest unusual readings, of those that are not ruled out.
+
+    Args:
+        made_only: whether only steps count that somebody has made happen, also those that are ruled out.
     """
     found = False
     for symbol, node in belief.walked:
         rules: dict[str, None] = {}
         begun = False
-        for step, made in _usual(belief, symbol, node.explanations, view, topic):
+        owed = [
+            one
+            for here in _become(belief, node.explanations)
+            for one in _owing_steps(belief, symbol, here, view, topic)
+        ]
+        left = [] if made_only else [one.assumed for one in belief.node.explanations]
+        for step, made in _most_usual([one for one in owed if one[1] or not made_only], left):
             found, begun = True, begun or made
             sent = delivering(belief.spec, step)
             rules.update(dict.fromkeys(rule for rule in step.rules if rule not in sent))
@@ -40,22 +49,19 @@ def owing(belief: Belief, view: object, topic: Hashable) -> tuple[str, ...] | No
     return () if found else None
 
 
-def _usual(
-    belief: Belief, symbol: tuple[Any, ...], before: Sequence[Explanation], view: object, topic: Hashable
-) -> list[tuple[Step, bool]]:
-    """The steps at an event that owe a view to a topic, of those that are left the most usual ones.
+def _owing_steps(
+    belief: Belief, symbol: tuple[Any, ...], here: Explanation, view: object, topic: Hashable
+) -> Iterator[tuple[Step, bool]]:
+    """The steps at an event that owe a view, each with whether somebody made it happen, other than by passing time."""
+    for step, made in _steps(belief, symbol, here):
+        if any(one.view == view and one.topic == topic for one in step.emits):
+            yield step, made
 
-    Each with whether somebody made it happen, other than by letting time pass.
-    """
-    left = [one.assumed for one in belief.node.explanations]
-    owing = [
-        (_unusual(step, left), step, made)
-        for here in _become(belief, before)
-        for step, made in _steps(belief, symbol, here)
-        if any(one.view == view and one.topic == topic for one in step.emits)
-    ]
-    least = min((unusual for unusual, _, _ in owing), default=None)
-    return [(step, made) for unusual, step, made in owing if unusual == least]
+
+def _most_usual(steps: Sequence[tuple[Step, bool]], left: Sequence[int]) -> list[tuple[Step, bool]]:
+    """Of these steps those that need the fewest unusual readings, of those that are not ruled out if there are any."""
+    oddity = [_unusual(step, left) for step, _ in steps]
+    return [one for one, odd in zip(steps, oddity, strict=True) if odd == min(oddity)]
 
 
 def _become(belief: Belief, before: Sequence[Explanation]) -> Sequence[Explanation]:

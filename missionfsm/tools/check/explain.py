@@ -20,6 +20,8 @@ from missionfsm.tools.check.candidates import (
     CODE,
     FAILED,
     LEFT_OUT,
+    NAME,
+    READING,
     SHAPE,
     UNDRIVEN,
     UNOWED,
@@ -177,7 +179,8 @@ def _wrong_in_it(
     due = any(problem.weight >= SHAPE and not problem.by_itself for problem in _problems(lightest))
     if due and not _malformed(event):
         rules = _alternately(rules, _before(nearest))
-    if _was_right(nearest, candidates):
+    contradicts = all(problem.weight == READING for problem in _problems(lightest))
+    if not contradicts and _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
     rules = _alternately(rules, _of_other_codes(candidates))
     notes = [problem.says for problem in _problems(lightest[:1])]
@@ -243,11 +246,11 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
         rules = _alternately(causes.latest(nearest.belief), rules)
     elif (
         FAILED not in weights
-        and any(weight == LEFT_OUT or weight >= UNOWED for weight in weights)
+        and max(weights, default=0) >= LEFT_OUT
         and not any(SHAPE <= weight < UNOWED for weight in weights)
     ):
         # Either the message shows wrongly what happened, or something else happened than should have.
-        rules = _alternately(rules, _before(nearest, lightest[0]))
+        rules = _alternately(rules, _before(nearest, lightest[0], made_only=max(weights) == NAME))
     notes = [problem.says for problem in _problems(lightest)]
     if isinstance(event.content, Malformed):
         return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
@@ -298,14 +301,18 @@ def _never_answered(nearest: Nearest, event: Received) -> list[Name]:
     return [name for name in event.names if number(name) < 0 and name not in {*answered, *foreign}]
 
 
-def _before(nearest: Nearest, candidate: Candidate | None = None) -> list[str]:
-    """The rules of the steps that made a message due; if none did, those of the last steps."""
+def _before(nearest: Nearest, candidate: Candidate | None = None, *, made_only: bool = False) -> list[str]:
+    """The rules of the steps that made a message due; if none did, those of the last steps.
+
+    Args:
+        made_only: whether only steps count that somebody has made happen: others have no part in a wrong name.
+    """
     owing: tuple[str, ...] | None = None
     if candidate is not None and candidate.owed is not None:
         channel, owed = candidate.owed
         first = nearest.spec.delivery(channel.topic).first if channel.last is None else ()
-        owing = first or causes.owing(nearest.belief, owed.view, channel.topic)
-    unseen = reversed(candidate.unseen) if candidate else ()
+        owing = first or causes.owing(nearest.belief, owed.view, channel.topic, made_only=made_only)
+    unseen = reversed(candidate.unseen) if candidate and not made_only else ()
     return list(dict.fromkeys((*unseen, *(causes.latest(nearest.belief) if owing is None else owing))))
 
 

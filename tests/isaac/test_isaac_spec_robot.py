@@ -21,6 +21,7 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head
 from missionfsm.systems import system
@@ -29,6 +30,7 @@ from missionfsm.tools.check.nearest import rules_about
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.mutate.teeth import teeth
+from missionfsm.tools.placeholders import fill
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 ROBOT = system("isaac.robot")
@@ -364,3 +366,15 @@ def test_the_name_may_come_once_a_minute_but_has_to_come_again(silence: tuple[fl
     waits = [one for seconds in silence for one in (passes(seconds), SETTLED)]
     assert judged(name, passes(60), name, SETTLED, *waits).conforms is right
     assert judged(name, passes(60), name, SETTLED, *waits[:-2], waits[-2], name, SETTLED).conforms
+
+
+def test_every_mission_that_is_tried_comes_in_a_message_of_its_own() -> None:
+    """A header has its message's uuid, another one each time: a robot may take equal ones for a repeat."""
+    tried = [
+        fill(drive, {}, ROBOT.naming, serial) for serial in (1, 2) for drive in ROBOT.alphabet({}, Bounds()).drives
+    ]
+    lines = [json.loads(drive["line"]) for drive in tried if drive.get("line", "").startswith('{"header":{"channel"')]
+    missions = [line for line in lines if "config" in line["payload"]]
+    messages = {str(line["header"]["uuid"]) for line in missions}
+    assert messages.isdisjoint(str(line["payload"]["uuid"]) for line in missions)
+    assert len(messages) == 2

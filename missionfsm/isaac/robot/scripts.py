@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.shared.naming import MESSAGE
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed
 from missionfsm.kernel.language import JSON, ScriptStep, as_text, new, pick
 
-_HEADER_UUID = {"lower": "12297829382473034411", "upper": "6148914691236517206"}
-
 
 def mission(config: JSON, uuid: JSON, channel: str, **payload: JSON) -> JSON:
-    """The drive by which a mission arrives."""
+    """The drive by which a mission arrives, in a message of its own each time: a robot may pass over repeats."""
     header = {
         "channel": channel,
         "pubtime": "1700000000000000000",
         "acqtime": "1700000000000000000",
         "proto": str(signed(TYPE_IDS[MissionProto])),
-        "uuid": _HEADER_UUID,
+        "uuid": new(MESSAGE),
     }
     line = {"header": header, "payload": {"uuid": uuid, "config": config, **payload}}
     return {"event": "line", "line": as_text(line)}

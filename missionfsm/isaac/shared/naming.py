@@ -14,7 +14,16 @@ def _write(name: Any) -> JSON:  # noqa: ANN401 - a name of these systems, a pair
     return uuid_json(name) if name[0] == "uuid" else name[1]
 
 
+MESSAGE = "message"
+"""The kind of the identifier that a message has itself, whatever it is about: nothing else is called so."""
+
+_OF_MESSAGES = 1 << 32
+"""From which serial number on identifiers are those of messages."""
+
+
 def _make(kind: str, serial: int) -> Name:
+    if kind == MESSAGE:
+        return new_uuid(_OF_MESSAGES + serial)
     return new_uuid(serial) if kind == "uuid" else (kind, serial)
 
 

@@ -172,6 +172,19 @@ RIGHT = {
         "LOG-02",
     ),
     "others clear": (OTHERS, [*FIRST, *MINE, shown(3, ("A", "SUCCEEDED")), shown(4)], "LOG-02"),
+    "others clear, which another stream shows later": (
+        OTHERS,
+        [
+            *FIRST,
+            *call(9, "SubscribeMissionStatus", {}, {"result": {"stream": 2}}),
+            shown(1, stream=2),
+            *MINE,
+            *(shown(3, ("A", "SUCCEEDED")), shown(4), shown(2, ("A", "RUNNING"), stream=2)),
+            *(shown(3, ("A", "SUCCEEDED"), stream=2), shown(4, stream=2)),
+            *call(3, "CreateMission", navigate("table-1"), {"result": {"missionId": "B"}}),
+        ],
+        "LOG-02",
+    ),
     "others cancel": (
         {**OTHERS, "drives": ["missionFailed"]},
         [*FIRST, *MINE, shown(3, ("A", "CANCELED"))],
@@ -207,6 +220,13 @@ WRONG = {
         [BUSY, SETTLED, *told(1, "PAUSE", {"result": {}}, "Y"), SETTLED],
     ),
     "a mission of others runs again": (OTHERS, [*FIRST, *MINE, THEIRS, shown(4, ("A", "RUNNING"), ("T", "SUCCEEDED"))]),
+    "what others have cleared comes again as a new mission": (
+        OTHERS,
+        [
+            *(*FIRST, *MINE, shown(3, ("A", "SUCCEEDED")), shown(4)),
+            *call(3, "CreateMission", navigate("table-1"), {"result": {"missionId": "A"}}),
+        ],
+    ),
     "nobody said that there are others": (HEAD, [*FIRST, *MINE, THEIRS]),
     "nobody said that it begins anywhere": (HEAD, [BUSY]),
 }

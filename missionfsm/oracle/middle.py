@@ -238,7 +238,9 @@ def _standing(here: Explanation, state: State, showing: Channel) -> Explanation:
         if one.name != showing.name
     ]
     calls = _all_wild(here.calls)
-    gone = tuple(one for one in here.gone if one not in last.names)
+    # What is listed no more is gone, where no call can be answered with it and no other channel shows what was before.
+    ended = () if here.calls or channels else here.names
+    gone = tuple(sorted({*here.gone, *(one for one in ended if one > GONE)}.difference(last.names)))
     channels = [showing, *channels]
     return Explanation(state, last.names, here.assumed, calls, here.lost, tuple(channels), gone, here.all_known)
 

@@ -413,9 +413,8 @@ class Nearest:
         for mine, number, name in zip(own, seen, called, strict=True):
             if mine == number or (mine < GONE and self._is_new(here, number)):
                 continue
-            expected = self._known(mine) if mine >= 0 else "a name that nothing had before"
-            gone = ", which is gone," if number in here.gone else ""
-            found.append(f"it names {name_words(name)}{gone} where it should name {expected}")
+            due = f"it should name {self._known(mine)}" if mine >= 0 else "a name is due that nothing had before"
+            found.append(f"it names {name_words(name)} where {due}")
         return [Problem("; ".join(found) or f"it names {self._list(own)} twice", (), NAME)]
 
     def _named_together(self, own: Names, called: tuple[Name, ...]) -> list[Problem]:

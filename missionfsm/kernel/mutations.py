@@ -6,7 +6,7 @@ A system says what only it can get wrong; what breaks rules of any system is in 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 
 from attrs import evolve, frozen
 
@@ -60,6 +60,11 @@ def breaks(rule: Rule, at: Rule | None = None, **mutations: StepMutator) -> tupl
 
 def _any(_: object) -> bool:
     return True
+
+
+def on_topic(topic: Hashable) -> Which:
+    """What is sent about a topic."""
+    return lambda emission: emission.topic == topic
 
 
 def unsent(which: Which = _any, when: Callable[[State], bool] = _any) -> StepMutator:

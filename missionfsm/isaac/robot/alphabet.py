@@ -21,31 +21,28 @@ _WORLDS: tuple[JSON, ...] = (
 
 def _drives(channel: str, status_channel: str) -> Iterator[JSON]:
     for config in _CONFIGS:
-        yield from (mission({"serialized": config}, new("uuid"), channel) for _ in range(3))
-    yield mission({"serialized": "{}"}, pick("uuid"), channel)
-    yield from (mission({"serialized": config}, new("uuid"), channel) for config in _UNUSABLE)
-    yield mission({"serialized": "null"}, new("uuid"), channel)
+        yield from (mission(config, new("uuid"), channel) for _ in range(3))
+    yield mission("{}", pick("uuid"), channel)
+    yield from (mission(config, new("uuid"), channel) for config in _UNUSABLE)
+    yield mission("null", new("uuid"), channel)
     for other in dict.fromkeys((status_channel, "elsewhere", "mission")):
         if other != channel:
-            yield mission({"serialized": "{}"}, new("uuid"), other)
-    yield mission({"serialized": "{}"}, {"lower": 77, "upper": 99}, channel)
+            yield mission("{}", new("uuid"), other)
+    yield mission("{}", {"lower": 77, "upper": 99}, channel)
     yield from ({"event": "line", "line": line} for line in ("", "no json", "{}", "[]", '{"header":{}}'))
     for kind, payload in ((TextProto, {"text": "robot"}), (MissionStatusProto, {"missionStatus": "success"})):
         header = {"channel": channel, "proto": str(signed(TYPE_IDS[kind]))}
         yield {"event": "line", "line": as_text({"header": header, "payload": payload})}
-    yield from EVENTS
+    yield from EVENTS.values()
 
 
 def alphabet(world: JSON, _: Bounds) -> Alphabet:
     """What is worth trying on a robot in a world."""
     here = CODEC.read_world(world)
-    plain = {
-        "event": "line",
-        "line": CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))["line"],
-    }
+    plain = CODEC.write_drive(Arrives(USABLE, named=True, channel=here.channel), (new_uuid(1),))
     return Alphabet(
         drives=tuple(_drives(here.channel, here.status_channel)),
-        core_drives=(plain, *EVENTS[:2], EVENTS[5], *EVENTS[6:]),
+        core_drives=(plain, *(EVENTS[word] for word in ("succeeds", "fails", "90s", "drops", "connects"))),
         worlds=_WORLDS,
         scripts=SCRIPTS,
     )

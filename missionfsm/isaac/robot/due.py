@@ -14,7 +14,7 @@ from missionfsm.isaac.robot import readings, rules
 from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report, Waiting, World
 from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Rule, Step
 
-STATUSES, NAMES, OTHERS = "statuses", "names", "others"
+STATUSES, NAMES, OTHERS = TOPICS = ("statuses", "names", "others")
 """The topics of the one connection: statuses, names and what else is sent come in any order among one another."""
 
 MAX_WAITING = 32
@@ -24,7 +24,7 @@ FINAL = {"success": rules.SUCCESS, "failure": rules.FAILURE}
 
 
 @frozen
-class Due:
+class Status:
     """A status that is due: what it says, of the mission with which identifier (None for none), and when it is sent."""
 
     status: str
@@ -32,6 +32,9 @@ class Due:
     when: Ambiguity
     offered: bool = False
     """Whether RUNNING may come before it."""
+
+
+Statuses = tuple[Status, ...]
 
 
 def emission(world: World, status: str, about: int | None, *, offer: bool = False) -> Emission:
@@ -69,7 +72,7 @@ def all_waiting(here: Codelet) -> Iterator[Emission]:
 
 
 def concluded(
-    here: Codelet, after: Codelet, mission: int | None, due: tuple[Due, ...], because: tuple[Rule, ...]
+    here: Codelet, after: Codelet, mission: int | None, due: Statuses, because: tuple[Rule, ...]
 ) -> Iterator[Step]:
     """The ways in which statuses become due: each is sent at once, or with those before it waits for the tick.
 
@@ -97,7 +100,9 @@ def concluded(
         yield Step(conclusion, names=names, emits=emits, rules=ids, assumes=assumes)
 
 
-def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due, ...], tuple[Assumption, ...]]]:
+def _divided(
+    due: Statuses,
+) -> Iterator[tuple[Statuses, Statuses, tuple[Assumption, ...]]]:
     """Those that are sent at once and those that wait, with what that assumes: one that waits holds up those behind."""
     for sent in range(len(due), -1, -1):
         now, later = due[:sent], due[sent:]
@@ -106,20 +111,20 @@ def _divided(due: tuple[Due, ...]) -> Iterator[tuple[tuple[Due, ...], tuple[Due,
             yield now, later, assumes
 
 
-def _sent(here: Codelet, due: tuple[Due, ...]) -> Iterator[Emission]:
+def _sent(here: Codelet, due: Statuses) -> Iterator[Emission]:
     return (line for one in due for line in _said(here, one.status, one.about, offered=one.offered))
 
 
-def _names_in(due: tuple[Due, ...]) -> Iterator[int]:
+def _names_in(due: Statuses) -> Iterator[int]:
     return (one.about for one in due if one.about is not None)
 
 
-def _waits(due: Due) -> Waiting:
+def _waits(due: Status) -> Waiting:
     return Waiting(due.status, due.about is not None, due.offered)
 
 
 def _unconnected(
-    here: Codelet, after: Codelet, runs: tuple[int, ...], due: tuple[Due, ...], ids: tuple[str, ...]
+    here: Codelet, after: Codelet, runs: tuple[int, ...], due: Statuses, ids: tuple[str, ...]
 ) -> Iterator[Step]:
     ids = (*ids, rules.LINKED.id)
     before = here.waits

@@ -12,20 +12,7 @@ from collections.abc import Iterator
 
 from attrs import evolve, frozen
 
-from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.due import (
-    FINAL,
-    NAMES,
-    OTHERS,
-    STATUSES,
-    Due,
-    all_waiting,
-    anything,
-    concluded,
-    emission,
-    introduction,
-    may_report,
-)
+from missionfsm.isaac.robot import due, readings, rules
 from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, Arrives
 from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet, Waiting
 from missionfsm.isaac.shared.drives import Passes
@@ -142,14 +129,14 @@ def _passed_over(here: Codelet, doubt: Doubt) -> Iterator[Step]:
     if doubt.no_message or not here.running:
         yield ignored
         return
-    preempts = concluded(here, here.moved("an unusable mission arrives"), None, _preempted(here), _following(here))
+    preempts = due.concluded(here, here.moved("an unusable mission arrives"), None, _preempted(here), _following(here))
     yield from _all(preempts, (doubt.preempts["a"],))
     yield evolve(ignored, assumes=(doubt.preempts["b"],))
 
 
-def _preempted(here: Codelet) -> tuple[Due, ...]:
+def _preempted(here: Codelet) -> due.Statuses:
     """What is due of the mission that runs, if one does, where another one ends it."""
-    return (Due("failure", here.about, readings.AI_31_SENT["preempted"], offered=True),) if here.running else ()
+    return (due.Status("failure", here.about, readings.AI_31_SENT["preempted"], offered=True),) if here.running else ()
 
 
 def _following(here: Codelet) -> tuple[Rule, ...]:
@@ -163,7 +150,7 @@ def _starts(here: Codelet, event: Arrives) -> Iterator[Step]:
     """A mission arrives that can be run."""
     after = evolve(here, named=event.named).moved("a mission arrives")
     new = NEW if event.named else None
-    yield from concluded(here, after, new, _preempted(here), (*_following(here), rules.STARTS))
+    yield from due.concluded(here, after, new, _preempted(here), (*_following(here), rules.STARTS))
 
 
 def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[Step]:
@@ -176,11 +163,11 @@ def _fails(here: Codelet, event: Arrives, asked: Ambiguity | None) -> Iterator[S
     new = NEW if event.named else None
     idle = here.moved("an unusable mission arrives")
     for offered, said in ((False, readings.AI_33_RUNNING["a"]), (True, readings.AI_33_RUNNING["b"])):
-        failure = Due("failure", new, readings.AI_31_SENT["unusable"], offered)
+        failure = due.Status("failure", new, readings.AI_31_SENT["unusable"], offered)
         because = (rules.UNUSABLE, *_following(here))
-        yield from _all(concluded(here, idle, None, (*_preempted(here), failure), because), (said, *preempted))
+        yield from _all(due.concluded(here, idle, None, (*_preempted(here), failure), because), (said, *preempted))
         if here.running:
-            goes_on = concluded(here, here, here.about, (failure,), (rules.UNUSABLE,))
+            goes_on = due.concluded(here, here, here.about, (failure,), (rules.UNUSABLE,))
             yield from _all(goes_on, (said, *kept))
 
 
@@ -197,8 +184,8 @@ def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
     if here.running:
-        due = (Due(status, here.about, readings.AI_31_SENT["end"], offered=True),)
-        ends = tuple(concluded(here, here.moved(trigger), None, due, (FINAL[status],)))
+        final = (due.Status(status, here.about, readings.AI_31_SENT["end"], offered=True),)
+        ends = tuple(due.concluded(here, here.moved(trigger), None, final, (due.FINAL[status],)))
     elif here.connected:
         ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
     else:
@@ -210,10 +197,10 @@ def ticks(here: Codelet) -> tuple[Step, ...]:
     """The codelet's own tick: the statuses that waited are sent."""
     if not (here.connected and here.waiting):
         return ()
-    because = dict.fromkeys(FINAL[one.status].id for one in here.waiting)
-    offers = (may_report(here, here.about),) if here.running else ()
+    because = dict.fromkeys(due.FINAL[one.status].id for one in here.waiting)
+    offers = (due.may_report(here, here.about),) if here.running else ()
     after = evolve(here, waiting=(), waited=0)
-    return (Step(after, names=here.mission, emits=(*all_waiting(here), *offers), rules=tuple(because)),)
+    return (Step(after, names=here.mission, emits=(*due.all_waiting(here), *offers), rules=tuple(because)),)
 
 
 # Time.
@@ -226,7 +213,7 @@ def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
         return ()
     if not here.connected:
         # What was on its way when the connection dropped has come by now.
-        return tuple(evolve(step, clears=(STATUSES, NAMES, OTHERS)) for step in _awaits(here, event.time))
+        return tuple(evolve(step, clears=due.TOPICS) for step in _awaits(here, event.time))
     starts: tuple[Step, ...] = (Step(here),)
     if here.waiting:
         # What waits is sent in this time, or waits on.
@@ -266,22 +253,22 @@ def _reports(step: Step, about: int | None, time: int) -> Iterator[Step]:
     if not here.running or here.waiting:
         yield step
         return
-    said = (emission(here.world, "running", about), may_report(here, about))
+    said = (due.emission(here.world, "running", about), due.may_report(here, about))
     reported = evolve(here, quiet=0)
     yield evolve(step, after=reported, emits=step.emits + said, rules=(*step.rules, rules.RUNNING.id))
     if here.quiet + time < RUNNING_BOUND and not step.emits:
-        yield evolve(step, after=evolve(here, quiet=here.quiet + time), withdraws=(STATUSES,))
+        yield evolve(step, after=evolve(here, quiet=here.quiet + time), withdraws=(due.STATUSES,))
 
 
 def _introduces(step: Step, time: int) -> Iterator[Step]:
     """The name is said in some time, or, if it is short enough, is not."""
     here: Codelet = step.after
-    said = (introduction(here.world), introduction(here.world, offer=True))
+    said = (due.introduction(here.world), due.introduction(here.world, offer=True))
     introduced = evolve(here, nameless=0)
     yield evolve(step, after=introduced, emits=step.emits + said, rules=(*step.rules, rules.NAMED.id))
     if here.nameless + time < NAME_BOUND:
         silent = evolve(here, nameless=here.nameless + time)
-        yield evolve(step, after=silent, withdraws=(*step.withdraws, NAMES))
+        yield evolve(step, after=silent, withdraws=(*step.withdraws, due.NAMES))
 
 
 # The connection.
@@ -294,7 +281,7 @@ def connection(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
         return () if here.connected or not here.begun else (_connected(here),)
     if not here.connected:
         return ()
-    gone = Step(evolve(here, connected=False), lingers=(STATUSES, NAMES, OTHERS), rules=(rules.LINKED.id,))
+    gone = Step(evolve(here, connected=False), lingers=due.TOPICS, rules=(rules.LINKED.id,))
     ways = (gone, _forgetful(gone)) if here.waiting else (gone,)
     if not here.running:
         return ways
@@ -330,10 +317,10 @@ def _failed(gone: Step) -> Step:
 
 def _connected(here: Codelet) -> Step:
     after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
-    emits = [introduction(here.world, offer=True), anything(here.world)]
+    emits = [due.introduction(here.world, offer=True), due.anything(here.world)]
     if here.running and not here.waiting:
-        emits.append(may_report(here, here.about))
-    return Step(after, emits=tuple(emits), clears=(STATUSES, NAMES, OTHERS), rules=(rules.NAMED.id,))
+        emits.append(due.may_report(here, here.about))
+    return Step(after, emits=tuple(emits), clears=due.TOPICS, rules=(rules.NAMED.id,))
 
 
 def begins(here: Codelet) -> tuple[Step, ...]:
@@ -341,8 +328,8 @@ def begins(here: Codelet) -> tuple[Step, ...]:
     if here.begun:
         return ()
     openings = (
-        Opening(STATUSES, 0, kind="connection"),
-        Opening(NAMES, 0, (introduction(here.world, offer=True),), kind="connection"),
-        Opening(OTHERS, 0, (anything(here.world),), kind="connection"),
+        Opening(due.STATUSES, 0, kind="connection"),
+        Opening(due.NAMES, 0, (due.introduction(here.world, offer=True),), kind="connection"),
+        Opening(due.OTHERS, 0, (due.anything(here.world),), kind="connection"),
     )
     return (Step(evolve(here, begun=True, connected=True), opens=openings),)

@@ -8,7 +8,8 @@ from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.due import NAMES, STATUSES, introduction
 from missionfsm.isaac.robot.state import Codelet, Introduction, Report
 from missionfsm.isaac.shared.mutations import line_mutations, mission_type, spoils, swapped, unsigned_type
-from missionfsm.kernel.language import Emission, Step, StepMutator, breaks, each_sent, sent_last, sent_twice, unsent
+from missionfsm.kernel.language import Emission, Step
+from missionfsm.kernel.mutations import StepMutator, breaks, each_sent, on_topic, sent_last, sent_twice, unsent
 
 MESSAGE_MUTATIONS = (
     *spoils(rules.ABOUT, swaps_the_halves_of_the_identifier=swapped),
@@ -29,14 +30,6 @@ def _about_old(emission: Emission) -> bool:
 
 def _final(emission: Emission) -> bool:
     return isinstance(emission.view, Report) and emission.view.status != "running"
-
-
-def _is_status(emission: Emission) -> bool:
-    return emission.topic == STATUSES
-
-
-def _is_name(emission: Emission) -> bool:
-    return emission.topic == NAMES
 
 
 def _speaks_up(before: Codelet, step: Step) -> Step:
@@ -83,12 +76,12 @@ STEP_MUTATIONS = (
     ),
     *breaks(rules.UNUSABLE, is_not_reported=unsent(_final), is_reported_as_a_success=_said_as("success")),
     *breaks(rules.IGNORES, fails_the_mission_that_runs=_ends_what_runs),
-    *breaks(rules.RUNNING, is_never_reported=unsent(_is_status)),
+    *breaks(rules.RUNNING, is_never_reported=unsent(on_topic(STATUSES))),
     *breaks(rules.RUNNING, at=rules.SUCCESS, goes_on_after_the_end=_running_after),
     *breaks(
         rules.NAMED,
-        is_never_said=unsent(_is_name),
-        is_not_said_during_a_mission=unsent(_is_name, lambda before: before.running),
+        is_never_said=unsent(on_topic(NAMES)),
+        is_not_said_during_a_mission=unsent(on_topic(NAMES), lambda before: before.running),
         is_another_one=each_sent(_renamed),
     ),
     *breaks(rules.LINKED, is_forgotten=_speaks_up),

@@ -7,7 +7,7 @@ from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, signed
 from missionfsm.kernel.language import JSON, ScriptStep, as_text, new, pick
 
 
-def mission(config: JSON, uuid: JSON, channel: str, **payload: JSON) -> JSON:
+def mission(config: str, uuid: JSON, channel: str = "mission") -> JSON:
     """The drive by which a mission arrives, in a message of its own each time: a robot may pass over repeats."""
     header = {
         "channel": channel,
@@ -16,21 +16,21 @@ def mission(config: JSON, uuid: JSON, channel: str, **payload: JSON) -> JSON:
         "proto": str(signed(TYPE_IDS[MissionProto])),
         "uuid": new(MESSAGE),
     }
-    line = {"header": header, "payload": {"uuid": uuid, "config": config, **payload}}
+    line = {"header": header, "payload": {"uuid": uuid, "config": {"serialized": config}}}
     return {"event": "line", "line": as_text(line)}
 
 
-EVENTS: tuple[JSON, ...] = (
-    {"event": "behaviorSucceeded"},
-    {"event": "behaviorFailed"},
-    {"event": "advance", "seconds": 0.05},
-    {"event": "advance", "seconds": 1},
-    {"event": "advance", "seconds": 5},
-    {"event": "advance", "seconds": 90},
-    {"event": "disconnect"},
-    {"event": "connect"},
-)
-
+EVENTS: dict[str, JSON] = {
+    "succeeds": {"event": "behaviorSucceeded"},
+    "fails": {"event": "behaviorFailed"},
+    "tick": {"event": "advance", "seconds": 0.05},
+    "1s": {"event": "advance", "seconds": 1},
+    "5s": {"event": "advance", "seconds": 5},
+    "90s": {"event": "advance", "seconds": 90},
+    "drops": {"event": "disconnect"},
+    "connects": {"event": "connect"},
+}
+"""What happens besides lines, by the words of scripts."""
 
 _DOUBTFUL = {
     "unusable": "no json",
@@ -43,18 +43,13 @@ _DOUBTFUL = {
 """Configurations that a robot may be unable to use, by what is wrong with them."""
 
 
-def _words() -> dict[str, ScriptStep]:
-    words = ("succeeds", "fails", "tick", "1s", "5s", "90s", "drops", "connects")
-    known = {word: ScriptStep("drive", event) for word, event in zip(words, EVENTS, strict=True)}
-    known["settle"] = ScriptStep("settle")
-    known["mission"] = ScriptStep("drive", mission({"serialized": "{}"}, new("uuid"), "mission"))
-    known["again"] = ScriptStep("drive", mission({"serialized": "{}"}, pick("uuid"), "mission"), ((0, 0),))
-    for word, config in _DOUBTFUL.items():
-        known[word] = ScriptStep("drive", mission({"serialized": config}, new("uuid"), "mission"))
-    return known
-
-
-_WORDS = _words()
+_WORDS = {
+    "settle": ScriptStep("settle"),
+    "mission": ScriptStep("drive", mission("{}", new("uuid"))),
+    "again": ScriptStep("drive", mission("{}", pick("uuid")), ((0, 0),)),
+    **{word: ScriptStep("drive", event) for word, event in EVENTS.items()},
+    **{word: ScriptStep("drive", mission(config, new("uuid"))) for word, config in _DOUBTFUL.items()},
+}
 
 
 def script(text: str) -> tuple[ScriptStep, ...]:

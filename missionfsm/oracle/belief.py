@@ -12,7 +12,7 @@ import copy
 from collections import deque
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 
-from missionfsm.kernel.history import Cancelled, Driven, Ended, Event, Name, Received, Settled
+from missionfsm.kernel.history import Called, Cancelled, Driven, Ended, Event, Name, Received, Returned, Settled
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle import memory
 from missionfsm.oracle.automaton import Automaton, Edge, Node, Tally
@@ -191,12 +191,14 @@ class Belief:
 
     def number_for_good(self, event: Event) -> Symbol | None:
         """An event with numbers for names, and the new names numbered for good; None for one that means nothing."""
-        numbering = self._numbering
-        if type(event) in (Received, Ended) and event.channel in numbering.given_up:  # type: ignore[union-attr]
+        kind, numbering = type(event), self._numbering
+        if numbering.given_up and (kind is Received or kind is Ended) and event.channel in numbering.given_up:  # type: ignore[union-attr]
             return None
         symbol, new = numbering.symbol(event)
-        numbering.append(new)
-        numbering.note(event)
+        if new:
+            numbering.append(new)
+        if kind is not Called and kind is not Returned:
+            numbering.note(event)
         return symbol
 
     def leap(self, lookout: Belief, found: tuple[Successor, ...], exercised: Iterable[tuple[str, ...]]) -> None:

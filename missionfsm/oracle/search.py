@@ -21,8 +21,10 @@ from missionfsm.kernel.transport import REDELIVERED, TR_05
 from missionfsm.oracle.calls import CallSearch, OtherwiseError, Standing, are_calls_alone
 from missionfsm.oracle.coming import Excerpt, Horizon
 from missionfsm.oracle.explanation import Explanation, Lost, within
+from missionfsm.oracle.kinds import Kinds
 from missionfsm.oracle.lookahead import Lookahead
 from missionfsm.oracle.memory import ENTRY, MEMORY, bytes_besides
+from missionfsm.oracle.replay import Replay
 from missionfsm.oracle.restarts import NONE, Restarts, apparent_restarts
 from missionfsm.oracle.shelf import Depot
 from missionfsm.oracle.subsumption import prune
@@ -118,6 +120,7 @@ class Search:
         excerpt: the events of the window.
         budget: how many explanations may be looked at.
         memory: how many bytes those may take, by estimate, that are remembered.
+        kinds: the kinds of calls that other searches through the same window have met.
 
     Attributes:
         whole: whether no events come after those of the window.
@@ -136,6 +139,7 @@ class Search:
         excerpt: Excerpt,
         budget: int,
         memory: int = MEMORY,
+        kinds: Kinds | None = None,
     ) -> None:
         self.transitions = transitions
         self.successors: Successors = transitions.successors
@@ -152,7 +156,7 @@ class Search:
         self._bytes = 0
         self.whole = False
         self.width = WIDTH
-        self._layers: list[Layer] = []
+        self.layers: list[Layer] = []
         self._end: tuple[CallSearch, Standing] | None = None
         self._explained: int | None = None
         self.reached = 0
@@ -163,20 +167,19 @@ class Search:
         self._depot = self._new_depot()
         self._named: dict[int, int] = {}
         self._read = 0
+        self._kinds = kinds or Kinds(self.successors)
         self.calls_alone = are_calls_alone(self.successors, symbols, self._start)
 
-    @property
-    def layers(self) -> list[Layer]:
-        """The explanations that were found: at position n of the first n events."""
-        if self._end is not None:
-            search, end = self._end
-            # Other orders may explain it as well; none of them was looked at.
-            self.layers = [Layer((one,), rules, more=iter(())) for one, rules in search.explanations(end)]
-        return self._layers
+    def told(self) -> tuple[list[Layer], list[tuple[str, ...]]]:
+        """The layers, and of each event that was explained the rules that it exercised.
 
-    @layers.setter
-    def layers(self, layers: list[Layer]) -> None:
-        self._layers, self._end = layers, None
+        Where nothing but calls was looked at, there are two layers: before all events, and behind them.
+        """
+        if self._end is None:
+            return self.layers, [layer.rules for layer in self.layers[1:]]
+        replay = Replay(*self._end)
+        # Other orders may explain it as well; none of them was looked at.
+        return [Layer((one,), more=iter(())) for one in (replay.start, replay.explanation)], replay.exercised
 
     def explain(self, horizon: int) -> bool:
         """Whether the first events up to a horizon are explained.
@@ -316,9 +319,9 @@ class Search:
         successors.budget = successors.limit = min(self.budget, self._memory // ENTRY)
         successors.reset()
         try:
-            self.layers = []
+            self._end = None
             for start in self._start:
-                search = CallSearch(successors, self._symbols, horizon, start)
+                search = CallSearch(self._kinds, self._symbols, horizon, start)
                 end = search.path()
                 self.reached = max(self.reached, search.reached)
                 if end:
@@ -559,8 +562,12 @@ class Search:
         return found
 
     def _first_unexplained(self) -> int | None:
-        symbols = ((at, symbol) for at, symbol in enumerate(self._symbols) if at not in self.beyond)
-        hopeless = (at for at, symbol in symbols if self.transitions.is_hopeless(*symbol))
+        is_hopeless, beyond = self.transitions.is_hopeless, self.beyond
+        hopeless = (
+            at
+            for at, symbol in enumerate(self._symbols)
+            if symbol[0] is not Called and at not in beyond and is_hopeless(*symbol)
+        )
         bad, stride = next(hopeless, len(self._symbols)), 1
         if self._explain_alone(bad):
             return None if bad == len(self._symbols) else bad

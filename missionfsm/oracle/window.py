@@ -12,6 +12,7 @@ from missionfsm.kernel.history import Called, Ended, Event, Received, Returned
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.coming import Excerpt
 from missionfsm.oracle.explanation import GONE, Explanation, reopened, tidy, with_lost
+from missionfsm.oracle.kinds import Kinds
 from missionfsm.oracle.search import Search
 from missionfsm.oracle.successors import Successor
 from missionfsm.oracle.symbols import Symbol
@@ -40,6 +41,7 @@ class Window:
         self._latest = belief.latest
         self._symbols: list[Symbol] = []
         self._search: Search | None = None
+        self._kinds = Kinds(belief.automaton.successors)
         self.positions: list[int] = []
         self.events: list[Event] = []
 
@@ -58,11 +60,12 @@ class Window:
         One that subscribes is none of them where a stream may be its own: what that shows tells that it was opened.
         """
         waiting = {call.name: call.request for one in self._belief.node.explanations for call in one.calls}
-        for kind, *what in self._symbols:
-            if kind is Called and not what[2]:
-                waiting[what[3]] = what[0]
-            elif kind is Returned:
-                waiting.pop(what[2], None)
+        for symbol in self._symbols:
+            if symbol[0] is Called:
+                if not symbol[3]:
+                    waiting[symbol[4]] = symbol[1]
+            elif symbol[0] is Returned:
+                waiting.pop(symbol[3], None)
         if self._shows_what_nobody_opened:
             return frozenset(call for call, request in waiting.items() if not self._streams(request))
         return frozenset(waiting)
@@ -71,8 +74,8 @@ class Window:
     def _shows_what_nobody_opened(self) -> bool:
         """Whether anything comes on a stream of which no answer has told: a call that waits may have opened it."""
         opened = {one.name for here in self._belief.node.explanations for one in here.channels}
-        opened.update(self._latest, *(what[1] for kind, *what in self._symbols if kind is Returned))
-        return any(kind in (Received, Ended) and what[-1] not in opened for kind, *what in self._symbols)
+        opened.update(self._latest, *(one[2] for one in self._symbols if one[0] is Returned))
+        return any(one[-1] not in opened for one in self._symbols if one[0] is Received or one[0] is Ended)
 
     def search(self, lost: frozenset[int] | None = None) -> Search:
         """A search through the window, which goes on with what came since it was last asked for.
@@ -87,12 +90,17 @@ class Window:
         least, each = (FIRST, MORE) if lost is None else (WINDOW_BUDGET, EACH)
         budget = least + each * len(symbols)
         search = None if lost else self._search
-        if search is None or search.calls_alone:
+        if search is None or self.begins_anew:
             transitions, memory = self._belief.automaton.transitions, self._belief.automaton.memory
-            search = Search(transitions, start, Excerpt(symbols, self._latest), budget, memory)
+            search = Search(transitions, start, Excerpt(symbols, self._latest), budget, memory, self._kinds)
         search.budget, search.whole = budget, lost is not None
         self._search = None if lost else search
         return search
+
+    @property
+    def begins_anew(self) -> bool:
+        """Whether a search through more events makes no use of the one before."""
+        return self._search is not None and self._search.calls_alone
 
     def _streams(self, request: object) -> bool:
         spec = self._belief.automaton.spec
@@ -115,7 +123,8 @@ class Window:
 
     def close(self, search: Search) -> None:
         """Let the belief go on behind the events, all of which the search has explained."""
-        belief, automaton, layers = self._belief, self._belief.automaton, search.layers
+        belief, automaton = self._belief, self._belief.automaton
+        layers, exercised = search.told()
         for before, after in itertools.pairwise(layers):
             belief.touched |= automaton.touched(before.explanations, after.explanations)
         for layer in layers[:-1]:
@@ -123,4 +132,4 @@ class Window:
                 for one in layer.explanations:
                     belief.unfollowed |= one.assumed
         found = tuple(Successor(reopened(search.brought(one))) for one in layers[-1].explanations)
-        belief.leap(self._lookout, found, [layer.rules for layer in layers[1:]])
+        belief.leap(self._lookout, found, exercised)

@@ -11,8 +11,9 @@ from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.successors import ExhaustedError
 from missionfsm.oracle.window import Window
 
-FIRST, TIMES = 64, 4
-"""How many events wait before they are first looked at, and the factor by which that grows each time."""
+FIRST, TIMES, TIMES_ANEW = 64, 4, 8
+"""How many events wait before they are first looked at, and the factor by which that grows each time: where the search
+goes on, and where it begins anew."""
 
 
 @frozen
@@ -91,7 +92,7 @@ class Held:
 
     def wait(self) -> None:
         """Let more events come before all of them are explained anew: few enough searches to cost little in sum."""
-        self._size = TIMES * len(self.lines)
+        self._size = (TIMES_ANEW if self._window.begins_anew else TIMES) * len(self.lines)
 
     def explain(self, *, whole: bool) -> Explained:
         """Explain the events, and move the belief after them, or before the first one that nothing explains.

@@ -37,12 +37,10 @@ from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.status.views import Promised
 from missionfsm.bear.wire.messages import EventMetadata
 from missionfsm.bear.wire.protojson import Int64, Timestamp, camel, write
-from missionfsm.fakes.errors import error
+from missionfsm.fakes.fake import Fake
 from missionfsm.fakes.updates import Updates as AnyUpdates
 from missionfsm.kernel.codec import JSON
-from missionfsm.kernel.history import Name
-from missionfsm.kernel.rules import OK
-from missionfsm.tools.reference.model import Reference, Reply
+from missionfsm.tools.reference.model import Reply
 
 T = TypeVar("T")
 
@@ -98,7 +96,7 @@ class Updates(AnyUpdates[Update[T]]):
         self._numbers.pop(robot, None)
 
 
-class Fleet:
+class Fleet(Fake[Updates[Any]]):
     """The robots of an account, and those of others, as the status API shows them.
 
     Args:
@@ -139,9 +137,7 @@ class Fleet:
             ],
             "locations": [{"locationId": place, "owned": owned} for place, owned in places.items()],
         }
-        self._model = Reference(SYSTEM, readings)
-        self._here = self._model.start(SYSTEM.codec.read_world(world))
-        self._subscriptions: dict[Name, Updates[Any]] = {}
+        super().__init__(SYSTEM, world, readings)
         self._clock = clock
         self._shown_so_far = 0
 
@@ -216,15 +212,6 @@ class Fleet:
         self._subscriptions[reply.names[0]] = found
         return found
 
-    def _ask(self, method: str, params: JSON, opened: Updates[Any] | None = None) -> Reply:
-        self._give_up()
-        self._here, reply = self._model.call(self._here, SYSTEM.codec.read_request(method, params))
-        self._deliver(reply, opened)
-        if reply.answer is not None and reply.answer.code != OK:
-            rules = tuple(SYSTEM.spec.rule(rule) for rule in reply.rules)
-            raise error(reply.answer.code, SYSTEM.spec.operations[method], rules)
-        return reply
-
     # What robots do.
 
     def report(self, robot: str, part: str, value: object) -> bool:
@@ -254,23 +241,6 @@ class Fleet:
         """Let the next `get_status` fail that would succeed."""
         self._drive({"event": "fault", "status": "INTERNAL"})
 
-    def drive(self, event: str, **fields: JSON) -> bool:
-        """Make something happen by its name in the adapter protocol, such as ``drive("restart", robotId="r1")``.
-
-        False, and nothing happens, where it does not apply.
-
-        Raises:
-            ValueError: there is no such drive, or its fields are wrong.
-        """
-        return self._drive({"event": event, **fields})
-
-    def _drive(self, given: JSON) -> bool:
-        event, _ = SYSTEM.codec.read_drive(given)
-        self._give_up()
-        self._here, reply = self._model.drive(self._here, event)
-        self._deliver(reply)
-        return reply.happened
-
     def _deliver(self, reply: Reply, opened: Updates[Any] | None = None) -> None:
         """Hand out what was sent."""
         now = None if self._clock is None else self._clock() - EPOCH.timestamp()
@@ -282,10 +252,3 @@ class Fleet:
                 timestamp = (EPOCH + timedelta(seconds=seconds)).isoformat().replace("+00:00", "Z")
                 shown = rendered(sent.view, self._model.choice)
                 updates._show(shown.robot, timestamp, shown.value)  # noqa: SLF001 - as above
-
-    def _give_up(self) -> None:
-        """Close the subscriptions that were cancelled."""
-        for channel, updates in tuple(self._subscriptions.items()):
-            if not updates.open:
-                self._here = self._model.cancel(self._here, channel)
-                del self._subscriptions[channel]

@@ -35,13 +35,13 @@ from missionfsm.bear.wire.messages import (
     MissionWorkflow,
 )
 from missionfsm.bear.wire.protojson import camel, read, write
-from missionfsm.fakes.errors import error
+from missionfsm.fakes.fake import Fake
 from missionfsm.fakes.updates import Updates as AnyUpdates
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer, Name
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.text import brief
-from missionfsm.tools.reference.model import Reference, Reply, Sent, Snapshot
+from missionfsm.tools.reference.model import Reply, Sent, Snapshot
 from missionfsm.tools.reference.stamps import Stamps
 
 _USUAL = World()
@@ -61,7 +61,7 @@ Updates = AnyUpdates[MissionStatus]
 """A subscription to a robot's mission status: a ``for`` loop over it takes the updates since the last loop."""
 
 
-class Robot:
+class Robot(Fake[Updates]):
     """A robot that does what the Mission page says.
 
     Args:
@@ -91,9 +91,7 @@ class Robot:
         readings: Mapping[str, str] | None = None,
         clock: Callable[[], float] | None = None,
     ) -> None:
-        self._model = Reference(SYSTEM, readings)
         self._seconds = float if clock is None else Stamps(lambda: clock() - EPOCH.timestamp())
-        self._subscriptions: dict[Name, Updates] = {}
         self._on_the_way: deque[tuple[Updates, MissionStatus]] = deque()
         self._delivering = False
         fields = {
@@ -104,7 +102,7 @@ class Robot:
             "chargingLocation": charging_location,
             "blocked": blocked,
         }
-        self._here = self._model.start(SYSTEM.codec.read_world(fields))
+        super().__init__(SYSTEM, fields, readings)
 
     def __repr__(self) -> str:
         return f"<Robot {self._here.state.world.family.value}: {describe(self._here.state)}>"
@@ -216,7 +214,7 @@ class Robot:
             callback: called with every update as it comes, in the place of keeping it to be taken.
         """
         found: Updates = AnyUpdates(callback)
-        names = self._ask("SubscribeMissionStatus", {}, found)
+        names = self._ask("SubscribeMissionStatus", {}, found).names
         self._subscriptions[names[0]] = found
         return found
 
@@ -232,25 +230,14 @@ class Robot:
             unary = ", ".join(one for one in codec.methods if one not in codec.streams)
             message = f"{brief(method)} is no call of the mission API with one answer; those are {unary}"
             raise ValueError(message)
-        names = self._ask(method, params)
+        names = self._ask(method, params).names
         return codec.write_answer(method, Answer(OK), names)
 
     def _one(self, method: str, params: JSON) -> str:
         return self._ids(method, params)[0]
 
     def _ids(self, method: str, params: JSON) -> tuple[str, ...]:
-        return tuple(map(str, self._ask(method, params)))
-
-    def _ask(self, method: str, params: JSON, opened: Updates | None = None) -> tuple[Name, ...]:
-        names, rest = SYSTEM.codec.split_request(method, params)
-        self._give_up()
-        self._here, reply = self._model.call(self._here, SYSTEM.codec.read_request(method, rest), names)
-        self._deliver(reply, opened)
-        assert reply.answer is not None, "a call is answered"  # noqa: S101 - a model always answers
-        if reply.answer.code != OK:
-            rules = tuple(SYSTEM.spec.rule(rule) for rule in reply.rules)
-            raise error(reply.answer.code, SYSTEM.spec.operations[method], rules)
-        return reply.names
+        return tuple(map(str, self._ask(method, params).names))
 
     # The robot's own doing.
 
@@ -297,23 +284,6 @@ class Robot:
         """
         self._drive({"event": "fault", "status": code, "applied": applied})
 
-    def drive(self, event: str, **fields: JSON) -> bool:
-        """Make something happen by its name in the adapter protocol, such as ``drive("world", blocked=True)``.
-
-        False, and nothing happens, where it does not apply.
-
-        Raises:
-            ValueError: there is no such drive, or its fields are wrong.
-        """
-        return self._drive({"event": event, **fields})
-
-    def _drive(self, given: JSON) -> bool:
-        event, names = SYSTEM.codec.read_drive(given)
-        self._give_up()
-        self._here, reply = self._model.drive(self._here, event, names)
-        self._deliver(reply)
-        return reply.happened
-
     # What can be seen.
 
     @property
@@ -354,13 +324,6 @@ class Robot:
             sent.view, sent.names, self._model.choice, sent.number, self._seconds(sent.number)
         )
         return MissionStatus(read(EventMetadata, message["metadata"]), self._message(sent.view, sent.names))
-
-    def _give_up(self) -> None:
-        """Close the subscriptions that were cancelled."""
-        for channel, updates in tuple(self._subscriptions.items()):
-            if not updates.open:
-                self._here = self._model.cancel(self._here, channel)
-                del self._subscriptions[channel]
 
     # Back and forth.
 

@@ -122,6 +122,17 @@ def test_what_no_robot_shows_is_told(case: str) -> None:
     assert found == [[]] * (len(messages) - 1) + [[rule]]
 
 
+def test_what_cannot_have_become_of_a_mission_is_told_first() -> None:
+    """The index is wrong as well where an ended mission runs again, and follows from it."""
+    monitor = MissionMonitor()
+    monitor.feed(message(1, ENDED, index=-1))
+    found = [problem.says for problem in monitor.feed(message(2, mission(), index=-1))]
+    assert found == [
+        "mission A is STATE_RUNNING, and was STATE_SUCCEEDED before",
+        "current_mission_index is -1, expected 0",
+    ]
+
+
 @pytest.mark.parametrize("types", [{}, {"serviType": "SERVI_TYPE_BUSSING"}], ids=["a charge", "a workflow"])
 @pytest.mark.parametrize("state", ["STATE_RUNNING", "STATE_PAUSED"])
 def test_what_was_assigned_last_may_have_its_turn_first(types: Any, state: str) -> None:

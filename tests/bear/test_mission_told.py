@@ -58,7 +58,7 @@ class Log:
                 "missionId": name,
                 "state": f"STATE_{state}",
                 "goals": goals(*tables),
-                "currentGoalIndex": at if state == "RUNNING" else 0,
+                "currentGoalIndex": at if state in ("RUNNING", "PAUSED") else 0,
                 "missionType": KINDS[kind][2],
                 "owner": "api",
             }
@@ -78,7 +78,7 @@ class Log:
     def told(self) -> Violation:
         first = head(self.head)
         judged_by = judged_system(first.system, strict=first.strict, anywhere=first.anywhere)
-        found = check(judged_by, first, self.lines).violation
+        found = check(judged_by, first, self.lines, early=0 if first.anywhere else None).violation
         assert found is not None
         return found
 
@@ -185,3 +185,24 @@ def test_nothing_came_after_a_call() -> None:
     last = "[RUNNING at goal 0, WAITING, WAITING], current_mission_index 0 (m1, m2, m3)"
     says = f"after ClearMissionStatus() → OK m1, m2, m3 stream 1 showed nothing new; it showed {last} last"
     assert (found.observed, found.notes) == ("everything settled", (says,))
+
+
+def test_half_of_a_batch_that_timed_out() -> None:
+    """It takes effect whole or not at all, whatever it was answered."""
+    begun = Log(drives=DRIVES[:4], transport="strict").creates("m1", "delivery", *A)
+    begun.shows(("m1", "delivery", "RUNNING", A))
+    batch = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-3")]}
+    begun.asks("AppendMissionBatch", batch, "DEADLINE_EXCEEDED")
+    found = begun.shows(("m1", "delivery", "RUNNING", A), ("m2", "delivery", "DEFAULT", ("table-1",))).settles().told
+    assert "AppendMissionBatch/missions-are-appended-at-the-end" in rules(found)
+
+
+def test_what_only_a_restart_explains() -> None:
+    """A line that is wrong and explained by a restart is said where a later one contradicts that."""
+    begun = Log(begins="anywhere").shows(
+        ("m1", "delivery", "PAUSED", A), ("m2", "delivery", "DEFAULT", A), index=1, at=1
+    )
+    begun.asks("UpdateMission", command("m2", "CANCEL"), "NOT_FOUND")
+    found = begun.asks("UpdateMission", command("m1", "RESUME")).told
+    shown = "stream 1 showed [PAUSED at goal 1, DEFAULT], current_mission_index 1"
+    assert f"unless it has restarted, nothing explains an earlier line: {shown}" in found.notes

@@ -221,6 +221,15 @@ def test_a_robot_that_was_not_selected_is_told_as_that() -> None:
     assert found.violation.rules[0].id.endswith("only-selected-robots-are-shown")
 
 
+def test_a_robot_elsewhere_is_told_as_that() -> None:
+    """A stream by location shows the robots that are there: where one is instead is said."""
+    begun = [report("r3", "battery", FIRST), *opened(1, BATTERY, at("L2")), battery_message(1, "r3", 1, FIRST)]
+    found = judge([*begun, report("r1", "battery", SECOND), battery_message(1, "r1", 5, SECOND)])
+    assert found.violation is not None
+    assert "robot 'r1' is at 'L1', and 'L2' was selected" in found.violation.notes
+    assert found.violation.rules[0].id.endswith("only-selected-robots-are-shown")
+
+
 def test_a_stream_does_not_just_end() -> None:
     """AS-26: a clean end without a cause is a departure from the text, and said to be one."""
     found = judge([*SUBSCRIBED, {"stream": 1, "closed": True}])

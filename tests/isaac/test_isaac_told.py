@@ -57,6 +57,14 @@ def test_a_mission_is_for_another_robot() -> None:
     assert "is for 'r', the connection has said no name" in _told(nobody)
 
 
+def test_a_robot_is_busy() -> None:
+    """The violation says with which mission, and that it is under way."""
+    begun = _first().submit(2).robot(1).sends(1, 1, A).settles.reports(1, 1, "running").settles
+    told = _told(begun.shows("RUNNING", "QUEUED").sends(1, 2), readings={"AI-11": "a"})
+    assert f"its robot is busy: the one with {A} is running" in told
+    assert "nothing changed since" not in told
+
+
 def test_a_mission_was_never_accepted() -> None:
     """The violation says that no such mission was accepted."""
     history = History().submit(1, refused=True, start_timeout=-1).robot(1).sends(1, 1)

@@ -138,8 +138,9 @@ class MissionMonitor:
         """What is wrong with a list of missions by itself, and after the list before it."""
         missions = dict(zip(names, seen.states.missions, strict=False))
         self.repeats += missions == self._missions and self.messages > 1
-        yield from _listed(seen, names, self._begun)
+        # What cannot have become of a mission comes first: where it is wrong, its place and the index are as well.
         yield from self._goes_on(missions)
+        yield from _listed(seen, names, self._begun)
         yield from self._come_back(seen, names)
         if all(seen.named):
             yield from self._put_in_front(missions)

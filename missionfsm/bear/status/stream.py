@@ -19,6 +19,7 @@ from missionfsm.bear.status.state import (
     STATUS,
     SYSTEM_NAME,
     Endpoint,
+    Fleet,
     Value,
 )
 from missionfsm.bear.status.values import (
@@ -92,10 +93,16 @@ def matches(view: View, content: Seen | Malformed) -> tuple[Match, ...] | Mismat
     return tuple(Match((*assumes, *untimed), (), rules) for assumes in found)
 
 
-def not_selected(_: object, topic: Hashable, content: object, _refs: object) -> tuple[str, ...] | Mismatch:
-    """What is wrong with a message that nothing owes on a stream that shows no robot, if it is about one."""
-    if not isinstance(topic, Topic) or topic.robot or not isinstance(content, Seen):
+def not_selected(here: object, topic: Hashable, content: object, _refs: object) -> tuple[str, ...] | Mismatch:
+    """What is wrong with a message that nothing owes, if it is about a robot that its stream does not show."""
+    if not isinstance(topic, Topic) or not isinstance(content, Seen):
         return ()
+    if topic.robot:
+        robot = here.robot(topic.robot) if isinstance(here, Fleet) and topic.robot == content.robot else None
+        if robot is None or topic.location in (None, robot.location):
+            return ()
+        says = f"robot {brief(robot.id)} is at {brief(robot.location)}, and {brief(topic.location)} was selected"
+        return Mismatch(SELECTED.id, says)
     where = "was not selected" if topic.location is None else f"is not at {brief(topic.location)}, which was selected"
     return Mismatch(SELECTED.id, f"robot {brief(content.robot)} {where}")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.state import ENDED, Link, Mission, Server, Status, mission_of_uuid
+from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Link, Mission, Server, Status, mission_of_uuid
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.kernel.step import Unowed
 from missionfsm.kernel.terms import Refs
@@ -19,7 +19,7 @@ def unowed(server: Server, at: Hashable, content: object, refs: Refs) -> tuple[s
     known = [mission_of_uuid(server, ref) for ref in refs if ref is not None]
     if known:
         return _once_more([server.missions[index] for index in known if index >= 0])
-    return _too_early(link, [one for one in server.missions if _says(content, one)])
+    return _too_early(server, link, [one for one in server.missions if _says(content, one)])
 
 
 def _once_more(meant: list[Mission]) -> tuple[str, ...] | Unowed:
@@ -32,10 +32,11 @@ def _once_more(meant: list[Mission]) -> tuple[str, ...] | Unowed:
     return ()
 
 
-def _waits(own: list[Mission]) -> tuple[str, ...] | Unowed:
-    """Why none of these missions of the robot is due, which are queued."""
+def _waits(own: list[Mission], under_way: list[Mission]) -> tuple[str, ...] | Unowed:
+    """Why none of these missions of the robot is due, which are queued, while others of it are under way."""
     if all(one.ready for one in own):
-        return (rules.SENT.id,)
+        busy = ", ".join(f"the one with {one.config} is {_word(one.status)}" for one in under_way)
+        return Unowed((rules.SENT.id,), f"its robot is busy: {busy}") if busy else (rules.SENT.id,)
     has = "failed" if all(one.doomed for one in own) else "not succeeded"
     return Unowed((rules.UPSTREAM.id, rules.SENT.id), f"an upstream of the mission with that configuration has {has}")
 
@@ -49,12 +50,12 @@ def _not_queued(meant: list[Mission]) -> Unowed:
     return Unowed((rules.SENT.id,), f"a mission with that channel and that configuration {says}")
 
 
-def _too_early(link: Link, meant: list[Mission]) -> tuple[str, ...] | Unowed:
+def _too_early(server: Server, link: Link, meant: list[Mission]) -> tuple[str, ...] | Unowed:
     """Why none of these missions is due on a connection."""
     queued = [one for one in meant if one.queued]
     own = [one for one in queued if link.serves and one.robot == link.name]
     if own:
-        return _waits(own)
+        return _waits(own, [one for one in server.missions if one.status in UNDER_WAY and one.robot == link.name])
     if any(one.status is Status.CANCELED and one.robot == link.name for one in meant):
         says = "the mission with that configuration was cancelled, since an upstream of it has failed"
         return Unowed((rules.CANCELED.id, rules.UPSTREAM.id), says)

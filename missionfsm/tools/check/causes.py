@@ -9,6 +9,8 @@ import itertools
 from collections.abc import Hashable, Iterator, Sequence
 from typing import Any
 
+from attrs import evolve
+
 from missionfsm.kernel.history import Called, Driven, Received, Returned, Settled
 from missionfsm.kernel.readings import meet
 from missionfsm.kernel.spec import Spec
@@ -137,7 +139,10 @@ def _steps(belief: Belief, symbol: tuple[Any, ...], here: Explanation) -> Iterat
         yield from ((step, drive.later is None) for step in steps)
     elif kind is Called:
         request, names, *_ = what
-        yield from ((step, True) for step in successors.outcomes(here.state, request, successors.refs(here, names)))
+        promised = tuple(one.id for one in spec.operations[spec.request_operation(request)].promises)
+        for step in successors.outcomes(here.state, request, successors.refs(here, names)):
+            # A call that took effect and failed all the same says no rule: those count by which it takes effect.
+            yield (step if step.rules else evolve(step, rules=promised)), True
     for call in here.calls:
         if call.done is None:
             steps = successors.outcomes(here.state, call.request, successors.refs(here, call.args))

@@ -11,6 +11,7 @@ from missionfsm.kernel.sequence import STALE
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
 from missionfsm.kernel.text import printable
+from missionfsm.kernel.transport import TR_05
 from missionfsm.oracle.belief import Belief
 from missionfsm.oracle.explanation import Channel, Explanation, Owed
 from missionfsm.oracle.successors import Successor
@@ -71,6 +72,7 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         observed += " happened" if isinstance(event, Driven) else ""
         found = _against_drive(nearest, event)
     expected, rules, notes = found
+    notes = [*notes, *_taken_for_granted(nearest)]
     operation = _operation(nearest, event, expected)
     named = list(dict.fromkeys(rule for rule in rules if rule))[:MAX_RULES] or _implied(spec, event, operation)
     return Violation(
@@ -79,6 +81,15 @@ def violation(belief: Belief, event: Event, about: Circumstances = Circumstances
         _allowed(spec, expected, operation),
         tuple(dict.fromkeys(printable(note) for note in notes if note))[:MAX_NOTES],
     )
+
+
+def _taken_for_granted(nearest: Nearest) -> list[str]:
+    """That only a restart of what is judged explains what came before; the line that shows it may be wrong itself."""
+    here = nearest.belief.node.explanations
+    elimination = nearest.about.eliminations.get((TR_05.id, "a"))
+    if elimination is None or any("a" in TR_05.possible(one.assumed) for one in here):
+        return []
+    return [f"unless it has restarted, nothing explains an earlier line: {elimination}"]
 
 
 def _implied(spec: Spec, event: Event, operation: str) -> list[str]:
@@ -256,7 +267,7 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
         return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
     refused = untimely(nearest, event) if max(weights, default=0) >= VALUE else None
     if refused is not None:
-        return candidates, _alternately(refused[0], rules), [refused[1]]
+        return candidates, refused[0], [refused[1]]
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
 
 

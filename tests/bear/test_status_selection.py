@@ -221,6 +221,22 @@ def test_a_robot_that_was_not_selected_is_told_as_that() -> None:
     assert found.violation.rules[0].id.endswith("only-selected-robots-are-shown")
 
 
+def test_what_was_asked_since_has_no_part_in_a_message_that_is_missing() -> None:
+    """However long ago the change was that no message shows, and whatever was answered last."""
+    state = WORLDS[0]["robots"][1]["state"]
+    asked = [
+        line
+        for call in range(5, 60)
+        for line in (
+            {"call": call, "method": "GetRobotStatus", "params": {"robotId": "r2"}},
+            {"return": call, "result": {"robotState": state}},
+        )
+    ]
+    found = judge([*SUBSCRIBED, report("r1", "battery", UNPLUGGED), *asked, SETTLED])
+    assert found.violation is not None
+    assert [rule.id for rule in found.violation.rules] == ["bear.status/messages/updates-follow-the-state"]
+
+
 def test_a_robot_elsewhere_is_told_as_that() -> None:
     """A stream by location shows the robots that are there: where one is instead is said."""
     begun = [report("r3", "battery", FIRST), *opened(1, BATTERY, at("L2")), battery_message(1, "r3", 1, FIRST)]

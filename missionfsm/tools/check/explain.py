@@ -318,13 +318,18 @@ def _before(nearest: Nearest, candidate: Candidate | None = None, *, made_only: 
     Args:
         made_only: whether only steps count that somebody has made happen: others have no part in a wrong name.
     """
-    owing: tuple[str, ...] | None = None
-    if candidate is not None and candidate.owed is not None:
-        channel, owed = candidate.owed
-        first = nearest.spec.delivery(channel.topic).first if channel.last is None else ()
-        owing = first or causes.owing(nearest.belief, owed.view, channel.topic, made_only=made_only)
+    owing = None if candidate is None else _owing(nearest, candidate, made_only=made_only)
     unseen = reversed(candidate.unseen) if candidate and not made_only else ()
     return list(dict.fromkeys((*unseen, *(causes.latest(nearest.belief) if owing is None else owing))))
+
+
+def _owing(nearest: Nearest, candidate: Candidate, *, made_only: bool = False) -> tuple[str, ...] | None:
+    """The rules of the steps that made a message due, if it is one, and any step is known to have."""
+    if candidate.owed is None:
+        return None
+    channel, owed = candidate.owed
+    first = nearest.spec.delivery(channel.topic).first if channel.last is None else ()
+    return first or causes.owing(nearest.belief, owed.view, channel.topic, made_only=made_only)
 
 
 def _due(here: Explanation) -> list[tuple[Channel, Owed]]:
@@ -366,9 +371,11 @@ def _still_due(nearest: Nearest) -> Accusation:
                 rules += nearest.missing(delivery, owed.view, at_first=channel.last is None)
                 last = f"; it showed {_shown(nearest, channel.last)} last" if channel.last else ""
                 notes.append(f"{where} did not show {_shown(nearest, owed)}{last}")
-    before = _before(nearest, found[0] if found else None)
     if not found:
         rules, notes = _nothing_new(nearest)
+        return found, _alternately(list(dict.fromkeys(rules)), _before(nearest)), notes[:2]
+    # What was seen last has no part in it, unless it made the message due.
+    before = [*reversed(found[0].unseen), *(_owing(nearest, found[0]) or ())]
     return found, _alternately(list(dict.fromkeys(rules)), before), notes[:2]
 
 

@@ -12,7 +12,7 @@ from server_history import SERVER, SETTLED, History
 from test_isaac_runtime_profiles import Live
 
 from missionfsm.isaac.runtime.profile import AS_SHIPPED, DOCUMENTED, Profile
-from missionfsm.isaac.server import effects, elapsing, queues, scheduling, silent, unseen
+from missionfsm.isaac.server import dispatch, effects, elapsing, queues, silent, unseen
 from missionfsm.isaac.server import time as passing
 from missionfsm.isaac.server.independence import Part, concerned, parts
 from missionfsm.isaac.server.indifference import makes_no_difference
@@ -445,7 +445,7 @@ def in_whatever_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for history in (it, spoilt(draw, it), spoilt(draw, it), spoilt(draw, it)):
         found = []
         for alone in (False, True):
-            for cache in (effects.advance, effects.line, silent._silent_in, scheduling._urgent):
+            for cache in (effects.advance, effects.line, silent._silent_in, dispatch._urgent):
                 cache.cache_clear()
             with monkeypatch.context() as patch:
                 if alone:

@@ -103,3 +103,9 @@ def zero_means(move: Move, *times: int | None) -> Iterator[tuple[str, Move]]:
         yield "a", move
     else:
         yield from ways(move, AI_24, "a", "b")
+
+
+def counting(state: Server, index: int) -> tuple[Clock, ...]:
+    """The clocks of a mission that may bring about anything yet."""
+    mission = state.missions[index]
+    return () if mission.overdue else mission.ticking

@@ -6,6 +6,8 @@ in its state.
 
 from __future__ import annotations
 
+import functools
+
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
@@ -224,3 +226,26 @@ def in_vain(move: Move, gone: Link) -> Moves:
                     yield ends(way, index, "lose")
                 else:
                     yield way if letter == "a" else sent_again(way, index)
+
+
+def followed(move: Move, part: Part) -> list[Move]:
+    """What follows at once in a part, at the moment of the move."""
+    found: dict[Move, None] = {}
+    todo = [move]
+    while todo:
+        here = todo.pop()
+        follows = _urgent(here.state, here.at, part)
+        if not follows:
+            found[tidy(here)] = None
+        todo += [Move(one.state, here.sent + one.sent, here.rules + one.rules, one.at) for one in reversed(follows)]
+    return list(found)
+
+
+@functools.lru_cache(maxsize=50_000)
+def _urgent(state: Server, at: tuple[int, int], part: Part) -> tuple[Move, ...]:
+    return urgent(Move(state, at=at), part)
+
+
+def tidy(move: Move) -> Move:
+    """The same with rules once each, and lines by connection: their order across connections means nothing."""
+    return evolve(move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0])))

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
+from missionfsm.isaac.server.clocks import counting
 from missionfsm.isaac.server.connections import inherited
 from missionfsm.isaac.server.deciding import merged
+from missionfsm.isaac.server.dispatch import followed
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.indifference import makes_no_difference
-from missionfsm.isaac.server.scheduling import EVER, after_pass, counting, followed, waits_for_pass
+from missionfsm.isaac.server.scheduling import EVER, after_pass, waits_for_pass
 from missionfsm.isaac.server.state import PASS_PERIOD, Clock, Link, Mission, Move, Server
 from missionfsm.isaac.server.striking import strikes
 from missionfsm.isaac.shared.line import MICROSECONDS

@@ -5,50 +5,20 @@ Where a server looks now and then (AI-39 b), names, drops and what may be sent a
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterator
 
 from attrs import evolve
 
 from missionfsm.isaac.server.deciding import split
-from missionfsm.isaac.server.dispatch import lapses, sends, urgent
+from missionfsm.isaac.server.dispatch import followed, lapses, sends
 from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.losing import untimed
 from missionfsm.isaac.server.queues import possible
 from missionfsm.isaac.server.readings import AI_16_UNDER_WAY, AI_39, AI_39_ORDER
-from missionfsm.isaac.server.state import Clock, Link, Move, Server
+from missionfsm.isaac.server.state import Link, Move, Server
 
 EVER = 10**15
 """Longer ago than anything happened, in microseconds."""
-
-
-def counting(state: Server, index: int) -> tuple[Clock, ...]:
-    """The clocks of a mission that may bring about anything yet."""
-    mission = state.missions[index]
-    return () if mission.overdue else mission.ticking
-
-
-def followed(move: Move, part: Part) -> list[Move]:
-    """What follows at once in a part, at the moment of the move."""
-    found: dict[Move, None] = {}
-    todo = [move]
-    while todo:
-        here = todo.pop()
-        follows = _urgent(here.state, here.at, part)
-        if not follows:
-            found[tidy(here)] = None
-        todo += [Move(one.state, here.sent + one.sent, here.rules + one.rules, one.at) for one in reversed(follows)]
-    return list(found)
-
-
-@functools.lru_cache(maxsize=50_000)
-def _urgent(state: Server, at: tuple[int, int], part: Part) -> tuple[Move, ...]:
-    return urgent(Move(state, at=at), part)
-
-
-def tidy(move: Move) -> Move:
-    """The same with rules once each, and lines by connection: their order across connections means nothing."""
-    return evolve(move, rules=tuple(sorted(set(move.rules))), sent=tuple(sorted(move.sent, key=lambda one: one[0])))
 
 
 def waits_for_pass(state: Server, link: Link) -> bool:

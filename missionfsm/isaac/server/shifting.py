@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from missionfsm.isaac.server.scheduling import taken_up, tidy
+from missionfsm.isaac.server.dispatch import tidy
+from missionfsm.isaac.server.scheduling import taken_up
 from missionfsm.isaac.server.state import Link, Mission, Move
 
 

@@ -17,9 +17,10 @@ from collections.abc import Iterable, Iterator
 
 from attrs import define, evolve, field
 
+from missionfsm.isaac.server.clocks import counting
 from missionfsm.isaac.server.connections import inherited
 from missionfsm.isaac.server.deciding import merged, unusual, ways
-from missionfsm.isaac.server.dispatch import in_vain
+from missionfsm.isaac.server.dispatch import followed, in_vain
 from missionfsm.isaac.server.independence import Part, parts
 from missionfsm.isaac.server.indifference import downstream, makes_no_difference
 from missionfsm.isaac.server.losing import forgotten
@@ -27,9 +28,7 @@ from missionfsm.isaac.server.readings import AI_39_ORDER
 from missionfsm.isaac.server.scheduling import (
     EVER,
     after_pass,
-    counting,
     dropped_unnoticed,
-    followed,
     held_back,
     overlooked,
     pass_by,

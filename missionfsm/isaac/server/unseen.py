@@ -7,15 +7,14 @@ from collections.abc import Iterator
 
 from attrs import evolve
 
+from missionfsm.isaac.server.clocks import counting
 from missionfsm.isaac.server.connections import drops, inherited
-from missionfsm.isaac.server.dispatch import in_vain
+from missionfsm.isaac.server.dispatch import followed, in_vain
 from missionfsm.isaac.server.independence import Part
 from missionfsm.isaac.server.indifference import makes_no_difference, upstream_overdue
 from missionfsm.isaac.server.scheduling import (
     after_pass,
-    counting,
     dropped_unnoticed,
-    followed,
     overlooked,
     sent_before,
     waits_for_pass,

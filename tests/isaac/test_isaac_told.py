@@ -57,6 +57,25 @@ def test_a_mission_is_for_another_robot() -> None:
     assert "is for 'r', the connection has said no name" in _told(nobody)
 
 
+def test_a_line_that_is_due_never_comes() -> None:
+    """Also where only what comes later shows it: what was sent last on each connection is said."""
+    begun = History().robot(1, "a").robot(2, "b").robot(3, "c").submit(1, robot="a", timeout=60).sends(1, 1)
+    begun.submit(2, robot="b", upstream=[1], start_timeout=8).submit(3, robot="c", upstream=[1], timeout=40.5)
+    begun.submit(4, robot="a", upstream=[2, 3]).submit(5, robot="b", upstream=[4]).submit(6, robot="c")
+    begun = begun.waits(1).settles.reports(1, 1, "running").waits(3).settles
+    begun = begun.reports(1, 1, "success").sends(2, 2).sends(3, 3).waits(2).settles
+    begun.shows("SUCCESS", "STARTED", "STARTED", "QUEUED", "QUEUED", "QUEUED")
+    begun = begun.reports(2, 2, "running").reports(3, 3, "running").waits(2).settles
+    begun = begun.reports(2, 2, "success").waits(2).settles
+    stays = ("SUCCESS", "SUCCESS", "RUNNING", "QUEUED", "QUEUED", "QUEUED")
+    verdict = begun.shows(*stays).reports(3, 3, "failure").waits(3).settles.shows(*stays).judged()
+    assert verdict.violation is not None
+    assert verdict.violation.observed == "everything settled"
+    told = str(verdict)
+    assert "nothing new" not in told
+    assert "a line is due that does not come; connection 1 showed a mission on mission" in told
+
+
 def test_a_robot_is_busy() -> None:
     """The violation says with which mission, and that it is under way."""
     begun = _first().submit(2).robot(1).sends(1, 1, A).settles.reports(1, 1, "running").settles

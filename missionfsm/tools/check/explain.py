@@ -380,14 +380,20 @@ def _still_due(nearest: Nearest) -> Accusation:
 
 
 def _nothing_new(nearest: Nearest) -> tuple[list[str], list[str]]:
-    """What was shown before the last call, and nothing after it: that a message is missing is known from later ones."""
+    """What was shown before the last call, and nothing after it: that a message is missing is known from later ones.
+
+    Streams show what calls do; on other channels lines come when it is time for them.
+    """
     here = next((one for one in nearest.reachable() if nearest.at_rest(one)), None)
     shown = [one for one in here.channels if one.last is not None] if here is not None else []
     if not shown or not nearest.about.recent:
         return [], []
-    call = nearest.about.recent[-1].words(nearest.spec)
     rules = [rule for one in shown for rule in nearest.spec.delivery(one.topic).unowed]
-    lasts = ((_called(nearest, one), _shown(nearest, one.last)) for one in shown if one.last is not None)
+    lasts = [(_called(nearest, one), _shown(nearest, one.last)) for one in shown if one.last is not None]
+    if not all(nearest.spec.delivery(one.topic).operation for one in shown):
+        last = "; ".join(f"{where} showed {last} last" for where, last in lasts)
+        return rules, [f"a line is due that does not come; {last}"]
+    call = nearest.about.recent[-1].words(nearest.spec)
     return rules, [f"after {call} {where} showed nothing new; it showed {last} last" for where, last in lasts]
 
 

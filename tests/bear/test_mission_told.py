@@ -206,3 +206,11 @@ def test_what_only_a_restart_explains() -> None:
     found = begun.asks("UpdateMission", command("m1", "RESUME")).told
     shown = "stream 1 showed [PAUSED at goal 1, DEFAULT], current_mission_index 1"
     assert f"unless it has restarted, nothing explains an earlier line: {shown}" in found.notes
+
+
+def test_a_failure_that_nobody_drove() -> None:
+    """Where the drives of a log say who makes calls fail, a failure that nobody drove is told as that."""
+    begun = Log(drives=DRIVES)
+    found = begun.asks("CreateMission", mission("delivery", *A), "INTERNAL").told
+    says = "INTERNAL comes to this call only where a drive makes it fail (the log says all of those), and none did"
+    assert found.notes == (says,)

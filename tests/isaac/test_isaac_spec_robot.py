@@ -144,6 +144,8 @@ def test_of_which_mission_something_is_missing_is_said_by_its_uuid() -> None:
         f"RUNNING of its mission on mission_status (uuid (lower {one}, upper {one | 1 << 60}))" for one in (2, 1)
     )
     assert f"connection 1 did not show {missing}; it showed {last} last" in str(verdict)
+    silent = judged(*RUNS, passes(5), passes(5), passes(30), SETTLED)
+    assert f"connection 1 did not show {last} again" in str(silent)
 
 
 @pytest.mark.parametrize(

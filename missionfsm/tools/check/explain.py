@@ -369,8 +369,7 @@ def _still_due(nearest: Nearest) -> Accusation:
             found.append(Candidate(what=shows, unseen=successor.rules, owed=(channel, owed)))
             if usual:
                 rules += nearest.missing(delivery, owed.view, at_first=channel.last is None)
-                last = f"; it showed {_shown(nearest, channel.last)} last" if channel.last else ""
-                notes.append(f"{where} did not show {_shown(nearest, owed)}{last}")
+                notes.append(f"{where} did not show {_shown(nearest, owed)}{_shown_last(nearest, channel, owed)}")
     if not found:
         rules, notes = _nothing_new(nearest)
         return found, _alternately(list(dict.fromkeys(rules)), _before(nearest)), notes[:2]
@@ -395,6 +394,14 @@ def _nothing_new(nearest: Nearest) -> tuple[list[str], list[str]]:
         return rules, [f"a line is due that does not come; {last}"]
     call = nearest.about.recent[-1].words(nearest.spec)
     return rules, [f"after {call} {where} showed nothing new; it showed {last} last" for where, last in lasts]
+
+
+def _shown_last(nearest: Nearest, channel: Channel, owed: Owed) -> str:
+    """What a channel has shown last, behind what it owes."""
+    if channel.last is None:
+        return ""
+    again = (channel.last.view, channel.last.names) == (owed.view, owed.names)
+    return " again" if again else f"; it showed {_shown(nearest, channel.last)} last"
 
 
 def _shown(nearest: Nearest, owed: Owed) -> str:

@@ -137,7 +137,9 @@ def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tupl
     explanations = nearest.belief.node.explanations
     done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
     if not done or len(done) < len(explanations):
-        return rules, [f"{code} comes to this call only where a failure was driven, and none was waiting"]
+        return rules, [
+            f"{code} comes to this call only where a drive makes it fail (the log says all of those), and none did"
+        ]
     explanation, answer = done[0]
     shown = [
         f"{name_words(nearest.belief.name(channel.name))} showed {described(spec, channel.last.view)}"

@@ -23,6 +23,7 @@ from missionfsm.kernel.mutations import (
     unsent,
 )
 from missionfsm.kernel.picture import Plan, Sketch, every_state
+from missionfsm.kernel.possibilities import each_met
 from missionfsm.kernel.readings import Ambiguity, Assumption, asked_of_each, declared, meet, to_the_letter
 from missionfsm.kernel.rules import (
     DEADLINE_EXCEEDED,
@@ -108,6 +109,7 @@ __all__ = [
     "brief",
     "decide",
     "declared",
+    "each_met",
     "each_sent",
     "every_state",
     "meet",

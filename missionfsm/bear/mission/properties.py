@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from missionfsm.bear.mission.state import ENDED, GOALLESS, LIFECYCLE, NOT_CHOSEN, Mission
 from missionfsm.bear.wire.messages import State
+from missionfsm.kernel.possibilities import each_met
 from missionfsm.kernel.spec import Invariant
 
 
@@ -42,12 +43,11 @@ INVARIANTS = (
     ),
 )
 POSSIBILITIES = (
-    *(
-        Invariant(f"a-mission-is-{state.name.lower()}", f"Some mission is in {state.name}.", holds)
-        for state, holds in (
-            (state, lambda robot, state=state: any(one.state is state for one in robot.turns))
-            for state in LIFECYCLE.states
-        )
+    *each_met(
+        LIFECYCLE.states,
+        lambda robot: (one.state for one in robot.turns),
+        "a-mission-is-{}",
+        "Some mission is in {}.",
     ),
     Invariant("a-queue-forms", "Missions wait behind another.", lambda robot: bool(robot.active and robot.pending)),
     Invariant(

@@ -51,6 +51,7 @@ from missionfsm.bear.wire.codes import UNLISTED
 from missionfsm.kernel import history
 from missionfsm.kernel.abstraction import Abstraction
 from missionfsm.kernel.history import Called, Driven, Received
+from missionfsm.kernel.possibilities import each_met
 from missionfsm.kernel.readings import Assumption
 from missionfsm.kernel.rules import INTERNAL, NOT_FOUND, OK, PERMISSION_DENIED, Operation, Waiver
 from missionfsm.kernel.spec import Delivery, Drive, Invariant, Middle, Parting, Spec
@@ -155,25 +156,17 @@ INVARIANTS = (
     ),
 )
 POSSIBILITIES = (
-    *(
-        Invariant(f"a-robot-is-{state.name.lower()}", f"Some robot is in {state.name}.", holds)
-        for state, holds in (
-            (state, lambda fleet, state=state: any(one.connection is state for one in fleet.robots))
-            for state in (ConnectionState.STATE_CONNECTED, ConnectionState.STATE_DISCONNECTED)
-        )
+    *each_met(
+        (ConnectionState.STATE_CONNECTED, ConnectionState.STATE_DISCONNECTED),
+        lambda fleet: (one.connection for one in fleet.robots),
+        "a-robot-is-{}",
+        "Some robot is in {}.",
     ),
-    *(
-        Invariant(f"a-battery-is-{mode.name.lower()}", f"Some battery is in {mode.name}.", holds)
-        for mode, holds in (
-            (
-                mode,
-                lambda fleet, mode=mode: any(
-                    one.state.battery is not None and one.state.battery.state is mode for one in fleet.robots
-                ),
-            )
-            for mode in BatteryMode
-            if mode
-        )
+    *each_met(
+        filter(None, BatteryMode),
+        lambda fleet: (one.state.battery.state for one in fleet.robots if one.state.battery is not None),
+        "a-battery-is-{}",
+        "Some battery is in {}.",
     ),
     Invariant(
         "a-robot-is-stuck",

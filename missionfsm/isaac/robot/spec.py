@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from missionfsm.isaac.robot import effects, readings, rules, stream
 from missionfsm.isaac.robot.describe import describe
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
 from missionfsm.isaac.shared.drives import later
 from missionfsm.isaac.shared.stream import sequence
-from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec
-
-_SAYS: Callable[[str], Invariant] = lambda state: Invariant(  # noqa: E731 - one line of a table
-    f"the-codelet-is-{state.lower()}", f"Some codelet is {state}.", lambda here: here.state == state
-)
+from missionfsm.kernel.language import Abstraction, Drive, Happening, Invariant, Spec, each_met
 
 
 def _canonical(here: Codelet) -> Codelet:
@@ -56,7 +50,7 @@ SPEC = Spec(
         ),
     ),
     possibilities=(
-        *map(_SAYS, LIFECYCLE.states),
+        *each_met(LIFECYCLE.states, lambda here: (here.state,), "the-codelet-is-{}", "Some codelet is {}."),
         Invariant("a-mission-follows", "A mission runs after another.", lambda here: here.running and here.used),
         Invariant(
             "the-connection-drops",

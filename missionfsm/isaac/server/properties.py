@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-
-from missionfsm.isaac.server.state import ENDED, LIFECYCLE, UNDER_WAY, Server, Status
+from missionfsm.isaac.server.state import ENDED, LIFECYCLE, UNDER_WAY, Server
+from missionfsm.kernel.possibilities import each_met
 from missionfsm.kernel.spec import Invariant
 
 
@@ -31,17 +30,6 @@ INVARIANTS = (
         lambda server: all(one.sent for one in server.missions if one.status in UNDER_WAY),
     ),
 )
-
-
-def _some_mission_is(status: Status, server: Server) -> bool:
-    return any(one.status is status for one in server.missions)
-
-
-POSSIBILITIES = tuple(
-    Invariant(
-        f"a-mission-is-{status.name.lower()}",
-        f"Some mission is {status.name}.",
-        functools.partial(_some_mission_is, status),
-    )
-    for status in LIFECYCLE.states
+POSSIBILITIES = each_met(
+    LIFECYCLE.states, lambda server: (one.status for one in server.missions), "a-mission-is-{}", "Some mission is {}."
 )

@@ -89,11 +89,11 @@ class Belief:
         if self._shelves is not None and self._shelves.names and self._shelves.concern(event):
             self._bring_back()
         symbol, new = numbering.symbol(event)
-        edge = self._edge(symbol)
+        edge = self.node.next.get(symbol) or self._edge(symbol)
         if self._shelves and self._shelves.names and (edge.beyond_system or not edge.node.explanations):
             self._bring_back()
             symbol, new = numbering.symbol(event)
-            edge = self._edge(symbol)
+            edge = self.node.next.get(symbol) or self._edge(symbol)
         self._tally[edge.exercises] += 1
         if not edge.node.explanations:
             self.broken = True
@@ -112,14 +112,12 @@ class Belief:
         return True
 
     def _edge(self, symbol: Symbol) -> Edge:
-        edge = self.node.next.get(symbol)
-        if edge is None:
-            try:
-                edge = self.automaton.edge(self.node, symbol)
-            except ExhaustedError:
-                self._bring_back()  # what comes next is searched for, from here on
-                raise
-        return edge
+        """Compute where an event leads that has not come here before."""
+        try:
+            return self.automaton.edge(self.node, symbol)
+        except ExhaustedError:
+            self._bring_back()  # what comes next is searched for, from here on
+            raise
 
     def _put_away(self, shelves: Shelves) -> None:
         """Put away what decides nothing any more."""

@@ -356,9 +356,13 @@ class Transcript:
 
     def is_stale(self, channel: Name, numbers: tuple[Mark, ...]) -> bool:
         """Whether every number of a message that comes is the last one that its channel showed on the same track."""
-        shown = self._shown.setdefault(channel, {})
-        stale = bool(numbers) and all(shown.get(track) == number for track, number in numbers)
-        shown.update(numbers)
+        shown = self._shown.get(channel)
+        if shown is None:
+            shown = self._shown[channel] = {}
+        stale = bool(numbers)
+        for track, number in numbers:
+            if shown.get(track) != number:
+                shown[track], stale = number, False
         return stale
 
     def drives(self) -> None:

@@ -137,6 +137,14 @@ def test_no_configuration_is_accused_where_none_is_odd(lines: tuple[Any, ...], t
     assert rules(judged(*lines)) == told
 
 
+def test_a_mission_that_was_dropped_silently_accuses_what_preempted_it() -> None:
+    """Also where the one after it may be none that can be used, so that only that is left to explain the lines."""
+    preempted = (*RUNS, arrives(TWO, '{"x":1}'), says("running", TWO), passes(1), says("running", TWO), SETTLED)
+    told = rules(judged(*preempted))
+    assert "codelet/a-new-mission-preempts" in told
+    assert "codelet/an-unusable-configuration-fails-the-mission" not in told
+
+
 def test_of_which_mission_something_is_missing_is_said_by_its_uuid() -> None:
     """The line that is missing and the line that came last are each shown with the uuid of their mission."""
     verdict = judged(*RUNS, arrives(TWO, NODES), passes(1), says("running"), SETTLED)

@@ -27,7 +27,7 @@ def owing(belief: Belief, view: object, topic: Hashable, *, made_only: bool = Fa
     """Ids of the rules of the latest step that owes a view to a topic and says why; None if no step is known to owe it.
 
     A step whose rules only say that the view is sent does not say why, unless somebody has just made it happen. Of the
-    steps at one event only those count that need the fewest unusual readings, of those that are not ruled out.
+    steps at one event only those count that need the fewest unusual readings: of all, then of those not ruled out.
 
     Args:
         made_only: whether only steps count that somebody has made happen, also those that are ruled out.
@@ -41,8 +41,9 @@ def owing(belief: Belief, view: object, topic: Hashable, *, made_only: bool = Fa
             for here in _become(belief, node.explanations)
             for one in _owing_steps(belief, symbol, here, view, topic)
         ]
+        owed = [one for one in owed if one[1] or not made_only]
         left = [] if made_only else [one.assumed for one in belief.node.explanations]
-        for step, made in _most_usual([one for one in owed if one[1] or not made_only], left):
+        for step, made in (*_most_usual(owed, ()), *_most_usual(owed, left)):
             found, begun = True, begun or made
             sent = delivering(belief.spec, step)
             rules.update(dict.fromkeys(rule for rule in step.rules if rule not in sent))

@@ -9,11 +9,11 @@ from typing import Any
 import orjson
 import pytest
 from commandline import CommandLine
-from traffic import SUBSCRIBE, Recorder, delivery, navigate, readings_at_random, walk
+from traffic import COMMANDS, DRIVES, SUBSCRIBE, Recorder, delivery, navigate, readings_at_random, walk
 
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.transport import MADE_BY_CLIENTS, TRANSPORT
-from missionfsm.tools.check.verdict import Verdict
+from missionfsm.tools.check.verdict import Outcome, Verdict
 
 
 def judged(path: Path, lines: list[Any], **how: Any) -> Verdict:
@@ -245,6 +245,31 @@ def test_the_first_message_of_a_stream_is_not_lost(tmp_path: Path) -> None:
     lines = without_first()
     assert judged(tmp_path / "log", lines, readings={"AM-47.skip": "a"}).violation is not None
     assert judged(tmp_path / "log", lines).conforms
+
+
+@pytest.mark.parametrize("seed", [2, 7])
+def test_streams_that_never_show_anything_are_noticed_once_things_have_settled(tmp_path: Path, seed: int) -> None:
+    """Whatever has happened unseen before: the first message of a stream that is open is neither late nor lost."""
+    random, log = Random(seed), Recorder(drives=False)
+    log.call(SUBSCRIBE)
+    for _ in range(18):
+        what = random.randrange(10)
+        if what < 4:
+            log.call(random.choice(("CreateMission", "AppendMission")), delivery("table-1", "table-2"))
+        elif what < 7 and log.missions:
+            command = {"missionId": random.choice(log.missions), "command": random.choice(COMMANDS)}
+            log.call("UpdateMission", {"missionCommand": command})
+        elif what < 9:
+            log.call("SkipGoal" if what == 7 else SUBSCRIBE)
+        else:
+            log.drive(event=random.choice(DRIVES))
+    log.settle()
+    calls = [one for one in log.history if "message" not in one]
+    assert judged(tmp_path / "log.jsonl", log.history).outcome is Outcome.CONFORMS
+    verdict = judged(tmp_path / "log.jsonl", calls)
+    assert verdict.violation is not None
+    assert verdict.violation.observed == "everything settled"
+    assert judged(tmp_path / "log.jsonl", calls[:-1]).outcome is not Outcome.VIOLATES
 
 
 @pytest.mark.parametrize("seed", range(24))

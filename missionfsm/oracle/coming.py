@@ -44,6 +44,7 @@ class Stretch:
         rests: whether everything settles after the messages.
         rest: the position of what settles next.
         over: whether nothing else is shown after the messages.
+        mute: whether it goes on, has shown nothing yet, and shows nothing before everything settles.
         led: what was found of channels with that name.
         uncertain: those of them of which it is known that none of these messages is bound to be what they owe.
     """
@@ -55,6 +56,7 @@ class Stretch:
     nothing: bool = field(kw_only=True)
     rests: bool = field(kw_only=True)
     over: bool = field(kw_only=True)
+    mute: bool = field(kw_only=True)
     led: dict[tuple[Channel, bool, bool], Led] = field(factory=dict)
     uncertain: set[Channel] = field(factory=set)
 
@@ -199,6 +201,8 @@ class Coming:
         is_last = self.last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
         if rests:
             last = bisect.bisect_left(positions, self._settled[quiet], first)
+        settles = rests or (end == cut and cut in self._settled)
+        mute = settles and first >= last and not first and name not in self._latest
         shown = slice(first, min(last, first + NEXT))
         over = end < cut or is_last
         return Stretch(
@@ -208,5 +212,6 @@ class Coming:
             self._settled[quiet] if rests else cut,
             nothing=nothing,
             rests=rests and last - first <= NEXT,
+            mute=mute,
             over=over and (nothing or (last - first <= NEXT and not rests)),
         )

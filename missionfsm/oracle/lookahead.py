@@ -325,6 +325,8 @@ class Lookahead(Coming):
 
     def _narrowed(self, explanation: Explanation, channel: Channel) -> Narrowed | None:
         stretch, name = self._stretch(channel), channel.name
+        if stretch.mute and self._has_to_show(channel):
+            return None
         if stretch.nothing:
             # What is owed to a stream that ends is never shown, and nobody minds.
             silent = stretch.over and not channel.done
@@ -339,6 +341,12 @@ class Lookahead(Coming):
             found = stretch.led[key] = self._leading(channel, stretch, delivery, skips=skips, repeats=repeats)
         narrowed, shows = found
         return narrowed if shows is None or self._foresees(explanation, *shows) else None
+
+    def _has_to_show(self, channel: Channel) -> bool:
+        """Whether a channel that has shown nothing yet has to, before everything settles; what it owes is not lost."""
+        if self.spec.anywhere or self.spec.others or channel.last is not None or channel.foretold:
+            return False
+        return not all(one.passing for one in channel.owed) and self.spec.delivery(channel.topic).stands
 
     def _ways(self, assumed: int, delivery: Delivery) -> tuple[bool, bool]:
         """Whether channels may pass over what they owe, and whether they may show again what they have shown."""

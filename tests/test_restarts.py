@@ -143,6 +143,70 @@ def test_a_slow_stream_shows_what_was_before_a_restart_that_another_has_shown(tm
     assert not judged(tmp_path / "log", [*BEFORE, *second, *first, *too_late]).conforms
 
 
+def test_calls_of_several_clients_are_told_apart_through_three_restarts(tmp_path: Path) -> None:
+    """A message came twice, a gateway made a status up, streams lag: few unusual readings, each where it is needed."""
+
+    def create(number: int, table: int) -> Any:
+        return called(number, "CreateMission", navigate(f"table-{table}"))
+
+    def append(number: int, table: int) -> Any:
+        return called(number, "AppendMission", navigate(f"table-{table}"))
+
+    def update(number: int, mission: str, command: str) -> Any:
+        return called(
+            number, "UpdateMission", {"missionCommand": {"missionId": mission, "command": f"COMMAND_{command}"}}
+        )
+
+    def batch(number: int, method: str, *tables: int) -> Any:
+        missions = [navigate(f"table-{table}") for table in tables]
+        return called(number, f"{method}MissionBatch", {"missions": missions})
+
+    def workflow(number: int) -> Any:
+        goals = [{"destinationId": "table-3"}, {"destinationId": "table-2"}]
+        return called(
+            number, "CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"bussingPatrol": {"goals": goals}}}}
+        )
+
+    def unavailable(number: int) -> Any:
+        return {"return": number, "error": {"status": "UNAVAILABLE", "message": ""}}
+
+    first = [("a", "SUCCEEDED", 1)]
+    last = [("d", "SUCCEEDED", 3), ("e", "RUNNING", 2)]
+    lines = [
+        called(1, SUBSCRIBE, {}),
+        {"return": 1, "result": {"stream": 1}},
+        *(
+            shows(1, 3),
+            append(2, 2),
+            batch(3, "Append", 1, 2),
+            batch(4, "Create", 1),
+            shows(1, 0),
+            shows(1, 0),
+            update(5, "a", "RESUME"),
+        ),
+        *(
+            shows(1, 2, ("a", "RUNNING", 1)),
+            refused(3),
+            {"return": 4, "result": {"missionIds": ["a"]}},
+            append(6, 1),
+            refused(5),
+            refused(2),
+        ),
+        *(shows(1, 3, *first), called(7, *CLEAR), create(8, 1), shows(1, 4, *first, ("b", "RUNNING", 1))),
+        *(made(8, "b"), create(9, 1), refused(9), made(6, "c"), update(10, "b", "RESUME")),
+        *(shows(1, 5, *first, ("b", "RUNNING", 1), ("c", "DEFAULT", 1)), workflow(11), refused(10), refused(7)),
+        *(unavailable(11), shows(1, 6, *first, ("b", "SUCCEEDED", 1), ("c", "RUNNING", 1))),
+        *(create(12, 2), create(13, 2), called(14, *CLEAR), made(12, "f"), refused(14), refused(13)),
+        *(create(15, 3), shows(1, 0), append(16, 1), create(17, 2), made(15, "d"), shows(1, 1, ("f", "RUNNING", 2))),
+        *(refused(17), append(18, 2), update(19, "d", "FINISH"), shows(1, 2, ("f", "SUCCEEDED", 2)), made(18, "e")),
+        *(shows(1, 0), update(20, "e", "RESUME"), made(16, "g"), refused(20), create(21, 3), refused(19)),
+        *(shows(1, 1, ("d", "RUNNING", 3)), update(22, "e", "RESUME"), shows(1, 2, ("d", "SUCCEEDED", 3)), refused(21)),
+        *(create(23, 3), unavailable(22), refused(23), shows(1, 3, *last), shows(1, 4, *last, ("g", "DEFAULT", 1))),
+        {"settled": True},
+    ]
+    assert judged(tmp_path / "log.jsonl", [HEAD, *lines]).conforms
+
+
 def message(channel: int, relation: str, *names: int) -> tuple[Any, ...]:
     return Received, "content", names, (relation,), channel
 

@@ -67,6 +67,7 @@ class Delivery:
         malformed: ids of the rules that a message breaks which cannot be read.
         every_time: whether an owed message has to come even if it says the same as the one before, as lines do.
         stands: whether a message stays owed until it is shown or passed over: no step takes it back.
+        lasts: whether no step closes the channel.
         operation: name of the operation that opens the channel, for rules that stand in the section of each.
     """
 
@@ -81,6 +82,7 @@ class Delivery:
     malformed: tuple[str, ...] = ()
     every_time: bool = False
     stands: bool = False
+    lasts: bool = False
     operation: str = ""
 
 

@@ -346,7 +346,10 @@ class Lookahead(Coming):
         """Whether a channel that has shown nothing yet has to, before everything settles; what it owes is not lost."""
         if self.spec.anywhere or self.spec.others or channel.last is not None or channel.foretold:
             return False
-        return not all(one.passing for one in channel.owed) and self.spec.delivery(channel.topic).stands
+        if all(one.passing for one in channel.owed):
+            return False
+        delivery = self.spec.delivery(channel.topic)
+        return delivery.stands and delivery.lasts
 
     def _ways(self, assumed: int, delivery: Delivery) -> tuple[bool, bool]:
         """Whether channels may pass over what they owe, and whether they may show again what they have shown."""

@@ -163,7 +163,7 @@ class Search:
         self.beyond: set[int] = set()
         self.restarts = NONE
         self._rules: dict[int, tuple[str, ...]] = {}
-        self._alone = self._stopped = False
+        self._alone = self._stopped = self._hurries = False
         self._depot = self._new_depot()
         self._named: dict[int, int] = {}
         self._read = 0
@@ -207,6 +207,8 @@ class Search:
                     raise  # what comes later tells more than other readings do
             usual -= self.successors.spent
             required, stuck, blamed = self._required, self._stuck, self._ahead.blamed
+            if self.whole and self._gives_up_few(horizon):
+                return True
             nearer, effort = min(stuck + FURTHER, horizon), USUAL + USUAL_EACH * horizon
             found = self._explains_under(0, nearer, min(FIRST_LOOK * effort, self.budget))
             if found is None and self.whole:
@@ -226,6 +228,25 @@ class Search:
     def _left_of(self, required: int) -> int:
         """What is left of required readings in all that explains the events up to the last one that was reached."""
         return functools.reduce(operator.and_, (one.assumed for one in self.layers[-1].explanations), required)
+
+    def _gives_up_few(self, horizon: int) -> bool:
+        """Whether the first events up to a horizon are explained once few readings are given up.
+
+        Those are given up, again and again, that kept anything from being looked at near where it led no further.
+        """
+        most, left = NO_FURTHER + USUAL_EACH * horizon, USUAL + USUAL_EACH * horizon
+        self._hurries = True
+        try:
+            while left > 0:
+                fewer = self._required & ~_near(self._ahead.blamed, self._stuck)
+                if fewer == self._required:
+                    break
+                if self._explains_under(fewer, horizon, min(most, left)):
+                    return True
+                left -= self.successors.spent
+        finally:
+            self._hurries = False
+        return False
 
     def _explains_under(self, required: int, horizon: int, budget: int) -> bool | None:
         """Whether the first events up to a horizon are explained where readings have to stay; None: too dear."""
@@ -290,7 +311,7 @@ class Search:
 
     def _widening(self, budget: int) -> bool:
         """Look for explanations on a budget; once half of it is spent, for several of an event at once."""
-        if not self.whole:
+        if not self.whole or self._hurries:
             return self._spending(self._explain, budget)
         try:
             return self._spending(self._explain, budget // 2)
@@ -365,7 +386,7 @@ class Search:
             position = len(layers) - 1
             if position > self._stuck:
                 self._stuck, advanced = position, self.successors.spent
-            elif not self.whole and self.successors.spent - advanced > NO_FURTHER:
+            elif (self._hurries or not self.whole) and self.successors.spent - advanced > NO_FURTHER:
                 raise ExhaustedError
             self._ahead.at = position
             found = self._next(layers[-1], position)

@@ -291,6 +291,7 @@ def _delivery(_: object) -> Delivery:
         first=first,
         malformed=(WELL_FORMED.id,),
         stands=True,
+        lasts=True,
         operation="SubscribeMissionStatus",
     )
 

@@ -214,3 +214,15 @@ def test_a_failure_that_nobody_drove() -> None:
     found = begun.asks("CreateMission", mission("delivery", *A), "INTERNAL").told
     says = "INTERNAL comes to this call only where a drive makes it fail (the log says all of those), and none did"
     assert found.notes == (says,)
+
+
+def test_what_a_refused_batch_has_left_behind() -> None:
+    """A refusal changes nothing: what was done before it has no part in what shows after it."""
+    begun = Log(drives=DRIVES, transport="strict").creates("m1", "delivery", *A)
+    begun.shows(("m1", "delivery", "RUNNING", A))
+    batch = {"missions": [mission("delivery", "table-1"), mission("delivery", "nowhere")]}
+    begun.asks("AppendMissionBatch", batch, "INVALID_ARGUMENT")
+    found = begun.shows(("m1", "delivery", "RUNNING", A), ("m2", "delivery", "DEFAULT", ("table-1",))).told
+    assert found.notes[1].startswith("the last call was refused, which changes nothing: AppendMissionBatch(")
+    named = ["SubscribeMissionStatus/all-missions-are-listed", "SubscribeMissionStatus/updates-follow-the-state"]
+    assert rules(found) == named

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
 from missionfsm.kernel.history import Driven, Ended, Event, Name, Received, Returned, Settled
+from missionfsm.kernel.rules import OK
 from missionfsm.kernel.sequence import STALE
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
@@ -27,6 +28,7 @@ from missionfsm.tools.check.candidates import (
     UNDRIVEN,
     UNOWED,
     VALUE,
+    AnsweredCall,
     Candidate,
     Circumstances,
     Problem,
@@ -263,12 +265,26 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
         # Either the message shows wrongly what happened, or something else happened than should have.
         rules = _alternately(rules, _before(nearest, lightest[0], made_only=max(weights) == NAME))
     notes = [problem.says for problem in _problems(lightest)]
+    refusal = _refused_last(nearest) if lightest[0].owed is None and max(weights, default=0) >= UNOWED else None
+    if refusal is not None:
+        rules = list(dict.fromkeys(_broken(lightest)))  # nothing else has happened since
+        notes.append(f"the last call was refused, which changes nothing: {refusal.words(nearest.spec)}")
+        return candidates, rules or list(_broken(candidates)), notes
     if isinstance(event.content, Malformed):
         return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
     refused = untimely(nearest, event) if max(weights, default=0) >= VALUE else None
     if refused is not None:
         return candidates, refused[0], [refused[1]]
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
+
+
+def _refused_last(nearest: Nearest) -> AnsweredCall | None:
+    """The call that was answered last, if that refused it."""
+    last = nearest.about.recent[-1] if nearest.about.recent else None
+    if last is None or last.answer.code == OK:
+        return None
+    operation = nearest.spec.operations[nearest.spec.request_operation(last.request)]
+    return last if any(rule.code == last.answer.code for rule in operation.refusals) else None
 
 
 def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:

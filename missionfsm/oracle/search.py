@@ -197,7 +197,7 @@ class Search:
                 return self._spending_on_calls(horizon)
             except OtherwiseError:
                 self.calls_alone = False
-        usual = min(USUAL + USUAL_EACH * horizon, self.budget)
+        usual, may_give_up = min(USUAL + USUAL_EACH * horizon, self.budget), self.whole
         while self._required:
             try:
                 if self._go_on(horizon, usual):
@@ -207,8 +207,9 @@ class Search:
                     raise  # what comes later tells more than other readings do
             usual -= self.successors.spent
             required, stuck, blamed = self._required, self._stuck, self._ahead.blamed
-            if self.whole and self._gives_up_few(horizon):
+            if may_give_up and self._gives_up_few(horizon):
                 return True
+            may_give_up = False
             nearer, effort = min(stuck + FURTHER, horizon), USUAL + USUAL_EACH * horizon
             found = self._explains_under(0, nearer, min(FIRST_LOOK * effort, self.budget))
             if found is None and self.whole:
@@ -405,6 +406,8 @@ class Search:
         self._entering: list[_Tried] = []
         found: list[Successor] = []
         begun = successors.spent
+        if self._hurries:
+            successors.limit = min(successors.budget, begun + 2 * NO_FURTHER)
         try:
             while here.more is not None and not found:
                 for one in here.more:

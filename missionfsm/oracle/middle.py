@@ -148,7 +148,8 @@ def states_shown(
             own = _names(spec, here, state, match, names)
             if assumed:
                 last = Owed(view, own, shown_as=spec.remembered(view, content))
-                after = _standing(here, state, Channel(arrival.channel, glimpses.topic(content), last))
+                showing = Channel(arrival.channel, glimpses.topic(content), last)
+                after = _standing(here, state, showing, all_seen=not spec.anywhere)
                 yield Successor(tidy(after.replace(assumed=assumed)), match.rules)
 
 
@@ -228,8 +229,12 @@ def _all_wild(calls: tuple[InFlight, ...]) -> tuple[InFlight, ...]:
     )
 
 
-def _standing(here: Explanation, state: State, showing: Channel) -> Explanation:
-    """The explanation in that state, shown on one channel; the others may show it as well, or what was on its way."""
+def _standing(here: Explanation, state: State, showing: Channel, *, all_seen: bool) -> Explanation:
+    """The explanation in that state, shown on one channel; the others may show it as well, or what was on its way.
+
+    Args:
+        all_seen: whether every call and every channel is known that there is.
+    """
     last = showing.last
     assert last is not None, "a channel that shows something"  # noqa: S101
     channels = [
@@ -239,7 +244,7 @@ def _standing(here: Explanation, state: State, showing: Channel) -> Explanation:
     ]
     calls = _all_wild(here.calls)
     # What is listed no more is gone, where no call can be answered with it and no other channel shows what was before.
-    ended = () if here.calls or channels else here.names
+    ended = here.names if all_seen and not (here.calls or channels) else ()
     gone = tuple(sorted({*here.gone, *(one for one in ended if one > GONE)}.difference(last.names)))
     channels = [showing, *channels]
     return Explanation(state, last.names, here.assumed, calls, here.lost, tuple(channels), gone, here.all_known)

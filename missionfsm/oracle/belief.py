@@ -107,7 +107,7 @@ class Belief:
             numbering.follow(edge, new)
         if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
             numbering.note(event)
-        if self._shelves is not None:
+        if self._shelves is not None and (self._shelves.names or edge.node.width >= LEAST):
             self._put_away(self._shelves)
         return True
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from missionfsm.kernel.codec import JSON
 
 BATTERIES: tuple[JSON, ...] = (
@@ -96,17 +98,28 @@ CONVEYOR: JSON = {
     "conveyorState": {"index": 0, "operationState": "OPERATION_STATE_ROLLING", "payloadState": "PAYLOAD_STATE_LOADED"}
 }
 
+SHORT: Mapping[str, JSON] = {
+    "battery": {"chargePercent": 41, "state": "STATE_DISCHARGING"},
+    "navigationState": {"stuckState": {"state": "STATE_NOT_STUCK"}},
+    "wifi": {"ssid": "guests"},
+    "emergencyStop": {"emergency": "EMERGENCY_ENGAGED"},
+    "mission": {"missionId": "mission-456", "state": "STATE_SUCCEEDED"},
+    "twist": {"angularVelocity": 0.25},
+    "pose": {"xMeters": 1.5, "yMeters": 2.8},
+}
+"""For parts a value in which members are left out, which then have their defaults, not what was reported before."""
+
 REPORTS: tuple[tuple[str, tuple[JSON, ...]], ...] = (
-    ("battery", (*BATTERIES, None)),
+    ("battery", (*BATTERIES, SHORT["battery"], None)),
     ("errorCodes", (*ERRORS, None)),
-    ("navigationState", (*NAVIGATIONS, None)),
-    ("wifi", NETWORKS),
+    ("navigationState", (*NAVIGATIONS, SHORT["navigationState"], None)),
+    ("wifi", (*NETWORKS, SHORT["wifi"])),
     ("connection", (*CONNECTIONS, CONNECTIONS[0], None)),
-    ("emergencyStop", (*STOPS, None)),
-    ("mission", MISSIONS),
-    ("twist", TWISTS),
-    ("pose", (*POSES, None)),
-    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}}, None)),
+    ("emergencyStop", (*STOPS, SHORT["emergencyStop"], None)),
+    ("mission", (*MISSIONS, SHORT["mission"])),
+    ("twist", (*TWISTS, SHORT["twist"])),
+    ("pose", (*POSES, SHORT["pose"], None)),
+    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}}, TRAYS, None, None)),
     ("cartiState", (CONVEYOR, None)),
     ("localizationState", ({"state": "STATE_SUCCEEDED"},)),
 )

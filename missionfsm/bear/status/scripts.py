@@ -20,6 +20,7 @@ from missionfsm.bear.status.samples import (
     NAVIGATIONS,
     NETWORKS,
     POSES,
+    SHORT,
     STOPS,
     TRAYS,
     TWISTS,
@@ -151,6 +152,7 @@ def scripts(cast: Cast) -> Iterator[tuple[ScriptStep, ...]]:
     yield from _apart(cast.robots, cast.place)
     for robot in cast.robots[:1]:
         yield _asked_again(robot)
+        yield from _reported_whole(robot)
         yield from _happened(cast, robot)
     if cast.hermit:
         yield from _offline_at(*cast.hermit)
@@ -161,6 +163,16 @@ def _asked_again(robot: str) -> tuple[ScriptStep, ...]:
     get = ScriptStep(GET, {"robotId": robot})
     changes = (report(robot, part, value) for part in SHOWN[Endpoint.ROBOT] for value in (*APART[part], None))
     return (get, *itertools.chain.from_iterable((ScriptStep("drive", one), _SETTLE, get) for one in changes))
+
+
+def _reported_whole(robot: str) -> Iterator[tuple[ScriptStep, ...]]:
+    """A report takes the place of the one before whole: what it leaves out has its default, wherever it is shown."""
+    get = ScriptStep(GET, {"robotId": robot})
+    for endpoint, parts in SHOWN.items():
+        some = [part for part in parts if part in SHORT]
+        if some:
+            reports = _driven(*(report(robot, part, value) for part in some for value in (APART[part][0], SHORT[part])))
+            yield (ScriptStep(endpoint.value, by_ids(robot)), _SETTLE, *reports, get)
 
 
 def _happened(cast: Cast, robot: str) -> Iterator[tuple[ScriptStep, ...]]:

@@ -17,6 +17,8 @@ const CATALOGUE = {
   'get-always-connected': `${GET} › RobotConnection: an offline robot is said to be connected`,
   'get-omits-emergency-stop': `${GET} › Response: the reported emergency stop is left out`,
 
+  'reports-merged': `${GET} › Response: what a report leaves out stays what it was before`,
+
   // Selectors
   'null-selector-served': `${EVERY} › Errors: a request without a selector gets every owned robot`,
   'empty-ids-accepted': `${EVERY} › Errors: an empty list of robot_ids opens a silent stream`,

@@ -119,7 +119,9 @@ class Robot {
   /** Takes a report in; returns the topics that have a new event, or null where no robot could report that. */
   report(part, value) {
     if (!PARTS.includes(part) || isImpossible(part, value)) return null;
-    const reported = withoutUnset({ ...this.#reported, ...replacedBy(part), [part]: inRange(part, value) });
+    const whole = inRange(part, value);
+    const now = broken('reports-merged') && value ? { ...this.#reported[part], ...whole } : whole;
+    const reported = withoutUnset({ ...this.#reported, ...replacedBy(part), [part]: now });
     if (isDeepStrictEqual(reported, this.#reported)) return [];
     this.#reported = reported;
     return this.#record(topicsOf(part));

@@ -11,14 +11,17 @@ from attrs import evolve
 from broken import MISSION
 from commandline import CommandLine
 
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head, head
 from missionfsm.systems import names, system
 from missionfsm.tools.check.judge import Judge, check
-from missionfsm.tools.check.verdict import PER, RATE
+from missionfsm.tools.check.verdict import PER, RATE, Outcome
+from missionfsm.tools.conform.actions import SETTLE, Action
 from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.coverage import Census, rare
+from missionfsm.tools.conform.finding import verdict_of
 from missionfsm.tools.conform.narrowing import WIDE
-from missionfsm.tools.conform.run import Run
+from missionfsm.tools.conform.run import FEW, Run
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD: Any = {"missionfsm": 1, "system": "bear.mission", "world": {}}
@@ -184,3 +187,20 @@ def test_what_may_have_moved_too_far_is_let_settle(subject: type[ReferenceSubjec
     assert run.do("CreateMission", patrol)
     assert (wide > WIDE, {"settled": True} in run.conversation.heard) == (waited, waited)
     assert len(run.conversation.judge.belief.node.explanations) <= max(2, wide // 2)
+
+
+@pytest.mark.parametrize(("drives", "given_up"), [((), FEW), (tuple(MISSION.spec.drives), 0)])
+def test_a_conversation_that_cannot_be_decided_is_given_up(drives: tuple[str, ...], given_up: int) -> None:
+    """Of a robot that moves by itself a few are, and the verdict says how many; after those the run is inconclusive."""
+    automaton = Automaton(MISSION.spec, drives, budget=1)
+    run = Run.against(MISSION, ReferenceSubject(MISSION, {}), automaton=automaton)
+    created = {"mission": {"baseMission": {"navigateMission": {"goal": {"destinationId": "table-1"}}}}}
+    asked = Action(1, "SubscribeMissionStatus", {}), Action(2, "CreateMission", created), Action(3, "SkipGoal", {})
+    outcomes = [run.converse({}, (*asked, Action(4, SETTLE))) for _ in range(given_up + 1)]
+    assert outcomes == [True] * given_up + [False]
+    assert run.ledger.undecided == given_up
+    verdict = verdict_of(run, 0, advice=False)
+    assert (verdict.outcome, any("were given up" in one for one in verdict.notes)) == (
+        Outcome.INCONCLUSIVE,
+        given_up > 0,
+    )

@@ -30,7 +30,7 @@ def needed(system: System, violation: Violation, readings: Mapping[str, str] | N
 
 
 def _has_a_part(system: System, violation: Violation, rule: str, readings: Mapping[str, str] | None) -> bool:
-    ways = _ways_to_break(system, rule)
+    ways = ways_to_break(system, rule)
     if not ways:
         return True
     about, *lines = violation.history
@@ -39,7 +39,7 @@ def _has_a_part(system: System, violation: Violation, rule: str, readings: Mappi
     return all(judge.feed(line) for line in lines)
 
 
-def _ways_to_break(system: System, rule: str) -> Broken:
+def ways_to_break(system: System, rule: str) -> Broken:
     """How steps may break a rule; empty for refusals, and for rules about messages that no step mutation breaks."""
     own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
     found = system.spec.rules_by_id.get(rule)

@@ -95,7 +95,7 @@ def verdict_of(
         experiments=tuple(trial.experiment(run.system) for trial in proposed(run)) if advised else (),
         rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advised else {},
         known={rule: times for rule, times in known.met.items() if times},
-        notes=tuple(ledger.notes),
+        notes=ledger.remarks,
         advised=advised,
         reach=run.reach.reached() if run.reach is not None and complete else None,
     )

@@ -26,6 +26,7 @@ class Ledger:
         examples: how many conversations were had.
         succeeded: how many calls were answered OK.
         answers: for each operation, how often it was answered with each status.
+        undecided: how many conversations were given up at an event that had too many explanations.
         oddities: what is explained and belongs to no reading, but is worth a line of the verdict.
         readings: for each ambiguity that mattered, the readings that explain every conversation so far.
         ruled_out_by: for each ambiguity id and letter that was ruled out, the first conversation that did it.
@@ -41,6 +42,7 @@ class Ledger:
     events: int = 0
     examples: int = 0
     succeeded: int = 0
+    undecided: int = 0
     answers: dict[str, Counter[str]] = field(factory=dict)
     oddities: dict[Flagged, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
@@ -55,6 +57,14 @@ class Ledger:
         """Add a line to the notes, once."""
         if says not in self.notes:
             self.notes.append(says)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """The notes, and how many conversations were given up."""
+        if not self.undecided:
+            return tuple(self.notes)
+        says = f"{self.undecided} of {self.examples} conversations were given up at an event with too many explanations"
+        return (*self.notes, f"{says}: what followed there was not judged")
 
     def count(self, done: Conversation) -> None:
         """Count a conversation that has ended."""

@@ -47,10 +47,14 @@ class Narrowing:
         """Take into account how many explanations a conversation has."""
         self.widest = max(self.widest, len(conversation.judge.belief.node.explanations))
 
+    @property
+    def unwatched(self) -> bool:
+        """Whether the implementation may do by itself what nobody commands."""
+        return not self.wide.successors.driven.issuperset(self.wide.spec.drives)
+
     def is_lost_in(self, conversation: Conversation) -> bool:
         """Whether an implementation that moves by itself has too many explanations to be followed further."""
-        driven = self.wide.successors.driven
-        return len(conversation.judge.belief.node.explanations) > WIDE and not driven.issuperset(self.wide.spec.drives)
+        return self.unwatched and len(conversation.judge.belief.node.explanations) > WIDE
 
     def choose(self, readings: Mapping[str, tuple[str, ...]], *, at_once: bool = False) -> Automaton:
         """The automaton for the next conversation.

@@ -24,6 +24,8 @@ from missionfsm.tools.conform.reach import Reach
 
 BOUNDS = Bounds(4, goals=3)
 """The default bounds of what a run tries."""
+FEW, ONE_IN = 2, 50
+"""So many conversations, or one in so many if that is more, may be given up before a run is inconclusive."""
 
 
 @define(eq=False)
@@ -214,9 +216,17 @@ class Run:
         if self.knows(self.conversation):
             self.over = True
             return True
+        if self.conversation.judge.exhausted and self._may_give_up():
+            self.ledger.undecided += 1
+            self.over = True
+            return True
         self.found = self.conversation
         self.record()
         return False
+
+    def _may_give_up(self) -> bool:
+        """Whether a conversation that cannot be decided is left as it is: of a robot that moves by itself a few are."""
+        return self.narrowing.unwatched and self.ledger.undecided < max(FEW, self.ledger.examples // ONE_IN)
 
     def knows(self, conversation: Conversation) -> bool:
         """Whether what is wrong with a conversation is expected."""

@@ -190,6 +190,18 @@ def test_a_robot_may_rest_after_a_failure() -> None:
     assert not succeeded.judged(readings=EXACT).conforms
 
 
+def test_a_robot_may_rest_that_has_lost_a_mission_with_one_of_its_connections() -> None:
+    """AI-39.failed b: the next mission may come up to a second later on the other connection, and no later."""
+
+    def begin() -> History:
+        begun = History().submit(1).submit(2).robot(1).sends(1, 1).robot(2).shows("STARTED", "QUEUED")
+        return begun.drive("disconnect", connection=1).settles.shows("FAILED_DISCONNECTED", "QUEUED")
+
+    known = {**EXACT, "AI-15": "c", "AI-16": "b", "AI-16.back": "p"}
+    assert follows(begin().waits(1.1).sends(2, 2).settles.judged(readings=known), AI_39_failed="b")
+    assert not begin().waits(1.1).settles.shows("FAILED_DISCONNECTED", "QUEUED").judged(readings=known).conforms
+
+
 def test_a_period_of_grace_is_one() -> None:
     """AI-15.when g: a mission whose robot drops again before it was given up has no second clock for that."""
     link = Link(0, "carter", serves=True)

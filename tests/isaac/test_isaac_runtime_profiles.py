@@ -156,8 +156,8 @@ INPUTS: dict[str, tuple[Callable[[Live], None], str]] = {
     "the older connection says the name after the newer, which drops; 1, 2, 11, 11, 13 s": (_name_said_later, ""),
     "RUNNING on mission_status, then on arm_status, for channel arm; 1 s": (
         _status_channel,
-        # The first report may be one that is worked off later (AI-39.reports b); the second is nobody's.
-        "connection/what-means-nothing-has-no-effect",
+        # The first report may be one that is worked off later (AI-39.reports b); then it is not shown at once.
+        "statuses/every-mission-is-shown-with-its-status",
     ),
     "a mission waits for a robot that is away, another is behind it; 2 s": (_queue_behind_its_head, ""),
 }

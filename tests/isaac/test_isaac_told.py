@@ -1,10 +1,14 @@
 """What a person is told of a mission that was sent though it was not due."""
 
 import pytest
+from attrs import evolve
 from server_history import SERVER, History
 
 from missionfsm.isaac.shared.line import new_uuid, uuid_name
 from missionfsm.isaac.wire.messages import Uuid
+from missionfsm.oracle.transcript import Head
+from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.needed import disregarding, ways_to_break
 from missionfsm.tools.check.phrases import name_words
 
 
@@ -107,3 +111,16 @@ def test_what_ended_is_told_before_what_is_cancelled_for_it() -> None:
     assert "no upstream of it has failed" not in str(early)
     alone = History().submit(1).submit(2, upstream=[1]).robot(1).sends(1, 1).settles.shows("STARTED", "FAILED_UPSTREAM")
     assert "shown as canceled, though no upstream of it has failed" in str(alone.judged())
+
+
+@pytest.mark.parametrize("rule", sorted({one.rule for one in SERVER.step_mutations}))
+def test_a_server_that_may_break_a_rule_can_be_followed(rule: str) -> None:
+    """Whether a rule has a part in a violation is asked of a server that breaks it: no wrong step is a crash."""
+    history = History().submit(1).submit(2, upstream=[1], timeout=2).submit(3).robot(1).sends(1, 1).settles
+    history = history.reports(1, 1, "failure").waits(1).sends(1, 3).waits(3).shows("FAILED", "SUCCESS", "RUNNING")
+    spec = disregarding(SERVER.spec, ways_to_break(SERVER, rule))
+    given = Head("isaac.server", {}, tuple(history.drives))
+    judge = Judge(evolve(SERVER, spec=spec), given, waits=False)
+    followed = [judge.feed(line) for line in history.lines]
+    assert any(followed)
+    assert judge.events

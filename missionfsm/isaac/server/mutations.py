@@ -7,7 +7,7 @@ from collections.abc import Callable
 from attrs import evolve
 
 from missionfsm.isaac.server import rules
-from missionfsm.isaac.server.state import ENDED, UNDER_WAY, Mission, Server, Status, topic
+from missionfsm.isaac.server.state import DOOM, ENDED, UNDER_WAY, Mission, Server, Status, topic
 from missionfsm.isaac.shared.mutations import line_mutations, spoils
 from missionfsm.kernel.mutations import StepMutator, breaks, sent_twice, unsent
 from missionfsm.kernel.step import Step
@@ -57,8 +57,10 @@ def _goes_on(old: Mission, _: Mission) -> Mission:
     return evolve(old, clocks=())
 
 
-def _freed(_: Mission, new: Mission) -> Mission:
-    return evolve(new, waits=(), doomed=())
+def _freed(_: Mission, mission: Mission) -> Mission:
+    """It waits for no upstream, and none that failed is still to be noticed."""
+    clocks = tuple(one for one in mission.clocks if one.kind != DOOM)
+    return evolve(mission, waits=(), doomed=(), clocks=clocks)
 
 
 def _failing(new: Mission) -> Mission:
@@ -79,10 +81,14 @@ def _revived(_: Server, step: Step) -> Step:
 STEP_MUTATIONS = (
     *breaks(rules.SENT, is_sent_twice=sent_twice(), is_not_sent=unsent()),
     *breaks(rules.UNNAMED, at=rules.SENT, goes_to_whoever_connected_first=_sent_elsewhere),
-    *breaks(rules.UPSTREAM, at=rules.OPERATIONS["submit"].promises[0], does_not_wait_for_them=_each(_freed)),
+    *breaks(
+        rules.UPSTREAM,
+        at=rules.OPERATIONS["submit"].promises[0],
+        does_not_wait_for_them=_each(_freed),
+    ),
     *breaks(
         rules.CANCELED,
-        is_not_cancelled=_became(Status.CANCELED, lambda old, _: evolve(old, waits=(), doomed=())),
+        is_not_cancelled=_became(Status.CANCELED, lambda old, new: _freed(new, old)),
         counts_as_a_success=_became(Status.CANCELED, _has(Status.SUCCESS)),
     ),
     *breaks(rules.NAMED, is_not_heard=_nothing),

@@ -382,7 +382,7 @@ AI_39 = Ambiguity(
 )
 AI_39_FAILED = Ambiguity(
     "AI-39.failed",
-    "When does a server that sends at once send the next mission to a robot that has just reported a failure?",
+    "When does a server that sends at once send the next mission to a robot whose mission has just failed?",
     {"a": "at once", "b": "up to a second later"},
 )
 AI_39_LIMITS = Ambiguity(

@@ -16,14 +16,12 @@ from missionfsm.isaac.server.readings import (
     AI_16_BACK,
     AI_18_EARLY,
     AI_39,
-    AI_39_FAILED,
     AI_39_REPORTS,
 )
 from missionfsm.isaac.server.state import (
     DROP,
     ENDED,
     NOBODYS,
-    PASS_PERIOD,
     UNDER_WAY,
     Link,
     Mission,
@@ -176,8 +174,7 @@ def _happens(move: Move, index: int, report: Report) -> Moves:
         heard, deaf = (move, None) if mission.status is Status.RUNNING else split(move, AI_07, "ac")
         if heard is not None:
             trigger = "report success" if report.status == "success" else "report failure"
-            ended = _unlooked_at(ends(heard, index, trigger, rules.FINAL.id), index, mission)
-            yield ended if report.status == "success" else _rests(ended, mission)
+            yield _unlooked_at(ends(heard, index, trigger, rules.FINAL.id), index, mission)
         if deaf is not None:
             yield means_nothing(deaf)
 
@@ -193,16 +190,6 @@ def _unlooked_at(move: Move, index: int, before: Mission) -> Move:
         return move
     was = before.status if before.was is None else before.was[0]
     return move.with_mission(index, was=(was, move.state.next_pass(0) + move.state.tolerance, True))
-
-
-def _rests(move: Move, mission: Mission) -> Move:
-    """AI-39.failed: a robot that has reported a failure may be given no other mission for a second."""
-    own = [one for one in move.state.links if one.serves and one.slot == mission.sent_on]
-    link = own[0] if own else move.state.serving(mission.robot)
-    letters = move.state.letters
-    if link is None or letters(AI_39) != "a" or "b" not in letters(AI_39_FAILED):
-        return move
-    return move.with_link(link.slot, rests=PASS_PERIOD)
 
 
 def _late(move: Move, index: int, mission: Mission, report: Report) -> Moves:

@@ -196,7 +196,7 @@ class Link:
             it is (AI-39.order s).
         pass_since: how many microseconds ago a scheduling pass may have come that sent or cancelled something here, and
             of which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
-        rests: microseconds for which nothing need be sent, since its robot has reported a failure (AI-39.failed b).
+        rests: microseconds for which nothing need be sent, since its mission has failed (AI-39.failed b).
         closing: whether the server has closed it, which has yet to be seen (AI-08 c); it is nobody's then.
     """
 
@@ -272,7 +272,7 @@ class Server:
         return next((one for one in self.links if one.slot == slot), None)
 
     def lets_rest(self, link: Link) -> bool:
-        """Whether nothing is sent on a connection yet, since its robot has just reported a failure (AI-39.failed b)."""
+        """Whether nothing is sent on a connection yet, since its mission has just failed (AI-39.failed b)."""
         return link.rests > 0 and self.letters(AI_39_FAILED) == "b"
 
     def link_of_topic(self, at: Hashable) -> Link | None:

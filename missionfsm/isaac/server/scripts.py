@@ -148,7 +148,7 @@ _SCRIPTS = (
     .report(0, 1, "success"),
     # What is said of a timeout counts, to a part of a second; where nothing is said there are five seconds to start.
     Script().submit(A, start_timeout=1.9).robot(0, A),
-    Script().submit(A, timeout=2.75).robot(0, A).report(0, 0, "running").wait(2.25).report(0, 0, "running").wait(),
+    Script().submit(A, timeout=2.75).robot(0, A).report(0, 0, "running").wait(0.9).wait(2),
     Script().submit(A, start_timeout=3).robot(0, A).wait(5).submit(A).wait(9),
     # RUNNING that is said again and again gives no more time.
     Script()

@@ -24,7 +24,7 @@ from missionfsm.tools.conform.reach import Reach
 
 BOUNDS = Bounds(4, goals=3)
 """The default bounds of what a run tries."""
-FEW, ONE_IN = 2, 50
+FEW, ONE_IN = 3, 20
 """So many conversations, or one in so many if that is more, may be given up before a run is inconclusive."""
 
 

@@ -9,7 +9,7 @@ from server_history import History
 from missionfsm.isaac.server.losing import lost
 from missionfsm.isaac.server.state import Link, Mission, Move, Server, Status
 from missionfsm.isaac.wire.framing import encode
-from missionfsm.isaac.wire.messages import Header, Message, TextProto, Uuid
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, TextProto, Uuid, WireStatus
 from missionfsm.tools.check.verdict import Verdict
 
 EXACT = {
@@ -44,9 +44,54 @@ def test_a_status_may_be_heard_from_anybody() -> None:
     from_nobody = sent().drive("connect", connection=2).reports(2, 1, "success").settles
     assert follows(from_nobody.shows("SUCCESS").judged(readings=EXACT), AI_10_from="w")
     unheard = sent().robot(2, "s").reports(2, 1, "success").settles
-    assert follows(unheard.shows("STARTED").judged(readings=EXACT), AI_10_from="r")
+    assert follows(unheard.shows("STARTED").judged(readings=EXACT), AI_10_from="rn")
     about_nothing = sent().robot(2, "s").submit(2, robot="s").reports(2, 9, "success")
     assert not about_nothing.settles.shows("STARTED", "SUCCESS").judged().conforms
+
+
+def named_twice(**mission: object) -> History:
+    """A mission that was sent, a second connection that said the name of its robot, and another mission for that."""
+    return sent(**mission).robot(2).submit(2)
+
+
+def reports_nameless(history: History, connection: int, status: str) -> History:
+    """A status that does not say of which mission it is."""
+    message = Message(Header("mission_status"), MissionStatusProto(None, WireStatus(status)))
+    return history.drive("line", connection=connection, line=encode(message).decode().strip())
+
+
+@pytest.mark.parametrize(("robot", "given"), [("b", 1), ("n", 2)])
+def test_a_status_may_be_heard_on_each_connection_of_its_robot(robot: str, given: int) -> None:
+    """AI-10.from n: though the robot's missions go to another; but not of somebody else."""
+    known = {**EXACT, "AI-16": robot, "AI-16.under-way": "k", "AI-16.back": "p"}
+    heard = named_twice(start_timeout=50).reports(2, 1, "failure").sends(given, 2).settles.shows("FAILED", "STARTED")
+    assert follows(heard.judged(readings=known), AI_10_from="nw")
+    assert not heard.judged(readings={**known, "AI-10.from": "r"}).conforms
+    apart = heard.robot(3, "s").reports(3, 2, "success").settles.shows("FAILED", "STARTED")
+    assert follows(apart.judged(readings=known), AI_10_from="n")
+    unheard = named_twice(start_timeout=50).reports(2, 1, "failure").settles.shows("STARTED", "QUEUED")
+    assert follows(unheard.judged(readings=known), AI_10_from="r")
+
+
+def test_a_status_that_names_no_mission_may_be_heard_on_each_connection_of_its_robot() -> None:
+    """AI-10.from n: it is about the robot's current one; whoever hears anybody may take it or not."""
+    known = {**EXACT, "AI-16": "b", "AI-16.back": "p"}
+    heard = reports_nameless(named_twice(), 2, "success").sends(1, 2).settles.shows("SUCCESS", "STARTED")
+    assert follows(heard.judged(readings=known), AI_10_from="nw")
+    unheard = reports_nameless(named_twice(), 2, "success").settles.shows("STARTED", "QUEUED")
+    assert follows(unheard.judged(readings=known), AI_10_from="rw")
+    stranger = reports_nameless(sent().robot(2, "s"), 2, "success").settles
+    assert not stranger.shows("SUCCESS").judged(readings=known).conforms
+
+
+def test_a_status_before_the_name_may_be_heard_where_another_connection_is_the_robot() -> None:
+    """AI-10.from n, AI-18.early b: it is kept until the name is known."""
+    kept = sent().drive("connect", connection=2).reports(2, 1, "success").settles.shows("STARTED").says(2).settles
+    known = {**EXACT, "AI-16": "b", "AI-16.back": "p"}
+    assert follows(
+        kept.shows("SUCCESS").judged(readings={**known, "AI-10.from": "rn"}), AI_10_from="n", AI_18_early="b"
+    )
+    assert not kept.shows("SUCCESS").judged(readings={**known, "AI-18.early": "a"}).conforms
 
 
 def test_a_drop_that_is_found_out_when_the_robot_is_back() -> None:

@@ -11,6 +11,7 @@ from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, In
 from missionfsm.isaac.server.lifecycle import may_rest
 from missionfsm.isaac.server.losing import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
 from missionfsm.isaac.server.readings import (
+    AI_10_FROM,
     AI_16,
     AI_16_AGAIN,
     AI_16_BACK,
@@ -245,7 +246,24 @@ def _claims(move: Move, link: Link, key: str) -> Moves:
         elif letter == "s":
             yield from _served(way, link)
         else:
-            yield way
+            yield from _stands_by(way, link)
+
+
+def _stands_by(move: Move, link: Link) -> Moves:
+    """A connection has said its name and is not the robot: what it said too early may be taken up (AI-10.from n, w)."""
+    yield move
+    found = move.state.link_at(link.slot)
+    heard, _ = split(move, AI_10_FROM, "nw") if found is not None and found.early else (None, move)
+    if heard is not None and found is not None:
+        yield from _taken_up(heard.with_link(link.slot, early=()), link, found.early)
+
+
+def _taken_up(move: Move, link: Link, early: tuple[Report, ...]) -> Moves:
+    """Statuses that came before the name, and were kept, are heard."""
+    moves = [move]
+    for report in early:
+        moves = [after for one in moves for after in believed(one, link.slot, report)]
+    yield from moves
 
 
 def _takes_over(move: Move, link: Link, holder: Link, *, unnoticed: bool = False) -> Moves:
@@ -322,7 +340,5 @@ def _served(move: Move, link: Link) -> Moves:
         over = any(one.since == "connect" and (one.hi is None or one.hi < 0) for one in mission.clocks)
         if not (there or over) and mission.robot == found.name and mission.queued:
             move = started(move, index, START, "connect")
-    moves = list(back(move, found.name))
-    for report in found.early:
-        moves = [after for one in moves for after in believed(one, link.slot, report)]
-    yield from moves
+    for after in back(move, found.name):
+        yield from _taken_up(after, link, found.early)

@@ -130,8 +130,12 @@ AI_10 = Ambiguity(
 )
 AI_10_FROM = Ambiguity(
     "AI-10.from",
-    "On which connections is a status heard that names its mission?",
-    {"r": "on that of its robot, or the one that it was sent on", "w": "on any"},
+    "On which connections is a status heard of a mission?",
+    {
+        "r": "on that of its robot, or the one that it was sent on",
+        "n": "on each that has said its robot's name, or the one that it was sent on",
+        "w": "on any, if it names its mission",
+    },
 )
 AI_11 = Ambiguity(
     "AI-11",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.alike import one_of_each
 from missionfsm.isaac.server.clocks import Moves
@@ -64,56 +66,51 @@ def _could_matter(state: Server, report: Report) -> bool:
 
 
 def believed(move: Move, slot: int, report: Report) -> Moves:
-    """What a status does, on whichever connections one is heard that names its mission (AI-10.from)."""
+    """What a status does, on whichever connections one is heard (AI-10.from) and however it is matched (AI-10)."""
     link = move.state.link_at(slot)
     assert link is not None, "the connection is open"  # noqa: S101 - callers have it from the state
-    own, anywhere = (move, None) if not _from_elsewhere(move.state, link, report) else split(move, AI_10_FROM, "r")
-    if own is not None:
-        yield from _matched(own, link, report, anywhere=False)
-    if anywhere is not None:
-        yield from _matched(anywhere, link, report, anywhere=True)
+    found: dict[tuple[int, ...], dict[str, str]] = {}
+    for heard, matched, meant in _meanings(move.state, link, report):
+        matches = found.setdefault(meant, {})
+        if matched not in matches.get(heard, ""):
+            matches[heard] = matches.get(heard, "") + matched
+    for meant, matches in found.items():
+        same: dict[str, str] = {}
+        for heard, letters in matches.items():
+            same[letters] = same.get(letters, "") + heard
+        for matched, letters in same.items():
+            here, _ = split(move, AI_10_FROM, letters)
+            way = None if here is None else split(here, AI_10, matched)[0]
+            if way is not None:
+                yield from _means(way, link, report, meant)
 
 
-def _from_elsewhere(state: Server, link: Link, report: Report) -> bool:
-    """Whether a status names a mission that was sent and is none of those that its connection may report on."""
-    named = {report.named, report.header} - {None, NOBODYS}
-    return any(_was_sent(state, one) and not _may_report(state, link, one) for one in named if one is not None)
+def _meanings(state: Server, link: Link, report: Report) -> Iterator[tuple[str, str, tuple[int, ...]]]:
+    """The missions that a status is about, for each letter of AI-10.from and each of AI-10.
+
+    Where any connection is heard of a mission that is named, nobody says which is heard of one that is not.
+    """
+    for heard, unnamed in (("r", "r"), ("n", "n"), ("w", "rn")):
+        named, header = (
+            () if one is None or not _may_report(state, link, one, heard) else (one,)
+            for one in (report.named, report.header)
+        )
+        for where in unnamed:
+            current = tuple(index for index in _current(state, report) if _may_report(state, link, index, where))
+            yield heard, "a", current if report.named is None else named
+            yield heard, "b", named
+            yield heard, "c", header
+            yield heard, "d", current
 
 
-def _was_sent(state: Server, index: int) -> bool:
-    """Whether a mission was sent, and no drop of its connection has yet to be noticed."""
-    mission = state.missions[index]
-    return mission.sent and not any(one.kind == DROP for one in mission.clocks)
-
-
-def _may_be_meant(state: Server, link: Link, index: int, *, anywhere: bool) -> bool:
-    """Whether a status on a connection may be about a mission."""
-    return index >= 0 and (_may_report(state, link, index) or (anywhere and _was_sent(state, index)))
-
-
-def _matched(move: Move, link: Link, report: Report, *, anywhere: bool) -> Moves:
-    """What a status does, for each way in which it may be matched to a mission (AI-10)."""
-    targets: dict[tuple[int, ...], str] = {}
-    current = _current(move.state, link, report)
-    by_payload = current if report.named is None else (report.named,)
-    for letter, found in (
-        ("a", by_payload),
-        ("b", () if report.named is None else by_payload),
-        ("c", () if report.header is None else (report.header,)),
-        ("d", current),
-    ):
-        meant = tuple(index for index in found if _may_be_meant(move.state, link, index, anywhere=anywhere))
-        targets[meant] = targets.get(meant, "") + letter
-    for meant, letters in targets.items():
-        way, _ = split(move, AI_10, letters)
-        if way is None:
-            continue
-        after = [] if meant else [means_nothing(way)]
-        # By the channel alone (AI-10 d) no uuid tells missions apart that are alike.
-        for index in one_of_each(way.state, meant) if way.state.letters(AI_10) == "d" else meant:
-            after += _on_channel(way, index, report)
-        for one in after:
-            yield from _heard_out(one, link, report)
+def _means(move: Move, link: Link, report: Report, missions: tuple[int, ...]) -> Moves:
+    """What a status does that is about one of these missions, or about none."""
+    after = [] if missions else [means_nothing(move)]
+    # By the channel alone (AI-10 d) no uuid tells missions apart that are alike.
+    for index in one_of_each(move.state, missions) if move.state.letters(AI_10) == "d" else missions:
+        after += _on_channel(move, index, report)
+    for one in after:
+        yield from _heard_out(one, link, report)
 
 
 def _heard_out(move: Move, link: Link, report: Report) -> Moves:
@@ -127,28 +124,33 @@ def _heard_out(move: Move, link: Link, report: Report) -> Moves:
         yield move
 
 
-def _current(state: Server, link: Link, report: Report) -> tuple[int, ...]:
+def _current(state: Server, report: Report) -> tuple[int, ...]:
     """The missions under way that a status on a channel may be about if it names none."""
     return tuple(
         index
         for index, one in enumerate(state.missions)
         if one.status in UNDER_WAY
-        and _may_report(state, link, index)
         and report.channel in (one.status_channel or STATUS_CHANNEL, one.status_channel or f"{one.channel}_status")
     )
 
 
-def _may_report(state: Server, link: Link, index: int) -> bool:
-    """Whether a connection is listened to about a mission: that of its robot, or the one that it was sent on."""
-    mission = state.missions[index]
-    if not _was_sent(state, index):
+def _may_report(state: Server, link: Link, index: int, letter: str) -> bool:
+    """Whether a connection is listened to about a mission, as a letter of AI-10.from has it."""
+    if index < 0 or not _was_sent(state, index):
         return False
-    elsewhere = (
-        mission.sent_on is not None and mission.sent_on != link.slot and state.link_at(mission.sent_on) is not None
-    )
-    if link.serves and mission.robot == link.name:
-        return not elsewhere or mission.status in ENDED
-    return mission.sent_on == link.slot
+    mission = state.missions[index]
+    if letter == "w" or mission.sent_on == link.slot:
+        return True
+    if link.name is None or mission.robot != link.name:
+        return False
+    elsewhere = mission.sent_on is not None and state.link_at(mission.sent_on) is not None
+    return letter == "n" or (link.serves and (not elsewhere or mission.status in ENDED))
+
+
+def _was_sent(state: Server, index: int) -> bool:
+    """Whether a mission was sent, and no drop of its connection has yet to be noticed."""
+    mission = state.missions[index]
+    return mission.sent and not any(one.kind == DROP for one in mission.clocks)
 
 
 def _on_channel(move: Move, index: int, report: Report) -> Moves:

@@ -84,13 +84,13 @@ class Belief:
         if self.broken:
             return False
         kind, numbering = type(event), self._numbering
-        if numbering.given_up and (kind is Received or kind is Ended) and event.channel in numbering.given_up:  # type: ignore[union-attr]
+        if numbering.given_up and self._was_given_up(event):
             return True  # what still comes on a stream that was given up means nothing
-        if self._shelves is not None and self._shelves.names and self._shelves.concern(event):
+        if self._concerns_what_is_away(event):
             self._bring_back()
         symbol, new = numbering.symbol(event)
         edge = self.node.next.get(symbol) or self._edge(symbol)
-        if self._shelves and self._shelves.names and (edge.beyond_system or not edge.node.explanations):
+        if self._has_to_bring_back(edge):
             self._bring_back()
             symbol, new = numbering.symbol(event)
             edge = self.node.next.get(symbol) or self._edge(symbol)
@@ -98,18 +98,35 @@ class Belief:
         if not edge.node.explanations:
             self.broken = True
             return False
+        self._follow(symbol, edge, new)
+        if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
+            numbering.note(event)
+        self._put_away()
+        return True
+
+    def _was_given_up(self, event: Event) -> bool:
+        """Whether an event is of a stream that was given up."""
+        return isinstance(event, Received | Ended) and event.channel in self._numbering.given_up
+
+    def _concerns_what_is_away(self, event: Event) -> bool:
+        """Whether an event is about what is put away."""
+        shelves = self._shelves
+        return shelves is not None and bool(shelves.names) and shelves.concern(event)
+
+    def _has_to_bring_back(self, edge: Edge) -> bool:
+        """Whether what is put away may explain an event better than what is left."""
+        shelves = self._shelves
+        return bool(shelves and shelves.names) and (edge.beyond_system or not edge.node.explanations)
+
+    def _follow(self, symbol: Symbol, edge: Edge, new: list[Name]) -> None:
+        """Go along an edge."""
         if edge.presumes and self.presumed is None:
             self.presumed = self._as_it_was()
         self._walked.append((symbol, self.node, self._shelves))
         self.node = edge.node
         self.touched |= edge.touched
         if edge.keep is not None:
-            numbering.follow(edge, new)
-        if kind is Received or kind is Driven or kind is Cancelled or kind is Ended:
-            numbering.note(event)
-        if self._shelves is not None and (self._shelves.names or edge.node.width >= LEAST):
-            self._put_away(self._shelves)
-        return True
+            self._numbering.follow(edge, new)
 
     def _edge(self, symbol: Symbol) -> Edge:
         """Compute where an event leads that has not come here before."""
@@ -119,8 +136,11 @@ class Belief:
             self._bring_back()  # what comes next is searched for, from here on
             raise
 
-    def _put_away(self, shelves: Shelves) -> None:
-        """Put away what decides nothing any more."""
+    def _put_away(self) -> None:
+        """Put away what decides nothing any more, if that is worth it."""
+        shelves = self._shelves
+        if shelves is None or not (shelves.names or self.node.width >= LEAST):
+            return
         found = self.automaton.away(self.node, shelves.shelving, 2 if shelves.names else LEAST)
         if found:
             what, edge = found

@@ -185,6 +185,10 @@ class Coming:
         self._stretches[name] = self.at, until, channel.foretold, found
         return found
 
+    def _is_last(self, last: int, positions: Sequence[int]) -> bool:
+        """Whether nothing of a channel comes behind what is known either."""
+        return self.last and last == len(positions) and (not self._settled or self._settled[-1] < self._cut)
+
     def _stretch_from(self, name: int, first: int, quiet: int, end: int) -> Stretch:
         """What is known of a channel from one of its messages on.
 
@@ -197,14 +201,12 @@ class Coming:
         cut, last = self._cut, bisect.bisect_left(positions, end)
         rests = quiet < bisect.bisect_left(self._settled, end)
         nothing = first >= last and not rests
-        # Nothing of it comes behind what is known either.
-        is_last = self.last and last == len(positions) and (not self._settled or self._settled[-1] < cut)
+        over = end < cut or self._is_last(last, positions)
         if rests:
             last = bisect.bisect_left(positions, self._settled[quiet], first)
         settles = rests or (end == cut and cut in self._settled)
         mute = settles and first >= last and not first and name not in self._latest
         shown = slice(first, min(last, first + NEXT))
-        over = end < cut or is_last
         return Stretch(
             messages[shown],
             positions[shown],

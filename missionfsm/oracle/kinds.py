@@ -102,10 +102,7 @@ class Kinds:
 
     def _found(self, state: State, request: Request, answer: Answer | None) -> Effects:
         successors = self.successors
-        if state not in self._quiet:
-            if successors.urgent(state) or successors.unseen(state):
-                raise OtherwiseError
-            self._quiet.add(state)
+        self._expect_quiet(state)
         steps, idle, ready = [], [], []
         for step in successors.outcomes(state, request, ()):
             if step.answer is None or _does_more_than_answer(step):
@@ -119,6 +116,13 @@ class Kinds:
             ready += [Ready(step.answer, (), (), step.rules)] if step.applied else []
             idle += [step.rules] if agreements else []
         return Effects(bool(idle), idle[0] if idle else (), tuple(steps), tuple(ready))
+
+    def _expect_quiet(self, state: State) -> None:
+        """Raises OtherwiseError where something happens in a state by itself."""
+        if state not in self._quiet:
+            if self.successors.urgent(state) or self.successors.unseen(state):
+                raise OtherwiseError
+            self._quiet.add(state)
 
     def ready(self, call: InFlight, kind: Kind) -> Ready | None:
         """What a call could have been answered as it is without effect, at some moment since it was sent."""

@@ -199,12 +199,8 @@ class Search:
                 self.calls_alone = False
         usual, may_give_up = min(USUAL + USUAL_EACH * horizon, self.budget), self.whole
         while self._required:
-            try:
-                if self._go_on(horizon, usual):
-                    return True
-            except ExhaustedError:
-                if not self.whole:
-                    raise  # what comes later tells more than other readings do
+            if self._explains_usually(horizon, usual):
+                return True
             usual -= self.successors.spent
             required, stuck, blamed = self._required, self._stuck, self._ahead.blamed
             if may_give_up and self._gives_up_few(horizon):
@@ -225,6 +221,19 @@ class Search:
             left = self._left_of(required)
             self._required = left if left != required and usual > 0 else 0
         return self._go_on(horizon, self.budget)
+
+    def _explains_usually(self, horizon: int, budget: int) -> bool:
+        """Whether the first events up to a horizon are explained under the readings that are required; no, if too dear.
+
+        Raises:
+            ExhaustedError: it is too dear, and what comes later tells more than other readings do.
+        """
+        try:
+            return self._go_on(horizon, budget)
+        except ExhaustedError:
+            if not self.whole:
+                raise
+            return False
 
     def _left_of(self, required: int) -> int:
         """What is left of required readings in all that explains the events up to the last one that was reached."""

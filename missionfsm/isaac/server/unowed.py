@@ -61,6 +61,11 @@ def _too_early(server: Server, link: Link, meant: list[Mission]) -> tuple[str, .
         return Unowed((rules.CANCELED.id, rules.UPSTREAM.id), says)
     if not queued:
         return _not_queued(meant)
+    return _for_another(link, queued)
+
+
+def _for_another(link: Link, queued: list[Mission]) -> Unowed:
+    """These missions are for other robots."""
     robots = ", ".join(dict.fromkeys(repr(one.robot) for one in queued))
     whose = "has said no name" if link.name is None else f"is that of {link.name!r}"
     return Unowed((rules.UNNAMED.id,), f"the mission with that configuration is for {robots}, the connection {whose}")

@@ -36,12 +36,9 @@ def owing(belief: Belief, view: object, topic: Hashable, *, made_only: bool = Fa
     for symbol, node in belief.walked:
         rules: dict[str, None] = {}
         begun = False
-        owed = [
-            one
-            for here in _become(belief, node.explanations)
-            for one in _owing_steps(belief, symbol, here, view, topic)
-        ]
-        owed = [one for one in owed if one[1] or not made_only]
+        ways = _become(belief, node.explanations)
+        steps = itertools.chain.from_iterable(_owing_steps(belief, symbol, here, view, topic) for here in ways)
+        owed = list(filter(_is_made, steps)) if made_only else list(steps)
         left = [] if made_only else [one.assumed for one in belief.node.explanations]
         for step, made in (*_most_usual(owed, ()), *_most_usual(owed, left)):
             found, begun = True, begun or made
@@ -50,6 +47,11 @@ def owing(belief: Belief, view: object, topic: Hashable, *, made_only: bool = Fa
         if rules or begun:
             return tuple(rules)
     return () if found else None
+
+
+def _is_made(owed: tuple[Step, bool]) -> bool:
+    _, made = owed
+    return made
 
 
 def _owing_steps(

@@ -252,30 +252,39 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     if not candidates:
         return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _likeliest(candidates)
-    rules = list(dict.fromkeys(_broken(lightest)))
     weights = [problem.weight for problem in lightest[0].problems]
-    if UNDRIVEN in weights:
-        # The last thing that happened has another effect; or the message shows something that did not happen.
-        rules = _alternately(causes.latest(nearest.belief), rules)
-    elif (
-        FAILED not in weights
-        and max(weights, default=0) >= LEFT_OUT
-        and not any(SHAPE <= weight < UNOWED for weight in weights)
-    ):
-        # Either the message shows wrongly what happened, or something else happened than should have.
-        rules = _alternately(rules, _before(nearest, lightest[0], made_only=max(weights) == NAME))
+    rules = _by_weight(nearest, lightest, weights)
     notes = [problem.says for problem in _problems(lightest)]
-    refusal = _refused_last(nearest) if lightest[0].owed is None and max(weights, default=0) >= UNOWED else None
+    nothing_is_due = lightest[0].owed is None and max(weights, default=0) >= UNOWED
+    refusal = _refused_last(nearest) if nothing_is_due else None
     if refusal is not None:
         rules = list(dict.fromkeys(_broken(lightest)))  # nothing else has happened since
         notes.append(f"the last call was refused, which changes nothing: {refusal.words(nearest.spec)}")
         return candidates, rules or list(_broken(candidates)), notes
     if isinstance(event.content, Malformed):
-        return [one for one in candidates if not one.passing] or candidates, rules, notes[:1]
+        return _staying(candidates), rules, notes[:1]
     refused = untimely(nearest, event) if max(weights, default=0) >= VALUE else None
     if refused is not None:
         return candidates, refused[0], [refused[1]]
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
+
+
+def _staying(candidates: list[Candidate]) -> list[Candidate]:
+    """Those that cannot be passed over, if there are any."""
+    return [one for one in candidates if not one.passing] or candidates
+
+
+def _by_weight(nearest: Nearest, lightest: list[Candidate], weights: list[int]) -> list[str]:
+    """The rules that a message breaks, and those of what should have happened before it."""
+    rules = list(dict.fromkeys(_broken(lightest)))
+    if UNDRIVEN in weights:
+        # The last thing that happened has another effect; or the message shows something that did not happen.
+        return _alternately(causes.latest(nearest.belief), rules)
+    right_so_far = FAILED not in weights and not any(SHAPE <= weight < UNOWED for weight in weights)
+    if right_so_far and max(weights, default=0) >= LEFT_OUT:
+        # Either the message shows wrongly what happened, or something else happened than should have.
+        return _alternately(rules, _before(nearest, lightest[0], made_only=max(weights) == NAME))
+    return rules
 
 
 def _refused_last(nearest: Nearest) -> AnsweredCall | None:
@@ -399,8 +408,7 @@ def _nothing_new(nearest: Nearest) -> tuple[list[str], list[str]]:
 
     Streams show what calls do; on other channels lines come when it is time for them.
     """
-    here = next((one for one in nearest.reachable() if nearest.at_rest(one)), None)
-    shown = [one for one in here.channels if one.last is not None] if here is not None else []
+    shown = _that_show(nearest)
     if not shown or not nearest.about.recent:
         return [], []
     rules = [rule for one in shown for rule in nearest.spec.delivery(one.topic).unowed]
@@ -410,6 +418,12 @@ def _nothing_new(nearest: Nearest) -> tuple[list[str], list[str]]:
         return rules, [f"a line is due that does not come; {last}"]
     call = nearest.about.recent[-1].words(nearest.spec)
     return rules, [f"after {call} {where} showed nothing new; it showed {last} last" for where, last in lasts]
+
+
+def _that_show(nearest: Nearest) -> list[Channel]:
+    """The channels that have shown something, where everything is at rest."""
+    here = next((one for one in nearest.reachable() if nearest.at_rest(one)), None)
+    return [one for one in here.channels if one.last is not None] if here is not None else []
 
 
 def _shown_last(nearest: Nearest, channel: Channel, owed: Owed) -> str:

@@ -239,11 +239,7 @@ class Nearest:
             problems = [*before, *self._readings(here, needs)]
             before_it = () if delivery.skips else [one for one in channel.owed[:position] if not one.passing]
             if before_it:
-                says = f"{described(self.spec, before_it[0].view)} has to come before it"
-                other = self.successors.matches(before_it[0], message.content)
-                own = (other.rule,) if isinstance(other, Mismatch) else ()
-                missing = self.missing(delivery, before_it[0].view)
-                problems.append(Problem(says, (*own, *missing), LEFT_OUT))
+                problems.append(self._left_out(delivery, before_it[0], message))
             problems += self._matched(here, channel, owed, message) or self._unlike_any_state(
                 here, delivery, owed, message
             )
@@ -259,6 +255,13 @@ class Nearest:
         if not channel.owed:
             again = tuple(self._again(here, channel, delivery, message))
             yield Candidate(problems=(*before, *again), allowed=False)
+
+    def _left_out(self, delivery: Delivery, owed: Owed, message: _Message) -> Problem:
+        """What has to come before a message."""
+        other = self.successors.matches(owed, message.content)
+        own = (other.rule,) if isinstance(other, Mismatch) else ()
+        says = f"{described(self.spec, owed.view)} has to come before it"
+        return Problem(says, (*own, *self.missing(delivery, owed.view)), LEFT_OUT)
 
     def _unlike_any_state(
         self, here: Explanation, delivery: Delivery, owed: Owed, message: _Message

@@ -210,7 +210,7 @@ class Belief:
     def number_for_good(self, event: Event) -> Symbol | None:
         """An event with numbers for names, and the new names numbered for good; None for one that means nothing."""
         kind, numbering = type(event), self._numbering
-        if numbering.given_up and (kind is Received or kind is Ended) and event.channel in numbering.given_up:  # type: ignore[union-attr]
+        if numbering.given_up and self._was_given_up(event):
             return None
         symbol, new = numbering.symbol(event)
         if new:

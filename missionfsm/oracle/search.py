@@ -299,8 +299,9 @@ class Search:
         names: set[int] = set()
         for position in range(self._read, len(self._symbols)):
             if self._symbols[position][0] in (Called, Returned, Driven):
-                names.update(names_of(self._symbols[position]))
-                self._named.update(dict.fromkeys(names_of(self._symbols[position]), position))
+                named = names_of(self._symbols[position])
+                names.update(named)
+                self._named.update(dict.fromkeys(named, position))
         self._read = len(self._symbols)
         if self._depot.names.isdisjoint(names):
             return False

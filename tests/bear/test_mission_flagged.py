@@ -61,6 +61,12 @@ WORKFLOW = call(
     "CreateMissionWorkflow",
     {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": [{"destinationId": TABLES[0]}]}}}},
 )
+OTHER_CASE = (
+    *WATCHED,
+    *call("CreateMission", {"mission": of_family("servi", "deliveryMission", TABLES[0], TABLES[1].upper())}),
+    *drive("goalReached"),
+)
+"""A mission of which the second destination is on the map but for its case."""
 DEPARTURES: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]], ...] = (
     ("AM-07.halted", "v", HALTED, SERVI, (*QUEUE, *commanded(0, CANCEL), *WORKFLOW)),
     ("AM-08", "b", {}, SERVI, QUEUE),
@@ -80,6 +86,7 @@ DEPARTURES: tuple[tuple[str, str, dict[str, str], JSON, tuple[ScriptStep, ...]],
     ("AM-29.resume", "b", {}, SERVI, (*CREATED, *commanded(0, RESUME))),
     ("AM-30", "b", {}, SERVI, (*WATCHED, *CREATED, *commanded(0, FINISH))),
     *(("AM-38.dock", letter, {}, SERVI, UNDOCKED) for letter in "cg"),
+    *(("AM-43.case.CreateMission", letter, {}, SERVI, OTHER_CASE) for letter in "bdfm"),
     ("AM-53.CreateMissionWorkflow", "v", {}, {"family": "servi", "blocked": True}, WORKFLOW),
     ("AM-51.base-navigate", "b", {}, SERVI, (*WATCHED, *CREATED)),
 )

@@ -12,7 +12,7 @@ from missionfsm.bear.mission.edits import Edit, Op
 from missionfsm.bear.mission.inputs import Call, Wanted
 from missionfsm.bear.mission.outcome import ADDED, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings.charging import AM_37_QUEUED
-from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_45_WHEN
+from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_43_CASE, AM_45_WHEN
 from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_12_HALTED, AM_13
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_25, AM_27
@@ -24,12 +24,15 @@ from missionfsm.bear.mission.state import (
     Kind,
     Mission,
     Situation,
+    World,
     free_goal,
     is_foreign,
-    is_missing,
+    is_nowhere,
+    is_spelt_otherwise,
+    spelt_on_the_map,
 )
 from missionfsm.bear.wire.messages import Goal
-from missionfsm.kernel.readings import UNCONSTRAINED, meet
+from missionfsm.kernel.readings import UNCONSTRAINED, Assumption, meet
 from missionfsm.kernel.rules import OK
 
 
@@ -61,14 +64,26 @@ def _doomed_or_hopeless(
     robot: Situation, operation: str, kind: Kind, goals: tuple[Goal, ...]
 ) -> Iterator[tuple[Mission, Assumed]]:
     """AM-41, AM-43: a mission that cannot be done fails when it is started, or on the way."""
-    reasons = []
-    if is_missing(robot.world, goals):
+    world = robot.world
+    reasons: list[tuple[Assumption, ...]] = []
+    if is_nowhere(world, goals):
         reasons.append((AM_43[operation]["b"], AM_43[operation]["d"]))
-    if is_foreign(robot.world, kind):
+    if is_foreign(world, kind):
         reasons.append((AM_41[operation]["c"], AM_41[operation]["d"]))
+    case = AM_43_CASE[operation] if is_spelt_otherwise(world, goals) else None
+    if case is not None:
+        reasons.append((case["b"], case["d"], case["f"], case["m"]))
     for how in itertools.product(*reasons):
-        at_once = any(one in how for one, _ in reasons)
-        yield Mission(kind, goals, doomed=at_once, hopeless=bool(how) and not at_once), how
+        at_once = any(one in how for one, *_ in reasons)
+        on_the_way = any(one in how for _, one, *_ in reasons)
+        as_on_the_map = case is not None and case["m"] in how
+        places = tuple(_as_on_the_map(world, goal) for goal in goals) if as_on_the_map else goals
+        yield Mission(kind, places, doomed=at_once, hopeless=on_the_way and not at_once), how
+
+
+def _as_on_the_map(world: World, goal: Goal) -> Goal:
+    """A goal as the map spells it."""
+    return evolve(goal, destination_id=spelt_on_the_map(world, goal) or goal.destination_id)
 
 
 def _all_accepted(

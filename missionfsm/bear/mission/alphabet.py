@@ -62,6 +62,7 @@ _FORMS: tuple[JSON, ...] = (
     {"baseMission": {"navigateAutoMission": {"goal": goals_at(TABLES[0])[0]}}},
     of_family("servi", "deliveryPatrolMission"),
     base({"destinationId": TABLES[0][:-1]}),
+    base({"destinationId": TABLES[0].upper()}),
 )
 """The same, and others that are wrong for a reason that they have."""
 
@@ -124,6 +125,7 @@ _OTHER_WORKFLOWS: tuple[JSON, ...] = (
     {"serviWorkflow": {"delivery": {"goals": [*goals_at(TABLES[0]), {}]}}},
     {"serviWorkflow": {"birthday": {"goals": goals_at(TABLES[0])}}},
     {"serviWorkflow": {"deliveryPatrol": {"goals": []}}},
+    {"serviWorkflow": {"delivery": {"goals": goals_at(TABLES[0].upper())}}},
 )
 """More requests that are invalid, for the same reasons."""
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from attrs import evolve
 
-from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_44, AM_44_AUTOMATIC, AM_45_REFUSED
+from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_43_CASE, AM_44, AM_44_AUTOMATIC, AM_45_REFUSED
 from missionfsm.bear.mission.readings.queue import AM_11, AM_12_HALTED, AM_12_PAUSED
 from missionfsm.bear.mission.readings.starting import AM_53
 from missionfsm.bear.mission.readings.unlisted import AM_58
@@ -38,6 +38,7 @@ def _format(operation: str) -> tuple[Rule, ...]:
         request.a_goal_is_invalid,
         request.the_goals_do_not_match_the_mission_type,
         _under(request.a_destination_is_not_on_the_map, AM_43[operation]["a"]),
+        _under(request.the_case_of_a_destination_differs, AM_43_CASE[operation]["a"]),
         _under(request.a_goal_occurs_twice, AM_44[operation]["i"]),
         _under(request.a_field_is_unknown, AM_58[operation]["b"]),
     )

@@ -165,7 +165,8 @@ def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
         yield (*way, *commanded(0, "COMMAND_UNKNOWN"), *drive("goalReached"))
     foreign = of_family("carti", "traverseMission", *TABLES)
     nowhere = of_family("servi", "deliveryMission", *TABLES, "nowhere")
-    for mission in (foreign, nowhere):
+    otherwise = of_family("servi", "deliveryMission", TABLES[0], TABLES[1].upper())
+    for mission in (foreign, nowhere, otherwise):
         on = (*drive("goalReached") * 4, *drive("missionSucceeded"))
         batch = {"missions": [_SINGLE, {"mission": mission}]}
         yield (_SUBSCRIBE, *call("CreateMission", {"mission": mission}), *on)

@@ -243,6 +243,27 @@ def is_missing(world: World, goals: tuple[Goal, ...]) -> bool:
     return any(goal.destination_id and goal.destination_id not in world.destinations for goal in goals)
 
 
+def spelt_on_the_map(world: World, goal: Goal) -> str:
+    """The destination of a goal as the map has it, where only its case differs; empty where the map has it not."""
+    name = goal.destination_id or ""
+    if name in world.destinations:
+        return name
+    wanted = name.casefold()
+    return next((one for one in world.destinations if one.casefold() == wanted), "")
+
+
+def is_spelt_otherwise(world: World, goals: tuple[Goal, ...]) -> bool:
+    """Whether only the case of one of the goals differs from a destination on the map."""
+    return is_missing(world, goals) and any(
+        spelt_on_the_map(world, goal) not in ("", goal.destination_id) for goal in goals
+    )
+
+
+def is_nowhere(world: World, goals: tuple[Goal, ...]) -> bool:
+    """Whether one of the goals is a destination that the map has not, in whatever case."""
+    return is_missing(world, goals) and any(goal.destination_id and not spelt_on_the_map(world, goal) for goal in goals)
+
+
 def is_foreign(world: World, kind: Kind) -> bool:
     """Whether a mission is for another family than the robot's."""
     return FAMILY[kind] not in (None, world.family)

@@ -29,6 +29,19 @@ AM_43 = asked_of_each(
     (*CREATING, *APPENDING),
     flagged="bd",
 )
+AM_43_CASE = asked_of_each(
+    "AM-43.case",
+    "{}: only the case of a destination differs from one on the map: what becomes of it?",
+    {
+        "a": "it is refused, INVALID_ARGUMENT",
+        "b": "the mission is accepted and fails when it is started",
+        "d": "the mission is accepted and fails on the way",
+        "f": "it is taken for the one on the map, and shown as it was asked for",
+        "m": "it is taken for the one on the map, and shown as it is spelt there",
+    },
+    (*CREATING, *APPENDING),
+    flagged="bdfm",
+)
 AM_43_LEFT = Ambiguity(
     "AM-43.left",
     "What becomes of a mission under way of which a goal leaves the map?",

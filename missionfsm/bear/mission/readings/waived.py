@@ -25,7 +25,7 @@ WAIVED: Mapping[str, str] = {
     "AM-39": "type, place and end of a charge are not described: any type and at most one goal that stay, any end",
     "AM-40 b": "the page calls it a mission and reports it among them, so it can be appended to",
     "AM-42": "the number of goals is all that can be told from this page; kinds of destinations are not on it",
-    "AM-43 c": "NOT_FOUND is in no table of these calls; names are compared as they are",
+    "AM-43 c": "NOT_FOUND is in no table of these calls",
     "AM-45 f, g": "what others claim is part of the world that a tester sets; a robot's own queue claims nothing",
     "AM-45 l": "the page says that lower indices are preferred",
     "AM-46": "numbers are compared within one stream alone, which is right under every scope; an equal one is invalid",

@@ -12,7 +12,8 @@ from missionfsm.bear.mission.state import (
     Situation,
     free_goal,
     is_foreign,
-    is_missing,
+    is_nowhere,
+    is_spelt_otherwise,
 )
 from missionfsm.kernel.rules import FAILED_PRECONDITION, INVALID_ARGUMENT, refusal
 
@@ -79,7 +80,13 @@ def a_destination_is_not_on_the_map(robot: Situation, call: Call) -> bool:
 
     AM-43: such a goal is invalid at once, or it is accepted and the mission fails.
     """
-    return any(is_missing(robot.world, wanted.goals) for wanted in _wanted(call))
+    return any(is_nowhere(robot.world, wanted.goals) for wanted in _wanted(call))
+
+
+@refusal(INVALID_ARGUMENT, cite=MISSION["CreateMission", "Request"], looks_at=GOALS)
+def the_case_of_a_destination_differs(robot: Situation, call: Call) -> bool:
+    """Only the case of a destination_id differs from the display name of a destination on the robot's map (AM-43)."""
+    return any(is_spelt_otherwise(robot.world, wanted.goals) for wanted in _wanted(call))
 
 
 def _is_for_another_family(robot: Situation, kind: Kind | None) -> bool:

@@ -219,20 +219,66 @@ def test_texts_that_a_server_sends() -> None:
     assert not history.settles.judged().conforms
 
 
-def test_a_robot_may_rest_after_a_failure() -> None:
-    """AI-39.failed b: its next mission may come up to a second later, and no later, though others come at once."""
+RESTS = {**EXACT, "AI-39.succeeded": "ab", "AI-39.aborted": "ab"}
+"""Readings where it is open whether a robot rests after a mission."""
+
+
+@pytest.mark.parametrize(
+    ("end", "status", "question"),
+    [("failure", "FAILED", "AI-39.failed"), ("success", "SUCCESS", "AI-39.succeeded")],
+)
+def test_a_robot_may_rest_after_a_mission(end: str, status: str, question: str) -> None:
+    """AI-39.failed b, .succeeded b: its next one may come up to a second later, no later; others come at once."""
 
     def begin() -> History:
-        return sent().submit(2).settles.reports(1, 1, "failure").settles.shows("FAILED", "QUEUED")
+        return sent().submit(2).settles.reports(1, 1, end).settles.shows(status, "QUEUED")
 
-    assert follows(begin().waits(1.1).sends(1, 2).settles.judged(readings=EXACT), AI_39_failed="b")
-    assert not begin().waits(1.1).settles.shows("FAILED", "QUEUED").judged(readings=EXACT).conforms
-    rested = begin().waits(1.1).sends(1, 2).reports(1, 2, "failure").waits(1.1).submit(3).sends(1, 3)
-    assert rested.settles.shows("FAILED", "FAILED", "STARTED").judged(readings=EXACT).conforms
-    at_once = sent().submit(2).settles.reports(1, 1, "failure").sends(1, 2).settles
-    assert follows(at_once.judged(readings=EXACT), AI_39_failed="a")
-    succeeded = sent().submit(2).reports(1, 1, "success").settles.shows("SUCCESS", "QUEUED")
-    assert not succeeded.judged(readings=EXACT).conforms
+    rests, at_once = {question.replace("-", "_").replace(".", "_"): letter for letter in "b"}, {**RESTS, question: "a"}
+    assert follows(begin().waits(1.1).sends(1, 2).settles.judged(readings=RESTS), **rests)
+    assert not begin().judged(readings=at_once).conforms
+    assert not begin().waits(1.1).settles.shows(status, "QUEUED").judged(readings=RESTS).conforms
+    rested = begin().waits(1.1).sends(1, 2).reports(1, 2, end).waits(1.1).submit(3).sends(1, 3)
+    assert rested.settles.shows(status, status, "STARTED").judged(readings=RESTS).conforms
+    prompt = sent().submit(2).settles.reports(1, 1, end).sends(1, 2).settles.judged(readings=RESTS)
+    assert (prompt.conforms, prompt.readings[question]) == (True, ("a",))
+    assert (
+        not begin()
+        .waits(1.1)
+        .sends(1, 2)
+        .submit(3)
+        .reports(1, 2, end)
+        .sends(1, 3)
+        .settles.judged(readings=RESTS)
+        .conforms
+    )
+
+
+def test_a_robot_may_rest_after_a_mission_that_timed_out() -> None:
+    """AI-39.aborted b: its next mission may come up to a second after the limit, and no later."""
+    known = {**RESTS, "AI-08": "a", "AI-39.limits": "a"}
+
+    def begin() -> History:
+        return sent(start_timeout=2).submit(2).settles.waits(2.5)
+
+    rests = begin().settles.shows("FAILED_TIMEDOUT", "QUEUED").waits(0.6).sends(1, 2).settles
+    assert follows(rests.judged(readings=known), AI_39_aborted="b")
+    late = begin().settles.waits(0.6).settles.shows("FAILED_TIMEDOUT", "QUEUED")
+    assert not late.judged(readings=known).conforms
+    at_once = begin().sends(1, 2).settles.shows("FAILED_TIMEDOUT", "STARTED").submit(3).waits(7)
+    assert at_once.sends(1, 3).settles.shows(*["FAILED_TIMEDOUT"] * 2, "STARTED").judged(readings=known).conforms
+
+
+def test_a_robot_rests_though_it_connects_anew() -> None:
+    """AI-39.failed b: what it lost with its connection keeps it from the next one on another for up to a second."""
+
+    def begin() -> History:
+        return sent().submit(2).drive("disconnect", connection=1).settles.waits(0.5).robot(2).settles
+
+    known = {**EXACT, "AI-15.sent": "c", "AI-15.when": "n"}
+    rests = begin().shows("FAILED_DISCONNECTED", "QUEUED").waits(1).sends(2, 2).settles
+    assert follows(rests.judged(readings=known), AI_39_failed="b")
+    late = begin().waits(1).settles.shows("FAILED_DISCONNECTED", "QUEUED")
+    assert not late.judged(readings=known).conforms
 
 
 def test_a_robot_may_rest_that_has_lost_a_mission_with_one_of_its_connections() -> None:

@@ -394,8 +394,9 @@ def test_a_pass_may_send_on_a_connection_that_another_took_over_from_before_it_d
 
 def test_who_comes_after_a_connection_that_an_abort_ends() -> None:
     """Another that has said the same name is sent the next mission, and loses its connection in the same way."""
-    begun = History().robot(1).robot(2).submit(1).submit(2).sends(2, 1).settles
-    verdict = begun.waits(60).closes(2).sends(1, 2).closes(1).settles.judged(readings={"AI-39.limits": "a"})
+    begun, known = History().robot(1).robot(2).submit(1).submit(2), {"AI-39.aborted": "a", "AI-39.limits": "a"}
+    shown = begun.sends(2, 1).settles.waits(60).closes(2).sends(1, 2).closes(1).settles
+    verdict = shown.judged(readings=known)
     assert (verdict.conforms, verdict.readings["AI-08"]) == (True, ("c",)), str(verdict)
 
 

@@ -52,13 +52,10 @@ def explore_size(server: Server) -> int:
 def canonical(server: Server) -> Server:
     """The server with all readings open again, clocks that may strike at any time, and nothing kept for later."""
     missions = tuple(
-        evolve(one, lingers="", was=None, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
-        if one.clocks or one.lingers or one.was
+        evolve(one, lingers="", was=None, rests=0, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
+        if one.clocks or one.lingers or one.was or one.rests
         else one
         for one in server.missions
     )
-    links = tuple(
-        evolve(one, early=(), held=(0, 0), rests=0) if one.early or one.held[1] or one.rests else one
-        for one in server.links
-    )
+    links = tuple(evolve(one, early=(), held=(0, 0)) if one.early or one.held[1] else one for one in server.links)
     return Server(server.name_channel, missions, links, tolerance=server.tolerance)

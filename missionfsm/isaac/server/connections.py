@@ -8,7 +8,6 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import Moves, started
 from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
-from missionfsm.isaac.server.lifecycle import may_rest
 from missionfsm.isaac.server.losing import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
 from missionfsm.isaac.server.readings import (
     AI_10_FROM,
@@ -82,7 +81,7 @@ def _succeeded(move: Move, gone: Link) -> Moves:
     at_once, later = split(move, AI_16_BACK, "p")  # else not before it says it again, or never
     if at_once is not None:
         for heir in reversed(heirs):  # nobody says which of several, the newest or the one that said it last
-            yield from _served(may_rest(at_once, heir), heir)
+            yield from _served(at_once, heir)
     if later is not None:
         yield later
 

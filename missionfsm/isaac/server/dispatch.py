@@ -28,7 +28,6 @@ from missionfsm.isaac.server.readings import (
     AI_24_WHOLE,
     AI_36,
     AI_39,
-    AI_39_FAILED,
     AI_39_LIMITS,
     AI_39_ORDER,
 )
@@ -125,15 +124,24 @@ def dispatches_to(move: Move, link: Link) -> Moves:
     for index, chosen in choices:
         if index is not None:
             now, later = split(chosen, AI_39, "a")
-            soon, rests = split(now, AI_39_FAILED, "a") if now is not None and link.rests else (now, None)
-            if soon is not None:
-                yield from sends(soon, link, index)
-            if rests is not None:
-                yield rests
+            if now is not None:
+                yield from _sent_or_rests(now, link, index)
             if later is not None:
                 yield from _sent_later(later, chosen, decides=decides and later.state != move.state)
         elif chosen is not move:
             yield chosen
+
+
+def _sent_or_rests(move: Move, link: Link, index: int) -> Moves:
+    """A mission is sent now, or the robot of a connection is found to rest since another of it has just ended."""
+    for question in move.state.rests(link):
+        soon, rests = split(move, question, "a")
+        if rests is not None:
+            yield rests
+        if soon is None:
+            return
+        move = soon
+    yield from sends(move, link, index)
 
 
 def _whether_anybody(move: Move) -> tuple[Move, ...]:

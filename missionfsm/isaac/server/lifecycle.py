@@ -10,17 +10,18 @@ from missionfsm.isaac.server import rules
 from missionfsm.isaac.server.clocks import START_CLOCKS, Moves, started, stopped, ticking
 from missionfsm.isaac.server.deciding import split
 from missionfsm.isaac.server.independence import Part
-from missionfsm.isaac.server.readings import AI_03, AI_03_WHEN, AI_36, AI_39, AI_39_FAILED
+from missionfsm.isaac.server.readings import AI_03, AI_03_WHEN, AI_36, AI_39
 from missionfsm.isaac.server.state import (
     DOOM,
     FAILURES,
     LIFECYCLE,
     PASS_PERIOD,
+    RESTS,
     RUN,
     SILENT,
     START,
+    UNDER_WAY,
     Clock,
-    Link,
     Mission,
     Move,
     Status,
@@ -36,6 +37,7 @@ def becomes(move: Move, index: int, trigger: str) -> Move:
 
 def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
     """A mission ends; those that wait for it wait no longer, or are doomed."""
+    under_way = move.state.missions[index].status in UNDER_WAY
     move = becomes(move, index, trigger).with_mission(index, clocks=(), overdue=False)
     status = move.state.missions[index].status
     for other, mission in enumerate(move.state.missions):
@@ -47,8 +49,8 @@ def ends(move: Move, index: int, trigger: str, *because: str) -> Move:
             move = move.with_mission(other, waits=tuple(one for one in mission.waits if one != index), doomed=doomed)
             if move.state.missions[other].ready:
                 move = started(move, other, START, "ready")
-    if trigger in ("report failure", "lose"):
-        move = may_rest(move, _robot_of(move, move.state.missions[index]))
+    if under_way and move.state.letters(AI_39) == "a" and "b" in move.state.letters(RESTS[status]):
+        move = move.with_mission(index, rests=move.at[1] + PASS_PERIOD + move.state.tolerance)
     return move.to(move.state, *because)
 
 
@@ -127,20 +129,6 @@ def to_be_noticed(move: Move, index: int, kind: str, *, still: bool = False) -> 
     if still and not move.state.tolerance:
         low += 1  # no pass comes while no time passes; what a pass itself brings about it may notice
     return ticking(move, index, (*clocks, Clock(kind, kind, low, move.state.next_pass(high) + move.state.tolerance)))
-
-
-def may_rest(move: Move, link: Link | None) -> Move:
-    """AI-39.failed: a robot whose mission has just failed or was lost may be given no other for a second."""
-    letters = move.state.letters
-    if link is None or letters(AI_39) != "a" or "b" not in letters(AI_39_FAILED):
-        return move
-    return move.with_link(link.slot, rests=PASS_PERIOD)
-
-
-def _robot_of(move: Move, mission: Mission) -> Link | None:
-    """The connection on which the robot of a mission is given the next one."""
-    own = [one for one in move.state.links if one.serves and one.slot == mission.sent_on]
-    return own[0] if own else move.state.serving(mission.robot)
 
 
 def acknowledged(move: Move, index: int) -> Move:

@@ -129,6 +129,9 @@ def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
     ready = [index for index in queue if missions[index].ready]
     if not ready:
         return
+    if len(ready) > 1 and move.state.letters(AI_13) == "b":
+        yield from _in_any_order(move, queue, ready)
+        return
     overtakes, holds = (move, None) if ready[0] == queue[0] else split(move, AI_12, "a")
     if overtakes is not None:
         yield ready[0], overtakes
@@ -141,3 +144,16 @@ def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
                     yield index, free if after is free.state else free.to(after)
     if holds is not None:
         yield None, holds
+
+
+def _in_any_order(move: Move, queue: list[int], ready: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """AI-13 b: any of these may go first, where none that waits holds it up (AI-12).
+
+    That is asked at once: asked each time anew, missions that are alike would be told apart in one way more each time.
+    """
+    free, held = split(move, AI_12, "a")
+    if free is not None:
+        for index, after in first_of_alike(free.state, ready):
+            yield index, free if after is free.state else free.to(after)
+    if held is not None:
+        yield (ready[0] if ready[0] == queue[0] else None), held

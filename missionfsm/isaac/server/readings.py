@@ -389,6 +389,16 @@ AI_39_FAILED = Ambiguity(
     "When does a server that sends at once send the next mission to a robot whose mission has just failed?",
     {"a": "at once", "b": "up to a second later"},
 )
+AI_39_SUCCEEDED = Ambiguity(
+    "AI-39.succeeded",
+    "When does a server that sends at once send the next mission to a robot whose mission has just succeeded?",
+    {"a": "at once", "b": "up to a second later"},
+)
+AI_39_ABORTED = Ambiguity(
+    "AI-39.aborted",
+    "When does a server that sends at once send the next mission to a robot whose mission has just timed out?",
+    {"a": "at once", "b": "up to a second later"},
+)
 AI_39_LIMITS = Ambiguity(
     "AI-39.limits",
     "When does a server notice a timeout that sends at once?",

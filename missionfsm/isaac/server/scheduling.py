@@ -87,6 +87,14 @@ def taken_up(move: Move, link: Link) -> Move:
     return after
 
 
+def _rested(move: Move, link: Link) -> Move:
+    """The robot of a connection rests no more."""
+    for index, mission in enumerate(move.state.missions):
+        if mission.rests and mission.robot == link.name:
+            move = move.with_mission(index, rests=0)
+    return move
+
+
 def after_pass(move: Move, slot: int, part: Part) -> Iterator[Move]:
     """What a scheduling pass does for a connection at the moment of the move."""
     link = move.state.link_at(slot)
@@ -97,8 +105,7 @@ def after_pass(move: Move, slot: int, part: Part) -> Iterator[Move]:
     link = evolve(link, pass_since=None)
     for lapsed in lapses(here.state, link):
         yield from followed(Move(lapsed.state, here.sent, here.rules + lapsed.rules, here.at), part)
-    rested = here.with_link(slot, rests=0) if link.rests else here
-    for index, chosen in possible(rested.state, evolve(link, rests=0)) if _sends_later(here.state, link) else ():
-        for after in sends(rested.to(chosen.state), link, index):
+    for index, chosen in possible(here.state, link) if _sends_later(here.state, link) else ():
+        for after in sends(_rested(here.to(chosen.state), link), link, index):
             if not quiet or len(after.sent) == len(here.sent):
                 yield from followed(after, part)

@@ -16,8 +16,6 @@ def shifted(move: Move, time: int) -> Move:
     for link in move.state.links:
         if link.pass_since is not None:
             after = after.with_link(link.slot, pass_since=time - link.pass_since)
-        if link.rests:
-            after = after.with_link(link.slot, rests=max(0, link.rests - time))
         if link.fresh:
             after = _takeover_noticed(after, link, time)
         if link.held[1]:
@@ -32,6 +30,8 @@ def shifted(move: Move, time: int) -> Move:
 
 def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
     """A mission whose clocks say how much is left so much later."""
+    if mission.rests:
+        mission = evolve(mission, rests=max(0, mission.rests - time))
     if mission.was is not None:
         status, left, fresh = mission.was
         mission = evolve(mission, was=(status, left - time, fresh and not time) if left > time else None)

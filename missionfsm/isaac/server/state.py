@@ -14,7 +14,7 @@ from typing import Any
 
 from attrs import evolve
 
-from missionfsm.isaac.server.readings import AI_39_FAILED
+from missionfsm.isaac.server.readings import AI_39_ABORTED, AI_39_FAILED, AI_39_SUCCEEDED
 from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.chart import Chart
 from missionfsm.kernel.readings import Ambiguity
@@ -79,6 +79,13 @@ LIFECYCLE: Chart[Status] = Chart(
 ENDED = frozenset(LIFECYCLE.final)
 SENT, HEARD = "sent", "heard"
 """What a robot has said of a mission that was sent: nothing, or something."""
+RESTS = {
+    Status.SUCCESS: AI_39_SUCCEEDED,
+    Status.FAILED: AI_39_FAILED,
+    Status.LOST: AI_39_FAILED,
+    Status.ABORTED: AI_39_ABORTED,
+}
+"""For each end of a mission that was under way: whether its robot may rest then before it is sent another."""
 WAITS = "send acknowledged"
 START_COUNTS_FROM = {"send": "a", "submit": "b", "ready": "c", "connect": "d"}
 """What the time to start counts from (`Clock.since`), with the letter of AI-05."""
@@ -124,6 +131,7 @@ class Mission:
         was: what it was before its robot reported something that a pass may have yet to look at (AI-39.reports b), for
             how many microseconds that may be, and whether no time has passed; None where there is no such thing.
         depends: whether it has upstreams at all.
+        rests: microseconds for which its robot need not be sent another, since it has just ended (`RESTS`).
         overdue: whether it has ended for certain while it was queued, and how is left open: it timed out, or was
             cancelled before. Its clocks say when it may have timed out. Nothing but its status depends on that.
     """
@@ -145,6 +153,7 @@ class Mission:
     lingers: str = ""
     overdue: bool = False
     was: tuple[Status, int, bool] | None = None
+    rests: int = 0
 
     @property
     def ticking(self) -> tuple[Clock, ...]:
@@ -196,7 +205,6 @@ class Link:
             it is (AI-39.order s).
         pass_since: how many microseconds ago a scheduling pass may have come that sent or cancelled something here, and
             of which nothing was seen yet (AI-39 b); None: none may have; 0: one that has sent nothing.
-        rests: microseconds for which nothing need be sent, since its mission has failed (AI-39.failed b).
         closing: whether the server has closed it, which has yet to be seen (AI-08 c); it is nobody's then.
     """
 
@@ -208,7 +216,6 @@ class Link:
     fresh: int = 0
     held: tuple[int, int] = (0, 0)
     pass_since: int | None = None
-    rests: int = 0
     closing: bool = False
 
 
@@ -271,9 +278,14 @@ class Server:
         """The connection in a slot."""
         return next((one for one in self.links if one.slot == slot), None)
 
+    def rests(self, link: Link) -> tuple[Ambiguity, ...]:
+        """The questions whether the robot of a connection rests now, since missions of it have just ended."""
+        own = (one for one in self.missions if one.rests and one.robot == link.name)
+        return tuple(RESTS[one.status] for one in own if one.status in RESTS)
+
     def lets_rest(self, link: Link) -> bool:
-        """Whether nothing is sent on a connection yet, since its mission has just failed (AI-39.failed b)."""
-        return link.rests > 0 and self.letters(AI_39_FAILED) == "b"
+        """Whether nothing is sent on a connection yet, since a mission of its robot has just ended."""
+        return any(self.letters(question) == "b" for question in self.rests(link))
 
     def link_of_topic(self, at: Hashable) -> Link | None:
         """The connection that a topic is about."""

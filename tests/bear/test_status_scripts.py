@@ -13,6 +13,7 @@ from attrs import evolve
 
 from missionfsm.adapters.stdio import Child
 from missionfsm.app.foreign import subjects
+from missionfsm.bear.status.samples import SHORT
 from missionfsm.bear.status.scripts import APART, SHOWN
 from missionfsm.bear.status.system import SYSTEM
 from missionfsm.bear.wire.fields import MESSAGES
@@ -52,6 +53,23 @@ def differences(place: str, one: Any, other: Any) -> Iterator[str]:
             yield from differences(f"{place}.{name}", one.get(name), other.get(name))
     elif one != other:
         yield place
+
+
+def merged(before: Any, report: Any) -> Any:
+    """What becomes of a report that is merged into the one before, member by member."""
+    if isinstance(before, dict) and isinstance(report, dict):
+        return {**before, **{name: merged(before.get(name), one) for name, one in report.items()}}
+    if isinstance(before, list) and isinstance(report, list):
+        return [merged(*pair) for pair in itertools.zip_longest(before[: len(report)], report)]
+    return report
+
+
+def test_of_every_part_a_report_leaves_members_out() -> None:
+    """Who merges it into the one before, in whatever depth, shows what was not reported; also of other families."""
+    several = {part for part, kind in PARTS.items() if len(list(leaves(part, kind))) > 1 or part == "errorCodes"}
+    assert several == set(SHORT)
+    for part, values in SHORT.items():
+        assert all(merged(APART[part][0], value) != value for value in values), part
 
 
 def test_every_field_of_a_status_changes_alone() -> None:

@@ -31,6 +31,8 @@ from status_helpers import (
 )
 
 from missionfsm.app.asked import judged_system
+from missionfsm.bear.status.system import SYSTEM
+from missionfsm.kernel.alphabet import Bounds
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
 
@@ -42,6 +44,20 @@ def test_only_selected_robots_are_shown(robot: str) -> None:
     """Neither another of the account's robots nor somebody else's may come."""
     lines = [*SUBSCRIBED, report("r2", "battery", battery(50)), battery_message(1, robot, 8, battery(50))]
     assert not conforms(*lines)
+
+
+def test_an_own_robot_at_somebody_elses_location_is_asked_for_and_not_shown() -> None:
+    """AS-03: the location is not the account's, whoever is there. The last world that is tried has such a robot."""
+    world = WORLDS[-1]
+    (script,) = SYSTEM.alphabet(world, Bounds()).apart
+    asked = [step.params for step in script if step.method == ONLINE]
+    assert asked == [at("L3")]
+    call = {"call": 1, "method": ONLINE, "params": asked[0]}
+    found = judge([call, {"return": 1, "result": {"stream": 1}}], world).violation
+    assert found is not None
+    refused = f"bear.status/{ONLINE}/PERMISSION_DENIED/the-location-is-somebody-elses"
+    assert refused in [rule.id for rule in found.rules]
+    assert judge([call, {"return": 1, "error": {"status": "PERMISSION_DENIED"}}], world).right
 
 
 def test_somebody_elses_robot_at_an_own_location_may_be_shown_and_is_flagged() -> None:

@@ -26,7 +26,7 @@ from missionfsm.bear.status.samples import (
     by_ids,
     report,
 )
-from missionfsm.bear.status.scripts import Cast, scripts
+from missionfsm.bear.status.scripts import Cast, abroad, scripts
 from missionfsm.bear.status.state import GET, Endpoint
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input
 from missionfsm.kernel.codec import JSON
@@ -80,8 +80,15 @@ _WORLDS: tuple[JSON, ...] = (
         ],
         "locations": list(_LOCATIONS),
     },
-    {"robots": [_robot("r1", "L1", _full(BATTERIES[0]), NETWORKS[0])], "locations": list(_LOCATIONS[:1])},
+    {
+        "robots": [
+            _robot("r1", "L1", _full(BATTERIES[0]), NETWORKS[0]),
+            _robot("r2", "L3", _full(BATTERIES[2]), NETWORKS[2]),
+        ],
+        "locations": [_LOCATIONS[0], _LOCATIONS[2]],
+    },
 )
+"""In the last one a robot of the account is at somebody else's location."""
 _NOBODY, _NOWHERE = "nobody", "nowhere"
 
 
@@ -101,6 +108,12 @@ class _Names:
         """The account's locations with robots of its own."""
         homes = {self.homes[one] for one in self.own}
         return tuple(one for one in self.places if one in homes and self.owned[one])
+
+    @property
+    def abroad(self) -> tuple[str, ...]:
+        """Somebody else's locations with robots of the account."""
+        homes = {self.homes[one] for one in self.own}
+        return tuple(one for one in self.places if one in homes and not self.owned[one])
 
     @property
     def cast(self) -> Cast:
@@ -233,6 +246,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         core_drives=tuple(_plain_drives(names)),
         worlds=_WORLDS,
         scripts=tuple(scripts(names.cast)),
+        apart=tuple(map(abroad, names.abroad)),
     )
 
 

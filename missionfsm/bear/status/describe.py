@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from missionfsm.bear.status.messages import ErrorCodes
 from missionfsm.bear.status.state import GET, Event, Fleet, Request
 from missionfsm.bear.status.values import brief_value
 from missionfsm.bear.status.views import BLANK, Promised, Seen, View
@@ -30,7 +31,8 @@ def describe(value: object) -> str:
 def _view(value: View) -> str:
     if value.unheard:
         return "any state"
-    return "UNKNOWN values" if value.value == BLANK.get(value.endpoint) else brief_value(value.value)
+    nothing_known = value.value == BLANK.get(value.endpoint) and value.value != ErrorCodes()
+    return "UNKNOWN values" if nothing_known else brief_value(value.value)
 
 
 def _request(request: Request) -> str:

@@ -98,29 +98,38 @@ CONVEYOR: JSON = {
     "conveyorState": {"index": 0, "operationState": "OPERATION_STATE_ROLLING", "payloadState": "PAYLOAD_STATE_LOADED"}
 }
 
-SHORT: Mapping[str, JSON] = {
-    "battery": {"chargePercent": 41, "state": "STATE_DISCHARGING"},
-    "navigationState": {"stuckState": {"state": "STATE_NOT_STUCK"}},
-    "wifi": {"ssid": "guests"},
-    "emergencyStop": {"emergency": "EMERGENCY_ENGAGED"},
-    "mission": {"missionId": "mission-456", "state": "STATE_SUCCEEDED"},
-    "twist": {"angularVelocity": 0.25},
-    "pose": {"xMeters": 1.5, "yMeters": 2.8},
+SHORT: Mapping[str, tuple[JSON, ...]] = {
+    "battery": ({"chargePercent": 41, "state": "STATE_DISCHARGING"},),
+    "errorCodes": ({}, {"codes": [{"code": 1001}]}),
+    "navigationState": ({"stuckState": {"state": "STATE_NOT_STUCK"}},),
+    "wifi": ({"ssid": "guests"},),
+    "emergencyStop": ({"emergency": "EMERGENCY_ENGAGED"},),
+    "mission": (
+        {"missionId": "mission-456", "state": "STATE_SUCCEEDED"},
+        {"missionId": "mission-456", "state": "STATE_RUNNING", "goals": [{"pose": {"yMeters": 3.1}}]},
+    ),
+    "twist": ({"angularVelocity": 0.25},),
+    "pose": ({"xMeters": 1.5, "yMeters": 2.8},),
+    "serviState": ({"trayStates": {"trayStates": [{"trayName": "top"}]}},),
+    "cartiState": (
+        {"conveyorState": {"operationState": "OPERATION_STATE_STOP"}},
+        {"conveyorState": {"index": 1, "payloadState": "PAYLOAD_STATE_EMPTY"}},
+    ),
 }
-"""For parts a value in which members are left out, which then have their defaults, not what was reported before."""
+"""For parts values in which members are left out, which then have their defaults, not what was reported before."""
 
 REPORTS: tuple[tuple[str, tuple[JSON, ...]], ...] = (
-    ("battery", (*BATTERIES, SHORT["battery"], None)),
-    ("errorCodes", (*ERRORS, None)),
-    ("navigationState", (*NAVIGATIONS, SHORT["navigationState"], None)),
-    ("wifi", (*NETWORKS, SHORT["wifi"])),
+    ("battery", (*BATTERIES, *SHORT["battery"], None)),
+    ("errorCodes", (*ERRORS, *SHORT["errorCodes"], None)),
+    ("navigationState", (*NAVIGATIONS, *SHORT["navigationState"], None)),
+    ("wifi", (*NETWORKS, *SHORT["wifi"])),
     ("connection", (*CONNECTIONS, CONNECTIONS[0], None)),
-    ("emergencyStop", (*STOPS, SHORT["emergencyStop"], None)),
-    ("mission", (*MISSIONS, SHORT["mission"])),
-    ("twist", (*TWISTS, SHORT["twist"])),
-    ("pose", (*POSES, SHORT["pose"], None)),
-    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}}, TRAYS, None, None)),
-    ("cartiState", (CONVEYOR, None)),
+    ("emergencyStop", (*STOPS, *SHORT["emergencyStop"], None)),
+    ("mission", (*MISSIONS, *SHORT["mission"])),
+    ("twist", (*TWISTS, *SHORT["twist"])),
+    ("pose", (*POSES, *SHORT["pose"], None)),
+    ("serviState", (TRAYS, {"trayStates": {"trayStates": []}}, TRAYS, *SHORT["serviState"], None, None)),
+    ("cartiState", (CONVEYOR, *SHORT["cartiState"], None)),
     ("localizationState", ({"state": "STATE_SUCCEEDED"},)),
 )
 

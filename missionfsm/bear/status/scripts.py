@@ -169,10 +169,13 @@ def _reported_whole(robot: str) -> Iterator[tuple[ScriptStep, ...]]:
     """A report takes the place of the one before whole: what it leaves out has its default, wherever it is shown."""
     get = ScriptStep(GET, {"robotId": robot})
     for endpoint, parts in SHOWN.items():
-        some = [part for part in parts if part in SHORT]
-        if some:
-            reports = _driven(*(report(robot, part, value) for part in some for value in (APART[part][0], SHORT[part])))
-            yield (ScriptStep(endpoint.value, by_ids(robot)), _SETTLE, *reports, get)
+        reports: list[ScriptStep] = []
+        for part in (one for one in parts if one in SHORT):
+            for value in SHORT[part]:
+                whole, short = (report(robot, part, one) for one in (APART[part][0], value))
+                reports += (*_driven(whole, short), get)
+        if reports:
+            yield (ScriptStep(endpoint.value, by_ids(robot)), _SETTLE, *reports)
 
 
 def _happened(cast: Cast, robot: str) -> Iterator[tuple[ScriptStep, ...]]:
@@ -193,6 +196,11 @@ def _happened(cast: Cast, robot: str) -> Iterator[tuple[ScriptStep, ...]]:
             yield (one, _SETTLE, *_driven(away), *then)
             there = ScriptStep(endpoint.value, at(cast.place))
             yield (there, _SETTLE, *_driven(away, back), *then)
+
+
+def abroad(place: str) -> tuple[ScriptStep, ...]:
+    """Every subscription to somebody else's location where a robot of the account is."""
+    return tuple(itertools.chain.from_iterable((ScriptStep(one.value, at(place)), _SETTLE) for one in Endpoint))
 
 
 def _driven(*events: JSON) -> tuple[ScriptStep, ...]:

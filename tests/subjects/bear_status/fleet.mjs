@@ -121,7 +121,7 @@ class Robot {
     if (!PARTS.includes(part) || isImpossible(part, value)) return null;
     const whole = inRange(part, value);
     const now = broken('reports-merged') && value ? { ...this.#reported[part], ...whole } : whole;
-    const reported = withoutUnset({ ...this.#reported, ...replacedBy(part), [part]: now });
+    const reported = withoutUnset({ ...this.#reported, ...replacedBy(part, now), [part]: now });
     if (isDeepStrictEqual(reported, this.#reported)) return [];
     this.#reported = reported;
     return this.#record(topicsOf(part));
@@ -170,8 +170,8 @@ function topicsOf(part) {
   return Object.keys(TOPICS).filter((topic) => TOPICS[topic].parts.includes(part));
 }
 
-function replacedBy(part) {
-  return part in TYPED_STATES ? { [TYPED_STATES[part]]: undefined } : {};
+function replacedBy(part, value) {
+  return value && part in TYPED_STATES ? { [TYPED_STATES[part]]: undefined } : {};
 }
 
 /** The page tells clients to treat an unknown stuck state as an error: no robot of ours sends one (AS-18). */

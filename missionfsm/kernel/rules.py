@@ -113,6 +113,7 @@ class Rule:
         looks_at: what a refusal looks at, where readings rank that (the form of a request before the state).
         id: ``system/operation/code/name``, or ``system/topic/name`` for a promise; set when it is registered.
         everywhere: whether it stands in the section of every operation, of which `cite` names one.
+        names: whether it says which names an answer has, so that of several promises a wrong name breaks this one.
     """
 
     name: str
@@ -125,6 +126,7 @@ class Rule:
     looks_at: str = ""
     id: str = ""
     everywhere: bool = False
+    names: bool = False
 
     def place(self, operation: str) -> Citation:
         """Where the sentence stands that is about an operation; any, where that is empty."""
@@ -170,9 +172,13 @@ def refusal(
     return register
 
 
-def promise(name: str, says: str, *, cite: Citation, argues: str = "") -> Rule:
-    """A documented sentence that is no error: an effect, an order, a range, a move of a lifecycle."""
-    return Rule(name, says, argues, cite)
+def promise(name: str, says: str, *, cite: Citation, argues: str = "", names: bool = False) -> Rule:
+    """A documented sentence that is no error: an effect, an order, a range, a move of a lifecycle.
+
+    Args:
+        names: whether it says which names an answer has.
+    """
+    return Rule(name, says, argues, cite, names=names)
 
 
 Effect = Callable[[State, Request, Refs], Iterable[Step]]

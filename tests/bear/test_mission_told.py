@@ -169,6 +169,30 @@ def test_an_answer_without_an_id() -> None:
     assert found.notes == ("it names nothing, expected 1 new name",)
 
 
+def test_an_id_that_another_mission_has() -> None:
+    """The answer itself breaks the sentence about ids, whatever becomes of the queue; so does one id for two."""
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A)).settles()
+    found = begun.asks("AppendMission", mission("delivery", "table-3"), missionId="m1").told
+    assert found.notes == ("it names m1 where a name is due that nothing had before",)
+    assert rules(found)[0] == "AppendMission/the-answer-names-the-new-mission"
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A)).settles()
+    batch = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-3")]}
+    found = begun.asks("AppendMissionBatch", batch, missionIds=["m2", "m2"]).told
+    assert found.notes == ("each thing has a name of its own, and m2 is given twice",)
+    assert rules(found)[0] == "AppendMissionBatch/the-answer-names-the-new-missions-in-order"
+
+
+def test_of_what_is_allowed_that_comes_first_for_which_nothing_has_to_happen_yet() -> None:
+    """An unknown id where a mission has just been created: the mission runs, and that is what the rows are about."""
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A)
+    found = begun.asks("UpdateMission", command("m9", "PAUSE")).told
+    assert {one.assumes for one in found.expected} == {
+        ("AM-02.unknown.busy=a",),
+        ("AM-02.unknown.busy=b",),
+        ("AM-02.unknown.busy=e",),
+    }
+
+
 def test_nothing_came_after_a_call() -> None:
     """Also where only later messages show that none comes: what was shown last is said, with the call after it."""
     three, waits = (

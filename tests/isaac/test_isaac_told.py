@@ -1,13 +1,17 @@
 """What a person is told of a mission that was sent though it was not due."""
 
+import re
+
 import pytest
 from attrs import evolve
 from server_history import SERVER, History
 
 from missionfsm.isaac.shared.line import new_uuid, uuid_name
-from missionfsm.isaac.wire.messages import Uuid
+from missionfsm.isaac.wire.framing import encode
+from missionfsm.isaac.wire.messages import Header, Message, MissionStatusProto, Uuid, WireStatus
 from missionfsm.oracle.transcript import Head
 from missionfsm.tools.check.judge import Judge
+from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.needed import disregarding, ways_to_break
 from missionfsm.tools.check.phrases import name_words
 
@@ -23,6 +27,18 @@ def _first(**mission: object) -> History:
 
 
 A = '{"a":{"b":{"c":1}}}'
+
+
+def test_a_story_tells_a_uuid_once_a_line() -> None:
+    """A robot that stamps a status with the uuid of its mission names one thing, though twice; two are two things."""
+    mission, other = Uuid(1234567890123456789, 1 << 62), Uuid(1234567890123456780, 1 << 62)
+    payload = MissionStatusProto(mission, WireStatus.RUNNING)
+    begun = History().robot(1)
+    for stamp in (mission, other):
+        line = encode(Message(Header("mission_status", 1, 1, stamp), payload)).decode().strip()
+        begun = begun.drive("line", connection=1, line=line)
+    told = story(SERVER, ({"missionfsm": 1, "system": "isaac.server", "world": {}}, *begun.lines)).splitlines()
+    assert [re.findall(r"uuid no. \d", line) for line in told[-2:]] == [["uuid no. 1"], ["uuid no. 1", "uuid no. 2"]]
 
 
 def test_an_upstream_has_not_succeeded() -> None:

@@ -18,9 +18,11 @@ from commandline import CommandLine
 import missionfsm
 from missionfsm.app.recorded import check_file
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.history import Settled
 from missionfsm.kernel.subject import Exchange
 from missionfsm.systems import system
 from missionfsm.tools.check.basis import Flagged, Untested, readings_line
+from missionfsm.tools.check.eliminations import Elimination, by_ambiguity
 from missionfsm.tools.check.github import workflow_commands
 from missionfsm.tools.check.narrate import story
 from missionfsm.tools.check.scope import untested
@@ -212,9 +214,18 @@ def test_rules_of_what_was_met_before_it_was_made_short_are_told_as_such(tmp_pat
     assert verdict.violation is not None
     other = evolve(verdict, violation=evolve(verdict.violation, listed=("bear.mission/other/rule",)))
     lines = other.text().splitlines()
-    at = lines.index("  what was met first breaks other rules: as --expect-violations takes it:")
+    at = lines.index("  as --expect-violations takes it (by the rules that it broke before it was made short):")
     assert lines[at + 1] == "    bear.mission/other/rule"
     assert "  as --expect-violations takes it:" in verdict.text().splitlines()
+
+
+def test_what_is_possible_is_not_told_as_ruled_out() -> None:
+    """A short story may leave open what another conversation has ruled out: it is told as open."""
+    asked = MISSION.spec.ambiguities[0]
+    gone = Elimination(MISSION.spec, Settled(), None)
+    found = {(asked.id, letter): gone for letter in asked.readings}
+    left, *others = asked.readings
+    assert by_ambiguity((asked,), found, {asked.id: (left,)}) == {asked.id: dict.fromkeys(others, "everything settled")}
 
 
 def test_what_is_written_says_how_it_was_made(command_line: CommandLine, tmp_path: Path) -> None:

@@ -78,11 +78,13 @@ _ONE_ID = promise(
     "the-answer-names-the-new-mission",
     "The answer has the id of the mission that was created, which no mission had before.",
     cite=MISSION["CreateMission", "Response"],
+    names=True,
 )
 _ALL_IDS = promise(
     "the-answer-names-the-new-missions-in-order",
     "All missions of the request are created, one after the other; the answer has their ids in the same order.",
     cite=MISSION["CreateMissionBatch"],
+    names=True,
 )
 _WORKFLOW_IDS = promise(
     "the-answer-names-the-missions-of-the-workflow",

@@ -146,11 +146,23 @@ def _left(node: Node) -> int:
 
 
 def by_ambiguity(
-    ambiguities: tuple[Ambiguity, ...], found: Mapping[tuple[str, str], Elimination]
+    ambiguities: tuple[Ambiguity, ...],
+    found: Mapping[tuple[str, str], Elimination],
+    left: Mapping[str, tuple[str, ...]],
 ) -> dict[str, dict[str, str]]:
-    """For each ambiguity id and letter that was ruled out, the event in words, in the order of the ambiguities."""
+    """For each ambiguity id and letter that was ruled out, the event in words, in the order of the ambiguities.
+
+    Args:
+        ambiguities: the ambiguities.
+        found: for each ambiguity id and letter, the event that ruled it out somewhere.
+        left: the readings that are possible: another conversation may have ruled out one of them.
+    """
     open_letters = {
-        one.id: {letter: str(found[one.id, letter]) for letter in one.readings if (one.id, letter) in found}
+        one.id: {
+            letter: str(found[one.id, letter])
+            for letter in one.readings
+            if (one.id, letter) in found and letter not in left.get(one.id, ())
+        }
         for one in ambiguities
     }
     return {name: letters for name, letters in open_letters.items() if letters}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from missionfsm.kernel.codec import Malformed
@@ -176,7 +177,7 @@ def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
 
 
 def _against_answer(nearest: Nearest, event: Returned) -> Accusation:
-    candidates = sorted(nearest.answers(event), key=lambda one: one.weight)
+    candidates = sorted(nearest.answers(event), key=lambda one: (one.weight, one.early))
     said = answer_words(event.answer, tuple(map(name_words, event.names)))
     lightest = sorted(_lightest(candidates), key=lambda one: abs(len(one.what) - len(said)))
     if not lightest or lightest[0].weight < CODE:
@@ -188,7 +189,7 @@ def _wrong_in_it(
     nearest: Nearest, event: Returned, candidates: Sequence[Candidate], lightest: Sequence[Candidate]
 ) -> tuple[Iterable[str], Iterable[str]]:
     """The rules and reasons against an answer whose code is allowed, while something else in it is wrong."""
-    rules = _alternately(*(_accused(problem, one) for one in lightest for problem in one.problems))
+    rules = _alternately(*(_accused(nearest.spec, problem, one) for one in lightest for problem in one.problems))
     due = any(problem.weight >= SHAPE and not problem.by_itself for problem in _problems(lightest))
     if due and not _malformed(event):
         rules = _alternately(rules, _before(nearest))
@@ -197,9 +198,10 @@ def _wrong_in_it(
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
     rules = _alternately(rules, _of_other_codes(candidates))
     notes = [problem.says for problem in _problems(lightest[:1])]
-    if _says_a_name_twice(event):
-        notes.append("each thing has a name of its own, and one is given twice")
-    return rules or itertools.chain.from_iterable(one.rules for one in lightest), notes
+    twice = [name for name, times in Counter(event.names).items() if times > 1]
+    if twice:
+        notes.append(f"each thing has a name of its own, and {', '.join(map(name_words, twice))} is given twice")
+    return rules or _about_the_answer(nearest.spec, (rule for one in lightest for rule in one.rules)), notes
 
 
 def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
@@ -220,10 +222,6 @@ def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:
     }
 
 
-def _says_a_name_twice(event: Returned) -> bool:
-    return len(set(event.names)) < len(event.names)
-
-
 def _malformed(event: Returned) -> bool:
     return isinstance(event.answer.shape, Malformed)
 
@@ -233,12 +231,18 @@ def _alternately(*lists: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(one for row in itertools.zip_longest(*lists) for one in row if one is not None))
 
 
-def _accused(problem: Problem, candidate: Candidate) -> list[str]:
+def _accused(spec: Spec, problem: Problem, candidate: Candidate) -> list[str]:
     """The rules that a problem of an answer breaks; if it contradicts an earlier event, a rule of that as well."""
     if problem.since:
         return _alternately(candidate.rules or problem.rules, problem.since[:1])
     about = [rule for rule in problem.rules if rule in candidate.rules]
-    return about or [*(problem.rules or candidate.rules)]
+    return about or [*problem.rules] or _about_the_answer(spec, candidate.rules)
+
+
+def _about_the_answer(spec: Spec, rules: Iterable[str]) -> list[str]:
+    """Rules, first those that say which names an answer has: it breaks them itself, others what comes of it."""
+    known = spec.rules_by_id
+    return sorted(rules, key=lambda rule: rule not in known or not known[rule].names)
 
 
 # A message.

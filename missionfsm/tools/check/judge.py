@@ -367,7 +367,7 @@ class Judge:
             flagged=(*flagged(spec, readings, self.eliminations.found, ways), *self.oddities),
             unchecked=unchecked(spec, (*used, *self.head.drives)),
             untested=untested(spec, self.answers, self.head.drives, left_out),
-            ruled_out=by_ambiguity(spec.ambiguities, self.eliminations.found),
+            ruled_out=by_ambiguity(spec.ambiguities, self.eliminations.found, readings),
         )
         return held_to_the_text(verdict) if self._no_flagged else verdict
 

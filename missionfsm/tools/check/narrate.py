@@ -123,7 +123,7 @@ def _long_names(event: Event, known: dict[Name, int]) -> str:
     if not isinstance(event, Driven | Received):
         return ""
     long = [one for one in event.names if isinstance(one, tuple) and len(str(one[-1])) > MAX_NAME]
-    return "".join(f" ({one[0]} no. {known.setdefault(one, len(known) + 1)})" for one in long)
+    return "".join(f" ({one[0]} no. {known.setdefault(one, len(known) + 1)})" for one in dict.fromkeys(long))
 
 
 def as_pytest(history: tuple[JSON, ...], name: str) -> str:

@@ -332,9 +332,9 @@ class Verdict:
             return []
         ids = self.violation.known_by
         shown = {rule.id for rule in self.violation.rules}
-        longer = "what was met first breaks other rules: "
+        longer = " (by the rules that it broke before it was made short)"
         met = "" if shown.issuperset(ids) else longer
-        return [f"  {met}as --expect-violations takes it:", *(f"    {one}" for one in ids)]
+        return [f"  as --expect-violations takes it{met}:", *(f"    {one}" for one in ids)]
 
     def _readings(self, *, verbose: bool) -> list[str]:
         """The readings that are left: those of open questions first, the others only if they are wanted."""

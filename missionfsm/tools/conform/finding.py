@@ -9,7 +9,7 @@ from attrs import evolve, frozen
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.tools.check.baseline import Baseline, with_stale
 from missionfsm.tools.check.basis import NOT_THERE, Untested
-from missionfsm.tools.check.eliminations import by_ambiguity
+from missionfsm.tools.check.eliminations import Elimination, by_ambiguity
 from missionfsm.tools.check.narrate import story_of
 from missionfsm.tools.check.scope import flagged_in_all, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
@@ -91,7 +91,7 @@ def verdict_of(
         unchecked=unchecked(spec, (*used, *run.partner.info.drives)),
         untested=_untested(run, left_out),
         story=story_of(run.system, violation) if violation else "",
-        ruled_out=by_ambiguity(spec.ambiguities, ledger.eliminations),
+        ruled_out=by_ambiguity(spec.ambiguities, _eliminations(run), followed),
         experiments=tuple(trial.experiment(run.system) for trial in proposed(run)) if advised else (),
         rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advised else {},
         known={rule: times for rule, times in known.met.items() if times},
@@ -129,6 +129,12 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
             shorten_evidence(run)
         return _Finding(Outcome.VIOLATES, followed, _listed(ledger.inconsistency(), met))
     return _Finding(Outcome.CONFORMS, followed)
+
+
+def _eliminations(run: Run) -> Mapping[tuple[str, str], Elimination]:
+    """What ruled readings out: in the conversation that was found, if one was, and else in any."""
+    known = run.ledger.eliminations
+    return known if run.found is None else {**known, **run.found.judge.eliminations.found}
 
 
 def _about_what_binary_cannot_carry(run: Run, violation: Violation) -> bool:

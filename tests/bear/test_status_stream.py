@@ -270,6 +270,9 @@ def test_a_network_that_is_gone_is_shown_as_unset() -> None:
 
     lines = [*opened(1, "SubscribeNetworkStatus", by_ids("r1")), network(1, R1["wifi"]), report("r1", "wifi", None)]
     assert conforms(*lines, network(2, None), SETTLED)
+    missing = judge([*lines, SETTLED]).violation
+    assert missing is not None
+    assert [one.what for one in missing.expected] == ["stream 1 shows r1: unset"]
     assert not conforms(*lines, SETTLED)
     assert broken(*lines, network(2, {**R1["wifi"], "ssid": "another"}))[:1] == ["values-are-those-reported"]
 

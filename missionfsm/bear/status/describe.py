@@ -31,7 +31,7 @@ def describe(value: object) -> str:
 def _view(value: View) -> str:
     if value.unheard:
         return "any state"
-    nothing_known = value.value == BLANK.get(value.endpoint) and value.value != ErrorCodes()
+    nothing_known = value.value not in (None, ErrorCodes()) and value.value == BLANK.get(value.endpoint)
     return "UNKNOWN values" if nothing_known else brief_value(value.value)
 
 

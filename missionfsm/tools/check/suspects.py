@@ -16,7 +16,7 @@ from missionfsm.tools.check.explain import MAX_RULES
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.check.needed import needed
 from missionfsm.tools.check.phrases import described, event_words, rules_in_words
-from missionfsm.tools.check.verdict import Violation
+from missionfsm.tools.check.verdict import CitedRule, Violation
 
 MAX_SUSPECTS = 2
 """How many suspects are worth telling; more of them say nothing."""
@@ -156,5 +156,8 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
         notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
         own = rules_in_words(system.spec, idle[-1].rules)
         rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
-    accused = evolve(violation, rules=tuple(dict.fromkeys(rules)), notes=(*violation.notes, *dict.fromkeys(notes)))
+    once: dict[str, CitedRule] = {}
+    for one in rules:
+        once.setdefault(one.id, one)  # as it is cited where it is nearest
+    accused = evolve(violation, rules=tuple(once.values()), notes=(*violation.notes, *dict.fromkeys(notes)))
     return evolve(accused, rules=needed(system, accused, readings)[:MAX_RULES])

@@ -243,3 +243,12 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
         ["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False, env={**os.environ}
     )
     assert (ended.stderr, ended.stdout.count("\n")) == ("", 1)
+
+
+def test_a_file_where_one_works_takes_no_modules_place(tmp_path: Path) -> None:
+    """`python -m missionfsm` beside an adapter's queue.py uses Python's queue."""
+    (tmp_path / "queue.py").write_text("raise SystemExit('not this one')\n")
+    (tmp_path / "attrs.py").write_text("raise SystemExit('nor this one')\n")
+    command = [sys.executable, "-m", "missionfsm", "conform", "isaac.robot", "--examples", "1", "--seed", "1"]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert ran.stdout.startswith("conforms"), ran.stdout + ran.stderr

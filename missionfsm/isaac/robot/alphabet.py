@@ -15,7 +15,7 @@ _CONFIGS = ('{"goals.path":{"FollowPath":{"tolerance":0.25}}}', "{}", '{"a":{"b"
 _UNUSABLE = ("no json", "[1,2]", "{", "17", '{"a":1}', "")
 _WORLDS: tuple[JSON, ...] = (
     {"name": "carter-01"},
-    {"name": "fork 2", "channel": "lift", "statusChannel": "lift-status", "nameChannel": "names"},
+    {"name": "Fork 2", "channel": "lift", "statusChannel": "lift-status", "nameChannel": "names"},
 )
 
 

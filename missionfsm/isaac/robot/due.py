@@ -120,7 +120,9 @@ def _names_in(due: Statuses) -> Iterator[int]:
 
 
 def _waits(due: Status) -> Waiting:
-    return Waiting(due.status, due.about is not None, due.offered)
+    preempted = due.when == readings.AI_31_SENT["preempted"]
+    unread = preempted or due.when == readings.AI_31_SENT["unusable"]
+    return Waiting(due.status, due.about is not None, due.offered, preempted=preempted, unread=unread)
 
 
 def _unconnected(

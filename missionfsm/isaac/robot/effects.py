@@ -183,14 +183,31 @@ _STOPS = {
 def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
+    ends = tuple(_stops_unread(here, trigger, status))
     if here.running:
         final = (due.Status(status, here.about, readings.AI_31_SENT["end"], offered=True),)
-        ends = tuple(due.concluded(here, here.moved(trigger), None, final, (due.FINAL[status],)))
+        ends += tuple(due.concluded(here, here.moved(trigger), None, final, (due.FINAL[status],)))
     elif here.connected:
-        ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
-    else:
-        return ()
+        ends += (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
     return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
+
+
+def _stops_unread(here: Codelet, trigger: str, status: str) -> Iterator[Step]:
+    """The tree stops that runs because the lines that came meanwhile have not been read (AI-31.read b)."""
+    unread = next((at for at, one in enumerate(here.waiting) if one.unread), None)
+    if unread is None:
+        return
+    before, first, behind = here.waiting[:unread], here.waiting[unread], here.waiting[unread + 1 :]
+    because, assumes = (due.FINAL[status].id,), (readings.AI_31_READ["b"],)
+    if first.preempted:
+        ended = evolve(first, status=status, preempted=False, unread=False)
+        yield Step(evolve(here, waiting=(*before, ended, *behind)), rules=because, assumes=assumes)
+    elif here.running:
+        ended = Waiting(status, here.named, offered=True)
+        at = sum(one.named for one in before)
+        names = (*here.waits[:at], *here.mission, *here.waits[at:])
+        after = evolve(here.moved(trigger), waiting=(*before, ended, first, *behind))
+        yield Step(after, names=names, rules=because, assumes=assumes)
 
 
 def ticks(here: Codelet) -> tuple[Step, ...]:

@@ -81,6 +81,12 @@ AI_31_SENT = {
 }
 """By the status that is due."""
 
+AI_31_READ = Ambiguity(
+    "AI-31.read",
+    "When is a message read?",
+    {"a": "as it arrives", "b": "on the codelet's own tick, once it was reported that the tree had stopped before"},
+    rule="a-new-mission-preempts",
+)
 AI_31_IDLE = Ambiguity(
     "AI-31.idle",
     "What is it where the behavior tree stops while no mission runs?",

@@ -25,7 +25,7 @@ EVENTS: dict[str, JSON] = {
     "fails": {"event": "behaviorFailed"},
     "tick": {"event": "advance", "seconds": 0.05},
     "1s": {"event": "advance", "seconds": 1},
-    "5s": {"event": "advance", "seconds": 5},
+    "40s": {"event": "advance", "seconds": 40},
     "90s": {"event": "advance", "seconds": 90},
     "drops": {"event": "disconnect"},
     "connects": {"event": "connect"},

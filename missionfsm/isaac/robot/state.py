@@ -9,7 +9,7 @@ from missionfsm.kernel.chart import Chart
 
 SYSTEM_NAME = "isaac.robot"
 
-RUNNING_BOUND = 5 * MICROSECONDS
+RUNNING_BOUND = 40 * MICROSECONDS
 """Time within which RUNNING has to be reported at least once, in microseconds. The tester's choice (AI-31)."""
 
 NAME_BOUND = 90 * MICROSECONDS
@@ -72,12 +72,16 @@ class Waiting:
         named: whether its mission has an identifier.
         offered: whether RUNNING of that mission may come just before it.
         kept: whether it is told once the connection is there again, whatever becomes of others (AI-15.mission c).
+        preempted: whether it is of a mission that the next one ended.
+        unread: whether it is due for a line that may not have been read yet (AI-31.read b).
     """
 
     status: str
     named: bool
     offered: bool
     kept: bool = False
+    preempted: bool = False
+    unread: bool = False
 
 
 @frozen(cache_hash=True)

@@ -196,7 +196,7 @@ class Late:
         answer = self._subject.exchange(method, params)
         held, self._held = self._held, ()
         if method != "settle" and self._chance.random() < 0.5:
-            held, self._held = (), answer.after
+            self._held = answer.after
             answer = evolve(answer, after=())
         return evolve(answer, before=(*held, *answer.before))
 
@@ -208,6 +208,24 @@ def test_what_only_comes_later_does_not_come_and_go(seed: int) -> None:
     bare = next(one for one in mutants(robot) if one.kind == "sends half a line")
     verdict = conform(robot, Late(bare.subject(robot), seed), plan=Plan(1, 1, 1), seed=1)
     assert (verdict.outcome, verdict.notes) == (Outcome.VIOLATES, ())
+
+
+@pytest.mark.parametrize(
+    ("rule", "kind"),
+    [
+        ("status/running-acknowledges", "is not heard"),
+        ("status/a-final-status-ends-the-mission", "counts failure as success"),
+    ],
+)
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_meant_may_come_late(seed: int, rule: str, kind: str) -> None:
+    """What is said of a mission that is on its way is said once it is there: the violation does not come and go."""
+    server = system("isaac.server")
+    (mutant,) = (one for one in mutants(server) if (one.rule, one.kind) == (f"isaac.server/{rule}", kind))
+    verdict = conform(server, Late(mutant.subject(server), seed), plan=Plan(3, 3, 30), seed=1)
+    assert (verdict.outcome, verdict.notes) == (Outcome.VIOLATES, ())
+    assert verdict.violation is not None
+    assert len(verdict.violation.history) < 14
 
 
 @pytest.mark.slow

@@ -6,8 +6,9 @@ What is done is a list of `Action`s. What the protocol does not allow at the mom
 from __future__ import annotations
 
 import copy
+from collections import Counter
 from collections.abc import Callable, Iterable
-from typing import Self, TypeVar
+from typing import Any, Self, TypeVar
 
 from attrs import define, field
 
@@ -29,7 +30,7 @@ from missionfsm.oracle.transcript import STREAM_KEYS, Head
 from missionfsm.tools.check.judge import Judge
 from missionfsm.tools.conform.actions import SETTLE, WRONG_NAME, Action, NameRef, filled
 from missionfsm.tools.conform.handshake import AdapterInfo
-from missionfsm.tools.placeholders import fill, is_template
+from missionfsm.tools.placeholders import fill, is_template, kind_of, slots
 
 MAX_WAITS = 10
 """How many times in a row something that is missing is waited for while something else comes."""
@@ -46,6 +47,7 @@ class Partner:
         info: what it said of itself.
         absent: the calls that turned out not to be there; they are not asked again.
         names: the names that it has given so far, if they survive a reset; None if a reset forgets them.
+        early: whether it was seen to send what a request causes before it answers that.
     """
 
     system: System
@@ -53,6 +55,7 @@ class Partner:
     info: AdapterInfo
     absent: dict[str, None] = field(factory=dict)
     names: dict[Name, None] | None = None
+    early: bool = False
 
     def remember(self, names: Iterable[Name]) -> None:
         """Note names that survive a reset."""
@@ -80,7 +83,10 @@ class Conversation:
         self.heard: list[JSON] = []
         self.actions: list[Action] = []
         self.given: dict[NameRef, object] = {}
-        self._acting = self._learnt = 0
+        self._acting = self._before = 0
+        self._learnt: Counter[int] = Counter()
+        self._late: tuple[Notification, ...] = ()
+        self._is_quiet = True
         self._asked = ""
         self.succeeded = 0
         # What was still under way before a reset belongs to nobody.
@@ -108,6 +114,7 @@ class Conversation:
         other = copy.copy(self)
         other.judge = self._judged(automaton)
         other.heard, other.actions, other.given = list(self.heard), list(self.actions), dict(self.given)
+        other._learnt = Counter(self._learnt)  # noqa: SLF001 - it is one of these
         for line in self.heard:
             if not other.judge.feed(line):
                 break
@@ -126,17 +133,20 @@ class Conversation:
         """Do something, if it may be done; False once the conversation cannot be explained any more."""
         if not self.may(action):
             return self.right
+        self._let_names_come(action)
+        if not self.right:
+            return False
         self.actions.append(action)
         name = self.given.get(action.name, WRONG_NAME) if isinstance(action.name, NameRef) else action.name
         params = action.params if action.name is None else filled(action.params, name)
         if is_template(params):
-            picked = {slot: self.given[given] for slot, given in action.picks if given in self.given}
+            picked = self._picked(action)
             params = fill(params, picked, self.system.naming, action.serial, self.given.values())
         codec = self.system.codec
         if self.partner.info.binary and action.method in codec.methods and not codec.carries(action.method, params):
             self.actions.pop()  # a name of another kind may have come into it
             return self.right
-        self._acting, self._learnt = action.serial, 0
+        self._before, self._acting = self._acting, action.serial
         if action.method == SETTLE:
             self._settle()
         elif action.method == "drive":
@@ -145,10 +155,32 @@ class Conversation:
             self._call(action, params)
         return self.right
 
+    def _let_names_come(self, action: Action) -> None:
+        """What an action is about may have been sent and be on its way: it is waited for, or nobody could mean it."""
+        meant = (action.name, *(given for _, given in action.picks))
+        if self.actions and any(isinstance(one, NameRef) and one not in self.given for one in meant):
+            exchange = self._result(SETTLE, {})
+            self._notifications((*exchange.earlier, *exchange.before, *exchange.after))
+
+    def _picked(self, action: Action) -> dict[int, Any]:
+        """The names that an action picks.
+
+        One that nothing gives any more, since what gave it was left out or did something else this time, is the one of
+        its kind that was given last before: the same is done to another.
+        """
+        kinds = slots(action.params)
+        picked: dict[int, Any] = {}
+        for slot, given in action.picks:
+            like = (one for one, name in self.given.items() if kind_of(name) == kinds[slot] and one.by <= given.by)
+            meant = given if given in self.given else max(like, key=lambda one: (one.by, one.position), default=None)
+            if meant is not None:
+                picked[slot] = self.given[meant]
+        return picked
+
     def _call(self, action: Action, params: JSON) -> None:
         number, method = action.serial, action.method
         try:
-            exchange = self.partner.subject.exchange(method, params)
+            exchange = self._exchange(method, params)
         except MissingMethodError:
             if self.partner.info.methods is not None or method not in self.system.codec.methods:
                 raise
@@ -172,12 +204,14 @@ class Conversation:
         if answer.code == OK and method not in self.system.codec.streams:
             self.succeeded += 1
 
-    def _bind(self, names: tuple[Name, ...]) -> None:
+    def _bind(self, names: tuple[Name, ...], *, late: bool = False) -> None:
+        """Names were given by what is being done, or by what was done before that and came late."""
         self.partner.remember(names)
+        by = self._before if late else self._acting
         for name in names:
             if name not in self.given.values():
-                self.given[NameRef(self._acting, self._learnt)] = name
-            self._learnt += 1
+                self.given[NameRef(by, self._learnt[by])] = name
+            self._learnt[by] += 1
 
     def _drive(self, event: JSON) -> None:
         exchange = self._result("drive", event)
@@ -233,8 +267,20 @@ class Conversation:
                 return
             self._notifications(came)
 
-    def _result(self, method: str, params: JSON) -> Exchange:
+    def _exchange(self, method: str, params: JSON) -> Exchange:
+        """Ask for something, and tell what comes with it from what is late.
+
+        What comes before an answer was caused before that was asked for, but of an adapter that causes first and then
+        answers: that is one that has something to say when all had settled.
+        """
         exchange = self.partner.subject.exchange(method, params)
+        self.partner.early |= self._is_quiet and bool(exchange.before)
+        self._late = exchange.earlier if self.partner.early else (*exchange.earlier, *exchange.before)
+        self._is_quiet = method == SETTLE
+        return exchange
+
+    def _result(self, method: str, params: JSON) -> Exchange:
+        exchange = self._exchange(method, params)
         if exchange.error is not None:
             message = f"the adapter answered {method} with {exchange.error.get('status')}"
             raise SubjectError(message)
@@ -253,9 +299,10 @@ class Conversation:
             else:
                 line = {"connection": one.params.get("connection", 1), "line": one.params["line"]}
                 self._receive(line)
-                self._bind((("connection", line["connection"]),))
+                late = any(one is came for came in self._late)
+                self._bind((("connection", line["connection"]),), late=late)
                 for names, _, _ in _read(self.system.codec.split_message, line["line"]):
-                    self._bind(names)
+                    self._bind(names, late=late)
 
     def _append(self, line: JSON) -> None:
         self.heard.append(line)

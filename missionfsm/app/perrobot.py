@@ -88,7 +88,7 @@ class Judges:
         self.system = judged_system(first.system, strict=first.strict, anywhere=first.anywhere, others=first.others)
         self.addresses = Addresses(by_params=self.system.codec.robot_in_params)
         self.addresses.whose(line)
-        readings = self.system.chosen(asked.profile, asked.readings)
+        self._readings = readings = self.system.chosen(asked.profile, asked.readings)
         decided = assumed(self.system.spec, readings, no_flagged=asked.no_flagged)
         self._only, self._settled_after = asked.only, asked.settled_after
         self._waits = not asked.eager
@@ -109,7 +109,10 @@ class Judges:
         self._waiting: dict[Judge, int | None] = {}
 
     def _new(self, robot: str | None) -> Judge:
-        calls = (self._lost or {}).get(robot, frozenset())
+        return self.another(robot, (self._lost or {}).get(robot, frozenset()))
+
+    def another(self, robot: str | None, calls: frozenset[int]) -> Judge:
+        """A judge of a robot's lines that has read none, to which answers to these calls are known not to come."""
         automaton, keep = self._automaton, self._keep
         return Judge(
             self.system,
@@ -122,8 +125,23 @@ class Judges:
             apart=True,
             waits=self._waits,
             settled_after=self._settled_after,
-            early=None if self._early is None else self._early.get(robot, 0),
+            early=self._early_of(robot),
         )
+
+    def prompt(self, robot: str | None) -> Judge:
+        """A judge of a robot's lines that has read none, and explains each at once, however much that costs."""
+        return Judge(
+            self.system,
+            self._head,
+            readings=self._readings,
+            no_flagged=self._no_flagged,
+            fingerprint=fingerprint,
+            waits=False,
+            early=self._early_of(robot),
+        )
+
+    def _early_of(self, robot: str | None) -> int | None:
+        return None if self._early is None else self._early.get(robot, 0)
 
     @property
     def nodes(self) -> int:

@@ -6,7 +6,7 @@ import functools
 import io
 import itertools
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import IO, Any
 
 from attrs import evolve
@@ -26,6 +26,7 @@ from missionfsm.adapters.historyfile import (
 )
 from missionfsm.app.asked import Asked
 from missionfsm.app.conversations import verdicts_by_robot
+from missionfsm.app.likelier import FURTHER, LONGEST, with_likelier
 from missionfsm.app.perrobot import KEPT_NODES, Judges, Lost, UndecidedError, automaton_of
 from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.tools.check.judge import MAX_LINES
@@ -76,7 +77,8 @@ def check_file(
         (robot, verdict.implementation): verdict
         for robot, verdict in again(evolve(asked, eager=True, only=frozenset(doubtful)))
     }
-    return [(robot, _better(verdict, second.get((robot, verdict.implementation)))) for robot, verdict in found]
+    told = [(robot, _better(verdict, second.get((robot, verdict.implementation)))) for robot, verdict in found]
+    return [(robot, _with_likelier(path, asked, robot, verdict)) for robot, verdict in told]
 
 
 MOST_KEPT = 64_000_000
@@ -137,6 +139,33 @@ def _better(first: Verdict, second: Verdict | None) -> Verdict:
         return first
     later = second.violation is not None and second.violation.at > first.violation.at
     return second if second.conforms or later else first
+
+
+def _with_likelier(path: str, asked: Asked, robot: str | None, verdict: Verdict) -> Verdict:
+    """The verdict, where an answer is likelier to be wrong than the line that nothing explains: with that answer."""
+    violation = verdict.violation
+    if violation is None or violation.at > LONGEST or verdict.implementation or not is_plain_file(path):
+        return verdict
+    early = functools.cache(functools.partial(_early_answers, path))
+    with open_history(path) as source:
+        numbered = itertools.islice(lines(source, path), violation.at + FURTHER)
+        try:
+            (_, first), *others = numbered
+            judges = Judges(first, asked, {}, 0, early)
+            own = [(number, line) for number, (whose, line) in _addressed(judges, others) if whose == robot]
+        except UnreadableError:  # a line behind the violation is not of the format: nobody has looked at it before
+            return verdict
+    another, prompt = (functools.partial(one, robot) for one in (judges.another, judges.prompt))
+    likelier = with_likelier(judges.system, violation, own, another, prompt)
+    return evolve(verdict, violation=likelier)
+
+
+def _addressed(judges: Judges, numbered: Iterable[tuple[int, JSON]]) -> Iterator[tuple[int, tuple[str | None, JSON]]]:
+    """Whose each line is, up to another conversation."""
+    for number, line in numbered:
+        if isinstance(line, dict) and "missionfsm" in line:
+            break
+        yield number, judges.addresses.whose(line)
 
 
 def _read_twice(path: str, asked: Asked, tell: Callable[[str], None]) -> list[tuple[str | None, Verdict]]:

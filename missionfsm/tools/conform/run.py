@@ -225,8 +225,8 @@ class Run:
         return False
 
     def _may_give_up(self) -> bool:
-        """Whether a conversation that cannot be decided is left as it is: of a robot that moves by itself a few are."""
-        return self.narrowing.unwatched and self.ledger.undecided < max(FEW, self.ledger.examples // ONE_IN)
+        """Whether a conversation that cannot be decided is left as it is: a few are."""
+        return self.ledger.undecided < max(FEW, self.ledger.examples // ONE_IN)
 
     def knows(self, conversation: Conversation) -> bool:
         """Whether what is wrong with a conversation is expected."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from missionfsm.bear.mission.edits import ADDITIONS, Edit, Op
+from missionfsm.bear.mission.edits import ADDITIONS, LISTING_ANEW, Edit, Op
 from missionfsm.bear.mission.effects import outcomes
 from missionfsm.bear.mission.events import Event, apply_event, by_itself, due
 from missionfsm.bear.mission.inputs import Call, Request, Target
@@ -174,10 +174,10 @@ class Shortcut:
         ops: list[tuple[Op, tuple[int, ...]]] = []
         added = 0
         for op, what in edit:
+            fresh = fresh and op not in LISTING_ANEW
             if op in ADDITIONS:
                 ops.append((op, self._numbers(what)))
                 added += len(what)
-                fresh = False
             elif op is Op.END:
                 ops.append((op, self._numbers_ended((what,))))
                 active = None

@@ -54,6 +54,9 @@ _REARRANGED: Mapping[Op, Callable[[Listed, Any], Listed]] = {
 ADDITIONS = (Op.ADD, Op.PUT_FIRST, Op.OVERTAKE)
 """The operations that add missions."""
 
+LISTING_ANEW = (*ADDITIONS, Op.CLEAR)
+"""The operations after which a robot is not fresh any more."""
+
 
 def apply(edit: Edit, robot: Robot, names: tuple[int, ...] | None = None) -> Robot:
     """The robot after an edit; the same object if the edit is empty.
@@ -74,8 +77,8 @@ def apply(edit: Edit, robot: Robot, names: tuple[int, ...] | None = None) -> Rob
             settings[op] = what
             continue
         listed = rearranged(listed, what)
-        if op in ADDITIONS:
-            fresh, overtakes = False, overtakes or op is Op.OVERTAKE
+        fresh = fresh and op not in LISTING_ANEW
+        overtakes = overtakes or op is Op.OVERTAKE
     done, active, pending = listed
     halted, fault, world = robot.halted, robot.fault, robot.world
     if settings:

@@ -20,6 +20,7 @@ from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assume
 from missionfsm.bear.mission.ranking import decisions
 from missionfsm.bear.mission.readings.clearing import AM_34
 from missionfsm.bear.mission.readings.goals import AM_45_NONE, AM_45_WHEN
+from missionfsm.bear.mission.readings.messages import AM_35, AM_36, AM_36_CLEARED
 from missionfsm.bear.mission.readings.queue import AM_09, AM_09_SKIP, AM_10, AM_10_START
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.skipping import AM_17_LAST, AM_17_PATROL, AM_18, AM_19, AM_19_RETURN
@@ -172,12 +173,16 @@ def failed_to_start(robot: Situation, mission: Mission) -> Iterator[Way]:
 
 
 def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
-    if not robot.queued:
+    if robot.fresh:
+        yield Outcome(OK, (), GONE, (AM_36["a", "c"],))
+        yield Outcome(OK, (), GONE, (AM_36["b"], AM_36_CLEARED["a"]))
+        yield Outcome(OK, ((Op.CLEAR, None),), GONE, (AM_36["b"], AM_36_CLEARED["d"], AM_35["a"]))
+    elif not robot.queued:
         yield Outcome(OK, ((Op.CLEAR, None),) if robot.ended else (), GONE)
-        return
-    which = AM_34[waiting(robot)]
-    yield Outcome(OK, ((Op.CLEAR, None),), GONE, (which["a"],))
-    yield Outcome(OK, ((Op.FORGET_ENDED, None),) if robot.ended else (), GONE, (which["b"],))
+    else:
+        which = AM_34[waiting(robot)]
+        yield Outcome(OK, ((Op.CLEAR, None),), GONE, (which["a"],))
+        yield Outcome(OK, ((Op.FORGET_ENDED, None),) if robot.ended else (), GONE, (which["b"],))
 
 
 # The active mission.

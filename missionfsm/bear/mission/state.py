@@ -191,7 +191,7 @@ class Robot:
         active: the mission that is running or paused.
         pending: missions that wait.
         halted: the waiting missions are not going to start by themselves (AM-09, AM-10 read as b).
-        fresh: no mission was ever assigned.
+        fresh: no mission was ever assigned, nor what stands for none cleared (AM-36.cleared d).
         fault: an armed fault.
         assigned: how many of `turns` were assigned before each, where that is not their order (AM-07, AM-37); () where
             it is.

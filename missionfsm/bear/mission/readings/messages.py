@@ -41,6 +41,11 @@ AM_36 = Ambiguity(
     "What is the first message of a robot that never had a mission?",
     {"a": "no missions", "b": "one unnamed mission in STATE_DEFAULT", "c": "none, until there is a mission"},
 )
+AM_36_CLEARED = Ambiguity(
+    "AM-36.cleared",
+    "What becomes of the unnamed mission that stands for none when a robot that never had one is cleared?",
+    {"a": "it stays", "d": "it is cleared as well"},
+)
 AM_47_SKIP = Ambiguity(
     "AM-47.skip",
     "Is every change a message?",

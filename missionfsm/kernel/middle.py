@@ -77,7 +77,7 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
     if middle is None or not (anywhere or others):
         return spec
     if middle.glimpses is None:
-        return evolve(spec, anywhere=anywhere)
+        return evolve(spec, anywhere=anywhere, foresees=None)
 
     def again(other: Spec) -> Spec:
         return in_the_middle(other, anywhere=anywhere, others=others)

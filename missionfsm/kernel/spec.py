@@ -118,6 +118,7 @@ class Drive:
         later: for a drive that only lets time pass: event → the words before what comes next ("2 s later").
         unwatched: how it may happen unseen in logs of somebody who does not command it; None: only as `by_itself` says.
         undriven: for a drive that nobody commands: world → the same world, in which it may happen unseen at any time.
+        heeded: event → what `Spec.foresees` is told of it beside the operations; None: nothing.
         elapses: for a drive that lets time pass: (seconds between two lines of a log, None if the log does not say;
             after how many something is late, None if nobody knows) → the event that this much time passed although
             nobody let it pass.
@@ -136,6 +137,7 @@ class Drive:
     later: Callable[[Incident], str] | None = None
     unwatched: Unwatched | None = None
     undriven: Callable[[World], World] | None = None
+    heeded: Callable[[Incident], str] | None = None
     elapses: Callable[[float | None, float | None], Incident] | None = None
 
 
@@ -266,10 +268,11 @@ class Spec:
         decided: assumptions → the same system without outcomes that contradict them, which is quicker; None if it is
             not. It stands for `outcomes`: whoever replaces those drops it.
         rebuilt: operations → the same system with those instead of its own, to see what a broken rule does.
-        foresees: (state, its names, content, names of the content, operations) → whether the state may come to be shown
-            as the content, by calls of those operations and any other steps; None if nothing is known of that. Names
-            are numbers; a number below -1 was not seen yet and may be any name. It has to be true wherever that is
-            possible: it only saves a search some work.
+        foresees: (state, its names, content, names of the content, operations, topic) → whether the state may come to
+            be shown as the content on the topic (None: any), by calls of those operations and any other steps; None if
+            nothing is known of that. Among the operations stands what `Drive.heeded` says of the drives. Names are
+            numbers; a number below -1 was not seen yet and may be any name. It has to be true wherever that is
+            possible: it only saves a search some work. Whoever changes other steps drops it.
         succeeds: (state, its names, request, its names, names of the answer) → whether a state may follow in which the
             request is answered OK with those names; None if nothing is known of that. As for `foresees`.
         abstraction: how a search and an exploration look at its states.
@@ -324,7 +327,7 @@ class Spec:
     recalls: bool = False
     decided: Callable[[int], Spec] | None = None
     rebuilt: Callable[[Mapping[str, Operation]], Spec] | None = None
-    foresees: Callable[[State, tuple[int, ...], Content, tuple[int, ...], frozenset[str]], bool] | None = None
+    foresees: Callable[[State, tuple[int, ...], Content, tuple[int, ...], frozenset[str], Topic], bool] | None = None
     succeeds: Callable[[State, tuple[int, ...], Request, tuple[int, ...], tuple[int, ...]], bool] | None = None
     abstraction: Abstraction = field(factory=Abstraction)
     parting: Parting | None = None
@@ -371,6 +374,7 @@ class Spec:
         silent_for, closing = self.silent_for, self.closing
         return evolve(
             self,
+            foresees=None,
             drives=[driven(one) for one in self.drives.values()],
             urgent=lambda state: change(state, self.urgent(state)),
             spontaneous=lambda state: change(state, self.spontaneous(state)),

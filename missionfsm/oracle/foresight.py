@@ -1,20 +1,23 @@
 """What a later message tells of the states before it: whether one may come to be shown so, by the calls that are known.
 
 Which calls may take effect before the message is known of a recording: those that wait already, and those that are sent
-in between. `Spec.foresees` says what they can make of a state.
+in between; and so is what is driven in between. `Spec.foresees` says what they can make of a state.
 """
 
 from __future__ import annotations
 
 import bisect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 
 from missionfsm.kernel.spec import Spec
 from missionfsm.oracle.alignment import Message
 from missionfsm.oracle.explanation import Explanation, Names
 
 Calls = int
-"""Operations of calls, as bits."""
+"""Operations of calls, and what is heeded of drives, as bits."""
+
+Asked = tuple[int, Calls, Hashable]
+"""The identity of a message, what happens before it, and the topic that it comes on."""
 
 
 class Foresight:
@@ -22,7 +25,7 @@ class Foresight:
 
     Args:
         spec: the system.
-        sent: of each call that is sent, its position and its operation.
+        sent: of each call that is sent, its position and its operation, and what is heeded of drives.
         make_room: is told of each explanation of which something is going to be remembered.
     """
 
@@ -34,8 +37,8 @@ class Foresight:
         self._bits: dict[str, Calls] = {}
         self._sent = [self._bit(operation) for _, operation in sent]
         self._between: dict[tuple[int, int], Calls] = {}
-        self._foreseen: dict[tuple[object, Names], dict[tuple[int, Calls], bool]] = {}
-        self._here: tuple[Explanation | None, dict[tuple[int, Calls], bool], Calls, frozenset[int]]
+        self._foreseen: dict[tuple[object, Names], dict[Asked, bool]] = {}
+        self._here: tuple[Explanation | None, dict[Asked, bool], Calls, frozenset[int]]
         self._here = None, {}, 0, frozenset()
 
     def forget(self) -> None:
@@ -43,7 +46,7 @@ class Foresight:
         self._foreseen.clear()
         self._here = None, {}, 0, frozenset()
 
-    def may_show(self, explanation: Explanation, message: Message, since: int, until: int) -> bool:
+    def may_show(self, explanation: Explanation, message: Message, since: int, until: int, topic: Hashable) -> bool:
         """Whether a state may come to be shown so.
 
         Args:
@@ -51,6 +54,7 @@ class Foresight:
             message: what shows it.
             since: the position of the next event.
             until: that of the event before which the state has to be shown so.
+            topic: where it is shown; None: anywhere.
         """
         if self._here[0] is not explanation:
             self._look_from(explanation)
@@ -61,12 +65,12 @@ class Foresight:
         foresees = self._spec.foresees
         if foresees is None:
             return True
-        key = id(message), waiting | self._sent_between(since, until)
+        key = id(message), waiting | self._sent_between(since, until), topic
         found = known.get(key)
         if found is None:
             self._make_room(explanation)
             operations = frozenset(operation for operation, bit in self._bits.items() if key[1] & bit)
-            found = known[key] = foresees(explanation.state, explanation.names, content, names, operations)
+            found = known[key] = foresees(explanation.state, explanation.names, content, names, operations, topic)
         return found
 
     def _look_from(self, explanation: Explanation) -> None:
@@ -87,7 +91,7 @@ class Foresight:
         return waiting
 
     def _sent_between(self, since: int, until: int) -> Calls:
-        """The operations of the calls that are sent between two positions."""
+        """The operations of the calls that are sent between two positions, and what is driven there."""
         key = bisect.bisect_left(self._sent_at, since), bisect.bisect_left(self._sent_at, until)
         found = self._between.get(key)
         if found is None:

@@ -14,7 +14,7 @@ from collections.abc import Hashable, Iterable, Sequence
 
 from attrs import define, field
 
-from missionfsm.kernel.history import Called
+from missionfsm.kernel.history import Called, Driven
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import OK
 from missionfsm.kernel.spec import Delivery, Spec
@@ -26,6 +26,7 @@ from missionfsm.oracle.foresight import Foresight
 from missionfsm.oracle.foretold import foretold
 from missionfsm.oracle.memory import MEMORY, STEPS, Room, explanation_bytes
 from missionfsm.oracle.shelf import Depot
+from missionfsm.oracle.symbols import Symbol
 
 NEXT_CALLS = 12
 """How many of the calls that are sent next and succeed are looked at."""
@@ -118,9 +119,7 @@ class Lookahead(Coming):
             if call in self.answers and self.answers[call][0].code == OK
         ]
         self._sent = [at for at, *_ in self._successes]
-        asked = [(at, what[0]) for at, (kind, *what) in enumerate(excerpt.symbols[: horizon.end]) if kind is Called]
-        sent = [(at, spec.request_operation(request)) for at, request in asked]
-        self._foresight = Foresight(spec, sent, self._make_room)
+        self._foresight = Foresight(spec, _heeded(spec, excerpt.symbols[: horizon.end]), self._make_room)
 
     def consult(self, assumed: int, assumptions: Iterable[Assumption]) -> None:
         """Note what more is assumed of an explanation; what becomes of it depends on what is contradictory."""
@@ -340,7 +339,7 @@ class Lookahead(Coming):
             self._make_room(explanation)
             found = stretch.led[key] = self._leading(channel, stretch, delivery, skips=skips, repeats=repeats)
         narrowed, shows = found
-        return narrowed if shows is None or self._foresees(explanation, *shows) else None
+        return narrowed if shows is None or self._foresees(explanation, *shows, channel.topic) else None
 
     def _has_to_show(self, channel: Channel) -> bool:
         """Whether a channel that has shown nothing yet has to, before everything settles; what it owes is not lost."""
@@ -446,7 +445,18 @@ class Lookahead(Coming):
                 stretch.led.clear()
                 stretch.uncertain.clear()
 
-    def _foresees(self, explanation: Explanation, message: Message, position: int) -> bool:
+    def _foresees(self, explanation: Explanation, message: Message, position: int, topic: Hashable = None) -> bool:
         """Whether the state may come to be shown so before an event."""
         whole = self._depot.whole(explanation) if self._depot else explanation
-        return self._foresight.may_show(whole, message, self.at, position)
+        return self._foresight.may_show(whole, message, self.at, position, topic)
+
+
+def _heeded(spec: Spec, symbols: Sequence[Symbol]) -> list[tuple[int, str]]:
+    """What `Spec.foresees` is told of calls and drives, each with its position."""
+    found = []
+    for at, (kind, *what) in enumerate(symbols):
+        if kind is Called:
+            found.append((at, spec.request_operation(what[0])))
+        elif kind is Driven and (heeded := spec.drives[what[0].name].heeded):
+            found.append((at, heeded(what[0])))
+    return found

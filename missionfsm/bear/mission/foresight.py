@@ -11,7 +11,7 @@ Whatever happens to a robot:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 from attrs import frozen
 
@@ -30,7 +30,12 @@ _CHARGE = Mission(Kind.CHARGE)
 
 
 def foresees(
-    robot: Robot, names: tuple[int, ...], content: Seen | Malformed, shown: tuple[int, ...], calls: frozenset[str]
+    robot: Robot,
+    names: tuple[int, ...],
+    content: Seen | Malformed,
+    shown: tuple[int, ...],
+    calls: frozenset[str],
+    _topic: Hashable = None,
 ) -> bool:
     """Whether the robot may come to be shown as the content, by calls of some operations; see `Spec.foresees`."""
     if isinstance(content, Malformed) or not all(content.named):

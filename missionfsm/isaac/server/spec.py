@@ -10,6 +10,7 @@ from attrs import evolve
 from missionfsm.isaac.server import effects, rules
 from missionfsm.isaac.server.abstraction import canonical, explore_size, idle_search_key, search_key, search_size
 from missionfsm.isaac.server.describe import describe
+from missionfsm.isaac.server.foresight import foresees, heeded
 from missionfsm.isaac.server.properties import INVARIANTS, POSSIBILITIES
 from missionfsm.isaac.server.readings import AI_39, AMBIGUITIES
 from missionfsm.isaac.server.rules import OPERATIONS, RULES
@@ -52,14 +53,15 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         operations=operations,
         outcomes=functools.partial(effects.outcomes, operations),
         drives=(
-            Drive("connect", effects.connect),
-            Drive("line", effects.line, impossible=(rules.NAMED.id,)),
+            Drive("connect", effects.connect, heeded=heeded),
+            Drive("line", effects.line, impossible=(rules.NAMED.id,), heeded=heeded),
             Drive(
                 "disconnect",
                 effects.disconnect,
                 ends=True,
                 impossible=(rules.DROPPED.id,),
                 undriven=lambda world: evolve(world, unsteady=True),
+                heeded=heeded,
             ),
             Drive("advance", effects.advance, later=later, elapses=elapses),
         ),
@@ -70,6 +72,7 @@ def specification(operations: Mapping[str, Operation] = OPERATIONS, decided: int
         matches=matches,
         delivery=lambda _: _DELIVERY,
         closing=effects.closing,
+        foresees=foresees,
         unopened=(rules.UNNAMED.id,),
         unowed=unowed,
         sequence=sequence,

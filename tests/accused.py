@@ -98,7 +98,8 @@ def _explains(system: System, violation: Violation, rule: Rule) -> bool:
     """Whether all lines are explained where each step that a rule justifies may be one that breaks it."""
     breaks = [one.mutate_step for one in mutants(system) if one.rule == rule.id]
     breaks = [one for one in breaks if one is not unchanged_step]
-    if not breaks or rule.id in [one.rule for one in system.message_mutations]:
+    begins = [one.id for each in system.spec.operations.values() if each.streaming for one in each.promises]
+    if not breaks or rule.id in [*begins, *(one.rule for one in system.message_mutations)]:
         return True  # it is about messages
     spec = system.spec
 

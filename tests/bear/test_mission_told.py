@@ -8,6 +8,7 @@ from missionfsm.app.asked import judged_system
 from missionfsm.kernel.codec import JSON
 from missionfsm.oracle.transcript import head
 from missionfsm.tools.check.judge import check
+from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Violation
 
 DRIVES = ["goalReached", "missionSucceeded", "missionFailed", "world", "fault"]
@@ -136,6 +137,15 @@ def test_missions_of_a_batch_the_wrong_way_round() -> None:
     assert rules(found)[0] == "SubscribeMissionStatus/the-goals-are-those-requested"
 
 
+def test_missions_in_another_order() -> None:
+    """Where their states tell that they are turned round, as their ids do, it is the order that is wrong."""
+    begun = Log(drives=DRIVES).creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    begun.asks("AppendMission", mission("delivery", "table-3"), missionId="m2")
+    found = begun.shows(("m2", "delivery", "DEFAULT", ("table-3",)), ("m1", "delivery", "RUNNING", A), index=1).told
+    assert found.notes[0] == "it has m2, m1 in another order than m1, m2"
+    assert rules(found)[0] == "SubscribeMissionStatus/all-missions-are-listed"
+
+
 def test_a_snapshot_that_leaves_missions_out() -> None:
     """Of what could be shown the list is nearest that has the mission that is shown, whatever may have happened."""
     begun = Log().creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
@@ -250,3 +260,15 @@ def test_what_a_refused_batch_has_left_behind() -> None:
     assert found.notes[1].startswith("the last call was refused, which changes nothing: AppendMissionBatch(")
     named = ["SubscribeMissionStatus/all-missions-are-listed", "SubscribeMissionStatus/updates-follow-the-state"]
     assert rules(found) == named
+
+
+def test_a_stream_that_begins_with_what_was_before() -> None:
+    """It breaks the sentence about first messages as well, which no step would explain."""
+    found = Log(drives=DRIVES, transport="strict").creates("m1", "delivery", *A).shows(("m1", "delivery", "RUNNING", A))
+    found.asks("SubscribeMissionStatus", stream=2)
+    metadata = {"timestamp": "2026-01-01T00:01:00Z", "sequenceNumber": 1}
+    states = {"missions": [], "currentMissionIndex": -1}
+    found.lines.append({"stream": 2, "message": {"metadata": metadata, "missionStates": states}})
+    told = with_suspects(judged_system("bear.mission", strict=True), found.told)
+    named = ["SubscribeMissionStatus/all-missions-are-listed", "SubscribeMissionStatus/the-latest-state-comes-first"]
+    assert rules(told)[:2] == named

@@ -60,6 +60,14 @@ def test_an_own_robot_at_somebody_elses_location_is_asked_for_and_not_shown() ->
     assert judge([call, {"return": 1, "error": {"status": "PERMISSION_DENIED"}}], world).right
 
 
+def test_a_robot_that_is_elsewhere_is_told_from_those_that_are_not_shown() -> None:
+    """What is said of it is where it is, not that somebody else's robot could have been shown instead."""
+    lines = [*opened(1, BATTERY, at("L1")), battery_message(1, "r1", 1, FIRST), battery_message(1, "r2", 1, SECOND)]
+    found = judge([*lines, report("r3", "battery", battery(50)), battery_message(1, "r3", 5, battery(50))]).violation
+    assert found is not None
+    assert found.notes == ("robot 'r3' is at 'L2', and 'L1' was selected",)
+
+
 def test_somebody_elses_robot_at_an_own_location_may_be_shown_and_is_flagged() -> None:
     """AS-03: a location selects all robots that are there; x1 is, x2 is not. What is shown is what it reports."""
     lines = [

@@ -305,7 +305,8 @@ class Nearest:
             yield Problem(message.content.says, delivery.malformed or delivery.unowed, SHAPE)
             return
         if channel.last is None:
-            yield Problem(unbegun, own or delivery.unowed, UNBEGUN)
+            # What is wrong with it whatever is owed is likelier than that it is something else that is owed.
+            yield Problem(unbegun, own or delivery.unowed, VALUE if own else UNBEGUN)
             return
         yield from self._unchanged(here, channel, channel.last, message, own)
 
@@ -332,7 +333,9 @@ class Nearest:
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
             least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
-            return [Problem(ways.says, (ways.rule,), least + further)]
+            turned = self._turned(owed.names, message.given)
+            says, named = (turned, self.spec.delivery(channel.topic).named) if turned else (ways.says, ())
+            return [Problem(says, (*named, ways.rule), least + further)]
         found: list[list[Problem]] = []
         for way in ways:
             own = (channel.name, *(owed.names[ref] for ref, _ in way.names))
@@ -342,6 +345,12 @@ class Nearest:
             names = [evolve(one, rules=named) for one in self._names(here, own, seen, called)]
             found.append([*self._readings(here, way.assumes), *names])
         return min(found, key=lambda problems: sum(one.weight for one in problems))
+
+    def _turned(self, own: Names, seen: Names) -> str:
+        """That a message has the names that are due in another order, in words; empty where it has not."""
+        if own == seen or sorted(own) != sorted(seen) or min(seen, default=-1) < 0:
+            return ""
+        return f"it has {self._list(seen)} in another order than {self._list(own)}"
 
     def _undriven(self, here: Explanation, message: _Message) -> Iterator[Candidate]:
         """The message shows the effect of a drive that nobody commanded, or of a call that failed."""

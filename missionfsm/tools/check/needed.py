@@ -43,10 +43,16 @@ def ways_to_break(system: System, rule: str) -> Broken:
     """How steps may break a rule; empty for refusals, and for rules about messages that no step mutation breaks."""
     own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
     found = system.spec.rules_by_id.get(rule)
-    in_messages = any(one.rule == rule for one in system.message_mutations)
+    in_messages = any(one.rule == rule for one in system.message_mutations) or _begins_a_stream(system.spec, rule)
     if own or found is None or found.code or in_messages:
         return own
     return (rule, without_effect), (rule, unshown)
+
+
+def _begins_a_stream(spec: Spec, rule: str) -> bool:
+    """Whether a rule says how streams begin: what they show first, which no step does."""
+    streaming = (one for one in spec.operations.values() if one.streaming)
+    return any(one.id == rule for operation in streaming for one in operation.promises)
 
 
 def disregarding(spec: Spec, ways: Broken) -> Spec:

@@ -319,7 +319,7 @@ class Nearest:
         if wrong:
             last = described(self.spec, shown.view)
             rules = own or (*(rule for one in wrong for rule in one.rules), *delivery.unowed)
-            says = f"nothing changed since it showed {last}: " + "; ".join(one.says for one in wrong)
+            says = "; ".join(one.says for one in wrong) + f"; nothing changed since it showed {last}"
             yield Problem(says, rules, UNOWED + wrong[0].weight)
         elif delivery.repeats:
             yield from self._readings(here, (delivery.repeats,))

@@ -44,9 +44,9 @@ def ways_to_break(system: System, rule: str) -> Broken:
     own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
     found = system.spec.rules_by_id.get(rule)
     in_messages = any(one.rule == rule for one in system.message_mutations) or _begins_a_stream(system.spec, rule)
-    if own or found is None or found.code or in_messages:
+    if found is None or found.code or in_messages:
         return own
-    return (rule, without_effect), (rule, unshown)
+    return *own, (rule, without_effect), (rule, unshown)
 
 
 def _begins_a_stream(spec: Spec, rule: str) -> bool:

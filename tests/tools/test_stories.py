@@ -96,6 +96,19 @@ def test_no_story_is_longer_than_the_shortest() -> None:
     assert told == [1, 2, 2, 3]
 
 
+def test_a_story_asks_for_nothing_that_has_no_part_in_it() -> None:
+    """What is wrong with a request all the same is told by it without its other members."""
+    busy = "bear.mission/CreateMissionWorkflow/FAILED_PRECONDITION/another-mission-is-active"
+    workflow = {"serviWorkflow": {"hosting": {"goals": [{"destinationId": "table-1"}]}}}
+    run = Run.against(MISSION, answering("PERMISSION_DENIED", busy))
+    run.start({})
+    assert run.do("CreateMissionWorkflow", {"missionWorkflow": workflow})
+    assert not run.do("CreateMissionWorkflow", {"missionWorkflow": workflow, "urgency": "high"})
+    shorten(run)
+    assert run.found is not None
+    assert run.found.actions[-1].params == {"missionWorkflow": workflow}
+
+
 def _shortest(run: Run, found: Conversation, depth: int) -> Conversation | None:
     """The shortest that is found by having all conversations in the same world, whatever they are of."""
     alphabet = run.system.alphabet(found.world, run.bounds)

@@ -15,6 +15,9 @@ Attempt = Callable[[JSON, tuple[Action, ...]], Conversation]
 """Has a conversation anew: in a world, with some actions, until it cannot be explained any more."""
 
 MAX_ATTEMPTS = 2_000
+NO_CALLS = ("drive", "cancel", "settle")
+"""What has params that the protocol asks for whole."""
+
 FEW = 24
 """Of so many actions every run is tried to be left out."""
 
@@ -116,7 +119,15 @@ class _Shrinker:
         for prompt in self.simpler(self.best.world, action.method):
             if len(repr(prompt.params)) < said:
                 yield evolve(action, params=prompt.params)
+        if action.method not in NO_CALLS:
+            yield from (evolve(action, params=fewer) for fewer in _without_a_member(action.params))
         yield from (evolve(action, params=shorter) for shorter in _shorter(action.params))
+
+
+def _without_a_member(params: JSON) -> Iterator[JSON]:
+    """The same params with one member of the whole left out: who has a question to ask can do without some."""
+    if isinstance(params, dict) and len(params) > 1:
+        yield from ({name: one for name, one in params.items() if name != left_out} for left_out in params)
 
 
 def _shorter(params: JSON) -> Iterator[JSON]:

@@ -93,6 +93,17 @@ def test_what_names_no_robots_is_judged_in_one_piece(tmp_path: Path) -> None:
         assert many.pieces([str(path)], 2) == [(many.Piece(str(path)),)]
 
 
+@pytest.mark.usefixtures("small")
+def test_a_file_that_names_no_robot_is_not_read_for_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever shares files out among workers reads the lines of those alone that may speak of several robots."""
+    alone = str(written(tmp_path / "alone.jsonl", FIRST, *RIGHT))
+    several = str(written(tmp_path / "several.jsonl", *of_robots("ab")))
+    read: list[str] = []
+    monkeypatch.setattr(many, "robots", lambda path: read.append(path) or {})
+    many.pieces([alone, several], 2)
+    assert read == [several]
+
+
 def test_patterns_are_taken_where_no_file_has_that_name(command_line: CommandLine, tmp_path: Path) -> None:
     """`**` goes into folders; what several arguments name is judged once; a name with brackets is a name."""
     for name in ("a/1.jsonl", "a/b/2.jsonl", "c[1].jsonl"):

@@ -116,6 +116,13 @@ def robots(path: str) -> Mapping[str | None, int]:
     return {}
 
 
+def _names_robots(path: str) -> bool:
+    """Whether any line of a history may name a robot, by its bytes: few do, and reading all lines takes a while."""
+    with contextlib.suppress(UnreadableError), open_history(path) as source:
+        return any(b'"robot' in line for line in source)
+    return False
+
+
 def pieces(paths: Sequence[str], workers: int) -> list[tuple[Piece, ...]]:
     """For each file the pieces in which so many workers judge it.
 
@@ -132,7 +139,8 @@ def pieces(paths: Sequence[str], workers: int) -> list[tuple[Piece, ...]]:
 
 def _by_robot(path: str, workers: int) -> tuple[Piece, ...]:
     """A file in at most so many pieces, which have the robots with the most lines apart."""
-    found = [(many, place, robot) for place, (robot, many) in enumerate(robots(path).items())]
+    named = robots(path) if _names_robots(path) else {}
+    found = [(many, place, robot) for place, (robot, many) in enumerate(named.items())]
     shares: list[tuple[int, int, list[tuple[int, str | None]]]] = [(0, number, []) for number in range(workers)]
     for many, place, robot in sorted(found, key=lambda one: -one[0]):
         least, number, whose = heapq.heappop(shares)

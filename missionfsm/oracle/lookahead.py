@@ -53,12 +53,16 @@ class _Way:
 
 @define(eq=False, slots=True)
 class _Resting:
-    """A channel of which nothing new is known up to some moment, whatever the state is.
+    """A channel of which nothing new is known up to some moment, as long as the state is the same.
+
+    Which calls may take effect before a message becomes fewer on the way; that they do is looked at once the state has
+    changed.
 
     Attributes:
         since, until: from which position on, and up to which.
         delivery: how its messages travel, where that matters.
         ways: whether it may pass over what it owes, and show again what it has shown.
+        state, names: those of the explanation, where it depends on these what is known; None for a state otherwise.
     """
 
     channel: Channel
@@ -66,6 +70,8 @@ class _Resting:
     until: int
     delivery: Delivery | None
     ways: tuple[bool, bool]
+    state: State | None
+    names: Names
 
 
 class Lookahead(Coming):
@@ -183,7 +189,7 @@ class Lookahead(Coming):
         bound = False
         for at in range(len(explanation.channels)):
             while (channel := explanation.channels[at]).owed and channel.name > GONE:
-                if self._rests(channel, explanation.assumed):
+                if self._rests(channel, explanation):
                     break
                 uncertain = self._stretch(channel).uncertain
                 if channel in uncertain:
@@ -229,7 +235,7 @@ class Lookahead(Coming):
         channels, assumed = explanation.channels, explanation.assumed
         narrow: list[Channel] = []
         for channel in channels:
-            if channel.name <= GONE or channel.done or self._rests(channel, explanation.assumed):
+            if channel.name <= GONE or channel.done or self._rests(channel, explanation):
                 narrow.append(channel)
                 continue
             found = self._narrowed(explanation, channel)
@@ -241,29 +247,33 @@ class Lookahead(Coming):
                 if not assumed or self.withholds(assumed):
                     return None
             elif rests and left is channel:
-                self._let_rest(channel, explanation.assumed)
+                self._let_rest(channel, explanation)
             narrow.append(left)
         if all(map(operator.is_, narrow, channels)):
             return explanation
         return explanation.replace(channels=tuple(narrow), assumed=assumed)
 
-    def _rests(self, channel: Channel, assumed: int) -> bool:
-        """Whether nothing new is known of a channel since it was last narrowed."""
+    def _rests(self, channel: Channel, explanation: Explanation) -> bool:
+        """Whether nothing new is known of a channel of an explanation since it was last narrowed."""
         known = self._resting.get(channel.name)
         if known is None or known.channel is not channel or not known.since <= self.at <= known.until:
             return False
-        return known.delivery is None or self._ways(assumed, known.delivery) == known.ways
+        if known.state is not None and (known.state is not explanation.state or known.names != explanation.names):
+            return False
+        return known.delivery is None or self._ways(explanation.assumed, known.delivery) == known.ways
 
-    def _let_rest(self, channel: Channel, assumed: int) -> None:
-        """Note that nothing new is known of a channel for the time being, unless it is the state that tells."""
-        stretch, delivery, ways = self._stretch(channel), None, (False, False)
+    def _let_rest(self, channel: Channel, explanation: Explanation) -> None:
+        """Note that nothing new is known of a channel for the time being."""
+        stretch, delivery, ways, state = self._stretch(channel), None, (False, False), None
         if not stretch.nothing:
             delivery = self.spec.delivery(channel.topic)
-            ways = self._ways(assumed, delivery)
+            ways = self._ways(explanation.assumed, delivery)
             led = stretch.led.get((channel, *ways))
-            if led is None or led[1] is not None:
+            if led is None:
                 return
-        self._resting[channel.name] = _Resting(channel, *self._stretches[channel.name][:2], delivery, ways)
+            state = None if led[1] is None else explanation.state
+        stands = self._stretches[channel.name][:2]
+        self._resting[channel.name] = _Resting(channel, *stands, delivery, ways, state, explanation.names)
 
     def state(self, explanation: Explanation) -> State:
         """The state, or the one that stands for all those that nobody can tell from it any more.

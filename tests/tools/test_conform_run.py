@@ -11,6 +11,7 @@ from attrs import evolve
 from broken import MISSION
 from commandline import CommandLine
 
+from missionfsm.kernel.subject import Exchange
 from missionfsm.oracle.automaton import Automaton
 from missionfsm.oracle.transcript import Head, head
 from missionfsm.systems import names, system
@@ -202,3 +203,19 @@ def test_a_conversation_that_cannot_be_decided_is_given_up(drives: tuple[str, ..
     verdict = verdict_of(run, 0, advice=False)
     assert verdict.outcome is Outcome.INCONCLUSIVE
     assert any("were given up" in one for one in verdict.notes)
+
+
+class Falsy(ReferenceSubject):
+    """Takes a goal whose numbers are all zero for one that was not given."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        if method == "CreateMission" and "'xMeters': 0.0" in str(params):
+            return Exchange(error={"status": "INVALID_ARGUMENT", "message": "no goal"})
+        return super().exchange(method, params)
+
+
+def test_the_origin_of_the_map_is_a_goal_that_is_asked_for() -> None:
+    """A robot for which zero is nothing is found out."""
+    verdict = conform(MISSION, Falsy(MISSION), drawn=1, steps=5, seed=1, advice=False)
+    assert verdict.outcome is Outcome.VIOLATES
+    assert "pose (0, 0, 0)" in str(verdict)

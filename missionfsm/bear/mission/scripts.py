@@ -182,7 +182,23 @@ def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
         )
 
 
+def _poses() -> Iterator[tuple[ScriptStep, ...]]:
+    """Goals that are poses: the origin of the map, and one to choose before destinations that are free as well."""
+    origin: JSON = {"pose": {"xMeters": 0.0, "yMeters": 0.0, "headingRadians": 0.0}}
+    pose: JSON = {"pose": {"xMeters": 2.5, "yMeters": 1.25, "headingRadians": 0.5}}
+    either: JSON = {"mission": {"baseMission": {"navigateAutoMission": {"goals": [pose, *goals_at(TABLES[0])]}}}}
+    yield (
+        _SUBSCRIBE,
+        *call("CreateMission", {"mission": base(origin)}),
+        *drive("missionSucceeded"),
+        *call("CreateMission", either),
+        *call("AppendMission", {"mission": base(origin)}),
+        *drive("missionSucceeded"),
+    )
+
+
 SCRIPTS = (
+    *_poses(),
     *_choices(),
     *_commands(),
     *_patrols("servi", "deliveryPatrolMission", "bussingPatrolMission"),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from missionfsm.isaac.shared.naming import MESSAGE
 from missionfsm.isaac.wire.messages import TYPE_IDS, MissionProto, MissionStatusProto, TextProto, signed
-from missionfsm.kernel.alphabet import as_text, pick
+from missionfsm.kernel.alphabet import as_text, new, pick
 from missionfsm.kernel.codec import JSON
 
 ROBOTS = ("carter-01", "carter-02")
@@ -11,9 +12,9 @@ STATUSES = ("running", "success", "failure")
 
 
 def header(kind: type[TextProto | MissionStatusProto | MissionProto], channel: str, **more: JSON) -> JSON:
-    """A header as robots send it, with more members, or with other values of these."""
+    """A header as robots send it, of a message of its own each time, with more members or other values of these."""
     times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
-    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
+    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), "uuid": new(MESSAGE), **more}
 
 
 def robot_line(head: JSON, payload: JSON, link: int = 0) -> JSON:

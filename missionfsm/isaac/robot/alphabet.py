@@ -25,7 +25,7 @@ def _drives(channel: str, status_channel: str) -> Iterator[JSON]:
     yield mission("{}", pick("uuid"), channel)
     yield from (mission(config, new("uuid"), channel) for config in _UNUSABLE)
     yield mission("null", new("uuid"), channel)
-    for other in dict.fromkeys((status_channel, "elsewhere", "mission")):
+    for other in dict.fromkeys((status_channel, "elsewhere", "mission", channel.upper())):
         if other != channel:
             yield mission("{}", new("uuid"), other)
     yield mission("{}", {"lower": 77, "upper": 99}, channel)

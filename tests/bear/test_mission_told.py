@@ -272,3 +272,16 @@ def test_a_stream_that_begins_with_what_was_before() -> None:
     told = with_suspects(judged_system("bear.mission", strict=True), found.told)
     named = ["SubscribeMissionStatus/all-missions-are-listed", "SubscribeMissionStatus/the-latest-state-comes-first"]
     assert rules(told)[:2] == named
+
+
+def test_what_departs_from_the_text_is_accused_before_what_comes_of_it() -> None:
+    """A destination that is not on the map is accepted, which a reading explains; that it is reached, none does."""
+    begun = Log(drives=DRIVES, transport="strict").creates("m1", "delivery", "nowhere")
+    begun.lines.append({"drive": {"event": "goalReached"}})
+    told = with_suspects(judged_system("bear.mission", strict=True), begun.told)
+    assert rules(told) == [
+        "CreateMission/INVALID_ARGUMENT/a-destination-is-not-on-the-map",
+        "lifecycle/goals-are-taken-up-in-order",
+    ]
+    says = "only a reading that departs from the text explains this before it"
+    assert told.notes[0] == f"{says}: CreateMission(servi delivery to 'nowhere') was answered OK m1"

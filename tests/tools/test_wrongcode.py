@@ -134,3 +134,14 @@ def test_what_has_led_to_it_is_accused_only_where_it_may_be_what_is_wrong(lines:
     """The rule of what is wrong in a message, in an end; not that of the mission that was created before."""
     first = {**FIRST, "drives": ["goalReached", "missionSucceeded", "missionFailed", "world"]}
     assert accused([*WATCHED, *lines], first) == rules
+
+
+def test_an_armed_fault_does_not_come_to_a_call_that_has_to_be_refused() -> None:
+    """What is said is that, and not that nobody made it fail."""
+    armed = {"drive": {"event": "fault", "status": "INTERNAL", "applied": False}}
+    lines = [*BUSY, armed, *call(2, "CreateMission", navigate(), error=refused("INTERNAL"))]
+    violation = check(system("bear.mission"), head(DRIVEN), lines).violation
+    assert violation is not None
+    says = "INTERNAL comes in the place of OK where a drive makes a call fail, and this one has to be refused"
+    assert violation.notes == (says,)
+    assert accused(lines) == [NO_FIRST]

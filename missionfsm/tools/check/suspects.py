@@ -126,12 +126,26 @@ def _shows_what_happened(violation: Violation) -> bool:
     return answered_with(last) == "result" and any(one.what.startswith(OK) for one in violation.expected)
 
 
+def to_the_letter(system: System, history: tuple[JSON, ...]) -> Violation | None:
+    """What is wrong with an answer before the last event for whoever takes the text by its letter; None if nothing is.
+
+    Such an answer is explained only by a reading that departs from the text. In a conversation from which nothing can
+    be left out, what comes of it later says less than that it came.
+    """
+    judge = Judge(system, head(history[0]), no_flagged=True)
+    for line in history[1:-1]:
+        if not judge.feed(line):
+            return judge.violation if "return" in line else None
+    return None
+
+
 def with_suspects(system: System, violation: Violation, readings: Mapping[str, str] | None = None) -> Violation:
     """The violation with a note on earlier events that may be what is wrong.
 
     An earlier OK is no suspect if the last event is an answer, or if something is missing: without what it made there
     would be nothing to answer wrongly, or nothing due. The rules of a single suspect, and of a single drive that may
-    have had no effect, come after the first rule of the violation, which is nearer.
+    have had no effect, come after the first rule of the violation, which is nearer. An answer that departs from the
+    text comes before all of them.
 
     Args:
         system: the system.
@@ -160,4 +174,13 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
     for one in rules:
         once.setdefault(one.id, one)  # as it is cited where it is nearest
     accused = evolve(violation, rules=tuple(once.values()), notes=(*violation.notes, *dict.fromkeys(notes)))
-    return evolve(accused, rules=needed(system, accused, readings)[:MAX_RULES])
+    accused = evolve(accused, rules=needed(system, accused, readings)[:MAX_RULES])
+    departs = None if readings else to_the_letter(system, history)
+    return accused if departs is None else _before_all(departs, accused)
+
+
+def _before_all(departs: Violation, accused: Violation) -> Violation:
+    """A violation behind what departs from the text before it."""
+    rules = {one.id: one for one in (*departs.rules, *accused.rules)}
+    says = f"only a reading that departs from the text explains this before it: {departs.observed}"
+    return evolve(accused, rules=tuple(rules.values())[:MAX_RULES], notes=(says, *accused.notes))

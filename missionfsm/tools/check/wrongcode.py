@@ -37,7 +37,7 @@ def wrong_code(nearest: Nearest, event: Returned, allowed: Sequence[Candidate]) 
         return refused or wanted, []
     operation = spec.operations[spec.request_operation(request)]
     if code in operation.failures:
-        return _failed_wrongly(nearest, event, wanted)
+        return _failed_wrongly(nearest, event, wanted, is_done=is_done)
     reasons = [rule for rule in operation.refusals if rule.code == code]
     if not reasons:
         # It refuses: what may be refused comes first, also where some reading would have it done.
@@ -130,12 +130,18 @@ def _asking(nearest: Nearest, event: Returned) -> list[tuple[Explanation, InFlig
     return [(here, call) for here in explanations for call in here.calls if call.name == number]
 
 
-def _failed_wrongly(nearest: Nearest, event: Returned, rules: list[str]) -> tuple[list[str], list[str]]:
-    """A failure that is documented and yet cannot be: the call took effect, or nobody made it fail."""
+def _failed_wrongly(
+    nearest: Nearest, event: Returned, rules: list[str], *, is_done: bool
+) -> tuple[list[str], list[str]]:
+    """A failure that is documented and yet cannot be: the call took effect, is refused, or nobody made it fail."""
     code, spec = event.answer.code, nearest.spec
     number = call_of(nearest.belief.symbol(event)[0])
     explanations = nearest.belief.node.explanations
     done = [(one, answer) for one in explanations if (answer := _took_effect(one, number)) is not None]
+    if not done and not is_done:
+        return rules, [
+            f"{code} comes in the place of OK where a drive makes a call fail, and this one has to be refused"
+        ]
     if not done or len(done) < len(explanations):
         return rules, [
             f"{code} comes to this call only where a drive makes it fail (the log says all of those), and none did"

@@ -219,3 +219,37 @@ def test_the_origin_of_the_map_is_a_goal_that_is_asked_for() -> None:
     verdict = conform(MISSION, Falsy(MISSION), drawn=1, steps=5, seed=1, advice=False)
     assert verdict.outcome is Outcome.VIOLATES
     assert "pose (0, 0, 0)" in str(verdict)
+
+
+@pytest.mark.parametrize(("subject", "left"), [(Undriven, 1), (ReferenceSubject, 0)])
+def test_a_conversation_in_which_too_much_may_have_happened_ends_early(
+    subject: type[ReferenceSubject], left: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was seen until then is judged and entered, and the verdict says how many there were."""
+    monkeypatch.setattr("missionfsm.tools.conform.narrowing.WIDE", 0)
+    run = Run.against(MISSION, subject(MISSION))
+    assert run.converse({}, (Action(1, "SubscribeMissionStatus", {}), Action(2, "ClearMissionStatus", {})))
+    assert (run.ledger.left, run.ledger.examples) == (left, 1)
+    assert len(run.conversation.actions) == (1 if left else 2)
+    said = "1 of 1 conversations ended early: too much may have happened by itself to follow what comes next"
+    assert verdict_of(run, 0, advice=False).notes == (said,) * left
+
+
+class Failing(Undriven):
+    """One that answers all creations with an error that nothing documents."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        came = super().exchange(method, params)
+        return evolve(came, result=None, error={"status": "DATA_LOSS"}) if method.startswith("Create") else came
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_what_moves_by_itself_is_not_followed_for_ever(monkeypatch: pytest.MonkeyPatch, *, broken: bool) -> None:
+    """A run ends when many conversations ended early; a violation that it has found is made short all the same."""
+    monkeypatch.setattr("missionfsm.tools.conform.narrowing.WIDE", 2)
+    for name, value in (("LEFT", 2), ("STRAIN", 10), ("EARLY", 5)):
+        monkeypatch.setattr(f"missionfsm.tools.conform.run.{name}", value)
+    verdict = conform(MISSION, (Failing if broken else Undriven)(MISSION), seed=1)
+    stopped = any("it was stopped after" in one for one in verdict.notes)
+    assert (verdict.outcome, stopped) == (Outcome.VIOLATES if broken else Outcome.CONFORMS, not broken)
+    assert (verdict.examples < 100, any("time was up" in one for one in verdict.notes)) == (True, False)

@@ -92,14 +92,14 @@ def conform(  # noqa: PLR0913 - every one has a default
         search(run, plan, seed)
         if distinguish and not has_found(run):
             tell_apart(run)
-            if not enough():
+            if not run.enough():
                 left.remove(EXPERIMENTS)
     except SubjectError as error:
         if not enough():
             raise
         run.ledger.note(f"the adapter had not answered when it was stopped: {error}")
     verdict = verdict_of(run, seed, known, advice=advice)
-    if enough() and not has_found(run):
+    if run.enough() and not has_found(run):
         done = f"it was stopped after {run.ledger.examples} of {plan.conversations(run.system)} conversations"
         verdict = evolve(verdict, notes=(*verdict.notes, done + _unreached(verdict, left)))
     return held_to_the_text(verdict) if no_flagged else verdict

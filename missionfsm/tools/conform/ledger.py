@@ -27,6 +27,7 @@ class Ledger:
         succeeded: how many calls were answered OK.
         answers: for each operation, how often it was answered with each status.
         undecided: how many conversations were given up at an event that had too many explanations.
+        left: how many ended early, all of them judged, since what happens by itself could be too many things.
         oddities: what is explained and belongs to no reading, but is worth a line of the verdict.
         readings: for each ambiguity that mattered, the readings that explain every conversation so far.
         ruled_out_by: for each ambiguity id and letter that was ruled out, the first conversation that did it.
@@ -43,6 +44,7 @@ class Ledger:
     examples: int = 0
     succeeded: int = 0
     undecided: int = 0
+    left: int = 0
     answers: dict[str, Counter[str]] = field(factory=dict)
     oddities: dict[Flagged, None] = field(factory=dict)
     readings: dict[str, tuple[str, ...]] = field(factory=dict)
@@ -60,11 +62,15 @@ class Ledger:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """The notes, and how many conversations were given up."""
-        if not self.undecided:
-            return tuple(self.notes)
-        says = f"{self.undecided} of {self.examples} conversations were given up at an event with too many explanations"
-        return (*self.notes, f"{says}: what followed there was not judged")
+        """The notes, and how many conversations were given up or ended early."""
+        notes = tuple(self.notes)
+        if self.undecided:
+            says = f"{self.undecided} of {self.examples} conversations were given up"
+            notes += (f"{says} at an event with too many explanations: what followed there was not judged",)
+        if self.left:
+            says = f"{self.left} of {self.examples} conversations ended early"
+            notes += (f"{says}: too much may have happened by itself to follow what comes next",)
+        return notes
 
     def count(self, done: Conversation) -> None:
         """Count a conversation that has ended."""

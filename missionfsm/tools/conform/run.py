@@ -26,6 +26,9 @@ BOUNDS = Bounds(4, goals=3)
 """The default bounds of what a run tries."""
 FEW, ONE_IN = 3, 20
 """So many conversations, or one in so many if that is more, may be given up before a run is inconclusive."""
+LEFT, STRAIN, EARLY = 20, 20_000, 300
+"""A run ends when so many conversations ended early and so many events were seen, each of those counting as so many:
+what moves by itself takes long to follow. The tester's choice."""
 
 
 @define(eq=False)
@@ -45,7 +48,7 @@ class Run:
         reach: which actions were done in which situations; None if the system has no matrix.
         last: the conversation that was begun last.
         found: the conversation that could not be explained, if there is one.
-        over: whether the last conversation ended in a known violation. Nothing more is done in it.
+        over: whether the last conversation ended in a known violation, or early. Nothing more is done in it.
     """
 
     partner: Partner
@@ -65,6 +68,8 @@ class Run:
 
     def __attrs_post_init__(self) -> None:
         self.ledger = Ledger(self.system)
+        asked = self.enough
+        self.enough = lambda: asked() or self._is_strained()
         matrix = self.system.matrix
         self.reach = Reach(self.system, matrix, self.guide.worlds) if matrix is not None else None
 
@@ -171,10 +176,16 @@ class Run:
     def perform(self, action: Action) -> bool:
         """Perform an action in the last conversation; see `do`.
 
-        If the implementation may have done more by itself than can be followed, everything has to settle first.
+        If the implementation may have done more by itself than can be followed, everything has to settle first; where
+        that does not help, the conversation ends early.
         """
-        if action.method != SETTLE and self.narrowing.is_lost_in(self.conversation):
-            return self._step(Action(-action.serial, SETTLE)) and self._step(action)
+        if action.method == SETTLE or self.over or not self.narrowing.is_lost_in(self.conversation):
+            return self._step(action)
+        if not self._step(Action(-action.serial, SETTLE)):
+            return False
+        if not self.over and self.narrowing.is_lost_in(self.conversation):
+            self.ledger.left += 1
+            self.over = True
         return self._step(action)
 
     def _step(self, action: Action) -> bool:
@@ -227,6 +238,12 @@ class Run:
     def _may_give_up(self) -> bool:
         """Whether a conversation that cannot be decided is left as it is: a few are."""
         return self.ledger.undecided < max(FEW, self.ledger.examples // ONE_IN)
+
+    def _is_strained(self) -> bool:
+        """Whether an implementation that moves by itself, in which nothing was found, was followed for long enough."""
+        ledger = self.ledger
+        strain = ledger.events + EARLY * ledger.left
+        return ledger.left >= LEFT and strain >= STRAIN and self.found is None and ledger.contradiction is None
 
     def knows(self, conversation: Conversation) -> bool:
         """Whether what is wrong with a conversation is expected."""

@@ -7,6 +7,7 @@ for one explanation at a time; `missionfsm.oracle.said` remembers what the spec 
 
 from __future__ import annotations
 
+import itertools
 import operator
 from collections.abc import Callable, Hashable, Iterable, Iterator
 
@@ -358,20 +359,23 @@ class Successors(Said):
         """Explanations and everything that they can silently become, nearest first; `focus` as in `silent`.
 
         One that has used up more lost calls than another at the same point is left out, and so is all that follows.
+        What follows is worked out as it is looked at: of what is too dear nobody looks at most.
         """
         seen: Seen = {}
-        todo = [Successor(start) for start in starts]
+        todo: Iterable[Successor] = [Successor(start) for start in starts]
         while todo:
-            later: list[Successor] = []
+            later: list[Iterator[Successor]] = []
             for successor in todo:
                 if self.outdone(seen, successor.explanation):
                     continue
                 yield successor
-                later += (
-                    Successor(next_one.explanation, successor.rules + next_one.rules)
-                    for next_one in self.silent(successor.explanation, besides, focus)
-                )
-            todo = later
+                later.append(self._following(successor, besides, focus))
+            todo = itertools.chain.from_iterable(later) if later else ()
+
+    def _following(self, successor: Successor, besides: int | None, focus: FocusOf | None) -> Iterator[Successor]:
+        """What an explanation can silently become next, with the rules of all of it."""
+        for one in self.silent(successor.explanation, besides, focus):
+            yield Successor(one.explanation, successor.rules + one.rules)
 
     def outdone(self, seen: Seen, explanation: Explanation) -> bool:
         """Whether something at the same point has assumed no more and has all the lost calls; notes it otherwise."""

@@ -99,15 +99,22 @@ def with_likelier(
         return violation
     log = _Log(lines, at, judge_of, prompt)
     try:
-        if at + 1 == len(lines) or _is_wrong_itself(system, log):
-            return violation
-        answers = [place for place in range(at) if _is_answer(system, lines, place)][-MOST:]
-        doubtful = [place for place in answers if log.explained_without(place)]
-        right = {place: _right(system, log, place) for place in doubtful}
+        doubtful = _doubtful(system, log)
     except UnreadableError:  # a line behind the violation is not of the format: nobody has looked at it before
         return violation
-    found = [place for place, instead in right.items() if instead is not None] or doubtful
-    return _accusing(system, violation, log, found[0], right[found[0]]) if len(found) == 1 else violation
+    found = [place for place, instead in doubtful.items() if instead is not None] or list(doubtful)
+    return _accusing(system, violation, log, found[0], doubtful[found[0]]) if len(found) == 1 else violation
+
+
+def _doubtful(system: System, log: _Log) -> dict[int, JSON]:
+    """The places of the answers without which all is explained, each with what would be right there, if that is known.
+
+    None where the line of the violation is the last, or is wrong itself.
+    """
+    if log.at + 1 == len(log.lines) or _is_wrong_itself(system, log):
+        return {}
+    answers = [place for place in range(log.at) if _is_answer(system, log.lines, place)][-MOST:]
+    return {place: _right(system, log, place) for place in answers if log.explained_without(place)}
 
 
 def _is_wrong_itself(system: System, log: _Log) -> bool:

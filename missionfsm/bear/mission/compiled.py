@@ -173,8 +173,8 @@ class Shortcut:
         world, active, halted, fresh, fault = frame
         ops: list[tuple[Op, tuple[int, ...]]] = []
         added = 0
+        fresh = fresh and LISTING_ANEW.isdisjoint(dict(edit))
         for op, what in edit:
-            fresh = fresh and op not in LISTING_ANEW
             if op in ADDITIONS:
                 ops.append((op, self._numbers(what)))
                 added += len(what)
@@ -187,7 +187,7 @@ class Shortcut:
                 ops.append((op, (_MOVES.index(what),)))
             elif op in _LISTED:
                 ops.append((op, ()))
-                active = what if op is Op.START else None if op is Op.CLEAR else active
+                active = {Op.START: what, Op.CLEAR: None}.get(op, active)
             elif op is Op.BECOME:
                 active = what
             elif op is Op.HALT:

@@ -54,7 +54,7 @@ _REARRANGED: Mapping[Op, Callable[[Listed, Any], Listed]] = {
 ADDITIONS = (Op.ADD, Op.PUT_FIRST, Op.OVERTAKE)
 """The operations that add missions."""
 
-LISTING_ANEW = (*ADDITIONS, Op.CLEAR)
+LISTING_ANEW = frozenset((*ADDITIONS, Op.CLEAR))
 """The operations after which a robot is not fresh any more."""
 
 

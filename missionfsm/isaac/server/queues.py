@@ -136,14 +136,24 @@ def _from_lane(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
     if overtakes is not None:
         yield ready[0], overtakes
     if len(ready) > 1:
-        any_order, _ = split(move, AI_13, "b")
-        free = None if any_order is None else split(any_order, AI_12, "a")[0]
-        if free is not None:
-            for index, after in first_of_alike(free.state, ready):
-                if index != ready[0] or after is not free.state:
-                    yield index, free if after is free.state else free.to(after)
+        yield from _another_of(move, ready)
     if holds is not None:
         yield None, holds
+
+
+def _another_of(move: Move, ready: list[int]) -> Iterator[tuple[int | None, Move]]:
+    """AI-13 b: one that is ready goes before the first of them."""
+    any_order, _ = split(move, AI_13, "b")
+    free = None if any_order is None else split(any_order, AI_12, "a")[0]
+    for index, after in () if free is None else _freely(free, ready):
+        if index != ready[0] or after is not free:
+            yield index, after
+
+
+def _freely(free: Move, ready: list[int]) -> Iterator[tuple[int, Move]]:
+    """Any of these goes first, of those that are alike the first."""
+    for index, after in first_of_alike(free.state, ready):
+        yield index, free if after is free.state else free.to(after)
 
 
 def _in_any_order(move: Move, queue: list[int], ready: list[int]) -> Iterator[tuple[int | None, Move]]:
@@ -153,7 +163,6 @@ def _in_any_order(move: Move, queue: list[int], ready: list[int]) -> Iterator[tu
     """
     free, held = split(move, AI_12, "a")
     if free is not None:
-        for index, after in first_of_alike(free.state, ready):
-            yield index, free if after is free.state else free.to(after)
+        yield from _freely(free, ready)
     if held is not None:
         yield (ready[0] if ready[0] == queue[0] else None), held

@@ -197,11 +197,14 @@ def _wrong_in_it(
     if not contradicts and _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
     rules = _alternately(rules, _of_other_codes(candidates))
-    notes = [problem.says for problem in _problems(lightest[:1])]
+    notes = [*(problem.says for problem in _problems(lightest[:1])), *_given_twice(event)]
+    return rules or _about_the_answer(nearest.spec, (rule for one in lightest for rule in one.rules)), notes
+
+
+def _given_twice(event: Returned) -> Iterator[str]:
     twice = [name for name, times in Counter(event.names).items() if times > 1]
     if twice:
-        notes.append(f"each thing has a name of its own, and {', '.join(map(name_words, twice))} is given twice")
-    return rules or _about_the_answer(nearest.spec, (rule for one in lightest for rule in one.rules)), notes
+        yield f"each thing has a name of its own, and {', '.join(map(name_words, twice))} is given twice"
 
 
 def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from attrs import evolve, frozen
 
@@ -158,25 +158,37 @@ def with_suspects(system: System, violation: Violation, readings: Mapping[str, s
     answered, missing = "return" in history[-1], "settled" in history[-1]
     found = [one for one in suspects(system, history, readings) if not (answered or missing) or one.code != OK]
     idle = ineffective_drives(system, history, readings) if _shows_what_happened(violation) else ()
-    rules = violation.rules
-    notes: tuple[str, ...] = ()
-    if len(found) in range(1, MAX_SUSPECTS + 1):
-        notes += tuple(f"without this answer everything is explained: {one.says}" for one in found)
-        if len(found) == 1 and not answered:
-            own = rules_in_words(system.spec, found[0].rules)
-            rules = (*rules[:1], *own, *rules[1:])
-            notes += ("a call that is refused changes nothing",) if found[0].code != OK else ()
-    if len(idle) in range(1, MAX_SUSPECTS + 1):
-        notes += tuple(f"everything is explained if this had no effect: {one.says}" for one in idle)
-        own = rules_in_words(system.spec, idle[-1].rules)
-        rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
+    accused = _with_answers(system, violation, found, answered=answered)
+    accused = _with_drives(system, accused, idle)
     once: dict[str, CitedRule] = {}
-    for one in rules:
+    for one in accused.rules:
         once.setdefault(one.id, one)  # as it is cited where it is nearest
-    accused = evolve(violation, rules=tuple(once.values()), notes=(*violation.notes, *dict.fromkeys(notes)))
+    accused = evolve(accused, rules=tuple(once.values()), notes=tuple(dict.fromkeys(accused.notes)))
     accused = evolve(accused, rules=needed(system, accused, readings)[:MAX_RULES])
     departs = None if readings else to_the_letter(system, history)
     return accused if departs is None else _before_all(departs, accused)
+
+
+def _with_answers(system: System, accused: Violation, found: Sequence[Suspect], *, answered: bool) -> Violation:
+    """The violation with the answers without which everything is explained, if they are few."""
+    if len(found) not in range(1, MAX_SUSPECTS + 1):
+        return accused
+    notes = [f"without this answer everything is explained: {one.says}" for one in found]
+    rules = accused.rules
+    if len(found) == 1 and not answered:
+        rules = (*rules[:1], *rules_in_words(system.spec, found[0].rules), *rules[1:])
+        notes += ["a call that is refused changes nothing"] if found[0].code != OK else []
+    return evolve(accused, rules=rules, notes=(*accused.notes, *notes))
+
+
+def _with_drives(system: System, accused: Violation, idle: Sequence[Suspect]) -> Violation:
+    """The violation with the drives that may have had no effect, if they are few."""
+    if len(idle) not in range(1, MAX_SUSPECTS + 1):
+        return accused
+    notes = [f"everything is explained if this had no effect: {one.says}" for one in idle]
+    own, rules = rules_in_words(system.spec, idle[-1].rules), accused.rules
+    rules = (*rules[:1], *own, *rules[1:]) if len(idle) == 1 else (*rules, *own)
+    return evolve(accused, rules=rules, notes=(*accused.notes, *notes))
 
 
 def _before_all(departs: Violation, accused: Violation) -> Violation:

@@ -147,16 +147,21 @@ def _failed_wrongly(
             f"{code} comes to this call only where a drive makes it fail (the log says all of those), and none did"
         ]
     explanation, answer = done[0]
+    unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
+    says = f"{code} is documented, but a call that failed has no effect, and {_effect(nearest, explanation, answer)}"
+    return unowed or rules, [says]
+
+
+def _effect(nearest: Nearest, explanation: Explanation, answer: Ready) -> str:
+    """What a call has done, and where that was shown."""
     shown = [
-        f"{name_words(nearest.belief.name(channel.name))} showed {described(spec, channel.last.view)}"
+        f"{name_words(nearest.belief.name(channel.name))} showed {described(nearest.spec, channel.last.view)}"
         for channel in explanation.channels
         if channel.last is not None and channel.name >= 0
     ]
     names = ", ".join(name_words(known) for one in answer.names if (known := nearest.belief.name(one)) is not None)
-    unowed = [rule for channel in explanation.channels for rule in spec.delivery(channel.topic).unowed]
     what = f"{names} is there" if names else "it took effect"
-    seen = f": {'; '.join(shown)}" if shown else ""
-    return unowed or rules, [f"{code} is documented, but a call that failed has no effect, and {what}{seen}"]
+    return f"{what}: {'; '.join(shown)}" if shown else what
 
 
 def _took_effect(explanation: Explanation, number: int) -> Ready | None:

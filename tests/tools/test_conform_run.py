@@ -22,7 +22,7 @@ from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.coverage import Census, rare
 from missionfsm.tools.conform.finding import verdict_of
 from missionfsm.tools.conform.narrowing import WIDE
-from missionfsm.tools.conform.run import FEW, ONE_IN, ONE_IN_ITSELF, Run
+from missionfsm.tools.conform.run import FEW, ONE_IN, ONE_IN_UNDRIVEN, Run
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD: Any = {"missionfsm": 1, "system": "bear.mission", "world": {}}
@@ -205,7 +205,7 @@ def test_a_conversation_that_cannot_be_decided_is_given_up(drives: tuple[str, ..
     assert any("were given up" in one for one in verdict.notes)
 
 
-@pytest.mark.parametrize(("drives", "one_in"), [((), ONE_IN_ITSELF), (tuple(MISSION.spec.drives), ONE_IN)])
+@pytest.mark.parametrize(("drives", "one_in"), [((), ONE_IN_UNDRIVEN), (tuple(MISSION.spec.drives), ONE_IN)])
 def test_how_many_conversations_may_be_given_up(drives: tuple[str, ...], one_in: int) -> None:
     """Of what moves by itself more may be: what it did until then was judged."""
     automaton = Automaton(MISSION.spec, drives, budget=1)

@@ -26,7 +26,7 @@ BOUNDS = Bounds(4, goals=3)
 """The default bounds of what a run tries."""
 FEW, ONE_IN = 3, 20
 """So many conversations, or one in so many if that is more, may be given up before a run is inconclusive."""
-ONE_IN_ITSELF = 5
+ONE_IN_UNDRIVEN = 5
 """The same of an implementation that moves by itself: all of a conversation until then was judged."""
 LEFT, STRAIN, EARLY = 20, 20_000, 300
 """A run ends when so many conversations ended early and so many events were seen, each of those counting as so many:
@@ -239,7 +239,7 @@ class Run:
 
     def _may_give_up(self) -> bool:
         """Whether a conversation that cannot be decided is left as it is: a few are."""
-        one_in = ONE_IN_ITSELF if self.narrowing.unwatched else ONE_IN
+        one_in = ONE_IN_UNDRIVEN if self.narrowing.unwatched else ONE_IN
         return self.ledger.undecided < max(FEW, self.ledger.examples // one_in)
 
     def _is_strained(self) -> bool:

@@ -11,7 +11,7 @@ from attrs import evolve
 from missionfsm.bear.mission.edits import Edit, Op
 from missionfsm.bear.mission.inputs import Call, Wanted
 from missionfsm.bear.mission.outcome import ADDED, Assumed, Outcome, Way
-from missionfsm.bear.mission.readings.charging import AM_37_QUEUED
+from missionfsm.bear.mission.readings.charging import AM_37_HALTED, AM_37_QUEUED
 from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_43_CASE, AM_45_WHEN
 from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_12_HALTED, AM_13
 from missionfsm.bear.mission.readings.scope import part_of
@@ -208,6 +208,15 @@ def append(robot: Situation, call: Call) -> Iterator[Outcome]:
             yield Outcome(OK, edit, ADDED, assumes)
 
 
+def _charging_first(robot: Situation, put: Edit) -> Iterator[Way]:
+    """AM-37.halted: where the queue is halted, a charge that is put first sets it going, or is begun by itself."""
+    if not robot.halted or robot.world.blocked:
+        yield (*put, (Op.HALT, False)), ()
+        return
+    yield (*put, (Op.HALT, False)), (AM_37_HALTED["a"],)
+    yield (*put, (Op.START, Mission(Kind.CHARGE).moved("start"))), (AM_37_HALTED["s"],)
+
+
 def charge(robot: Situation, _: Call) -> Iterator[Outcome]:
     """A mission to charge is created, or appended where others are unfinished."""
     alone = robot.active is None and not robot.queued
@@ -215,11 +224,9 @@ def charge(robot: Situation, _: Call) -> Iterator[Outcome]:
     ways: list[Way] = [(((Op.ADD, charge),), ())]
     if robot.active is None and robot.queued:
         how = AM_37_QUEUED[waiting(robot)]
-        ways = [
-            (((Op.ADD, charge), (Op.HALT, False)), (how["b"],)),
-            (((Op.PUT_FIRST, charge), (Op.HALT, False)), (how["c"],)),
-            (((Op.OVERTAKE, charge), (Op.HALT, False)), (how["o"],)),
-        ]
+        ways = [(((Op.ADD, charge), (Op.HALT, False)), (how["b"],))]
+        for put, letter in ((Op.PUT_FIRST, "c"), (Op.OVERTAKE, "o")):
+            ways += [(edit, (how[letter], *then)) for edit, then in _charging_first(robot, ((put, charge),))]
     for edit, assumes in ways:
         for whole, anew in _listed_anew(robot, "ChargeRobot", edit):
             yield Outcome(OK, whole, ADDED, (*assumes, *anew))

@@ -22,6 +22,11 @@ AM_37_QUEUED = asked_of_each(
     },
     WAITING,
 )
+AM_37_HALTED = Ambiguity(
+    "AM-37.halted",
+    "Does a halted queue go on after a charge that came first?",
+    {"a": "yes, the charge sets it going", "s": "no, it stays halted"},
+)
 AM_38_DOCK = Ambiguity(
     "AM-38.dock",
     "What does ChargeRobot answer on a robot without a contact dock?",

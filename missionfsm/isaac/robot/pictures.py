@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from missionfsm.isaac.robot.inputs import UNUSABLE, Arrives, Event
-from missionfsm.isaac.robot.state import Codelet, Introduction, Report
+from missionfsm.isaac.robot.state import RUNNING_BOUND, Codelet, Introduction, Report
 from missionfsm.isaac.shared.drives import Passes
+from missionfsm.isaac.shared.line import MICROSECONDS
 from missionfsm.kernel.language import JSON, Refs, Sketch
 
 _MISSION = '{"header":{"channel":"mission"},"payload":{"uuid":{"lower":"1","upper":"1"},"config":{"serialized":"%s"}}}'
@@ -16,7 +17,7 @@ _DRIVES: tuple[JSON, ...] = (
     {"event": "line", "line": _MISSION % "no json"},
     {"event": "behaviorSucceeded"},
     {"event": "behaviorFailed"},
-    {"event": "advance", "seconds": 5},
+    {"event": "advance", "seconds": RUNNING_BOUND / MICROSECONDS},
 )
 
 

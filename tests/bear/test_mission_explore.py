@@ -8,7 +8,7 @@ from attrs import evolve
 from missionfsm.bear.mission.compiled import forget_ended
 from missionfsm.bear.mission.readings.scope import FIELDLESS
 from missionfsm.bear.mission.state import Robot
-from missionfsm.kernel.alphabet import Bounds
+from missionfsm.kernel.alphabet import Bounds, Input
 from missionfsm.kernel.readings import UNCONSTRAINED, choose
 from missionfsm.kernel.spec import Invariant
 from missionfsm.systems import system
@@ -135,7 +135,9 @@ def test_every_rule_fires_and_rests() -> None:
         start = SPEC.initial(MISSION.codec.read_world(world))
         found = reachable(SPEC, start, actions(bounds, world), bounds.size)
         situations = {SPEC.abstraction.enabled_key(here): here for here in found}
-        everything = Actions.from_alphabet(MISSION, alphabet.inputs, alphabet.drives)
+        scripted = [Input(one.method, one.params) for script in alphabet.scripts for one in script if not one.picks]
+        asked = {str(one): one for one in scripted if one.method in SPEC.operations}
+        everything = Actions.from_alphabet(MISSION, (*alphabet.inputs, *asked.values()), alphabet.drives)
         for rule, (fired, rested) in firings(SPEC, situations.values(), everything, settled=fires & rests).items():
             fires |= {rule} if fired else set()
             rests |= {rule} if rested else set()

@@ -280,8 +280,11 @@ def test_the_robot_that_ships_conforms() -> None:
 
 UNASKED = ("AI-27.taken", "AI-28.taken", "AI-33.preempts-written")
 """Of lines that no tester sends: they are recorded (`test_isaac_odd_lines.py`)."""
-NEEDS = {f"AI-33.preempts-{kind}": {f"AI-33.{kind}": "b"} for kind in ("null", "blank", "node", "unknown")}
-"""What has to fail for it to matter what becomes of the mission that runs."""
+NEEDS = {
+    **{f"AI-33.preempts-{kind}": {f"AI-33.{kind}": "b"} for kind in ("null", "blank", "node", "unknown")},
+    "AI-31.read": {"AI-31.preempted": "b", "AI-31.unusable": "b"},
+}
+"""What has to fail, or to wait, for it to matter what becomes of the mission that runs, or when a line is read."""
 FOLLOWED = [one for one in AMBIGUITIES if one.id not in UNASKED]
 
 

@@ -183,12 +183,14 @@ _STOPS = {
 def stops(here: Codelet, event: Happening, _: Refs) -> tuple[Step, ...]:
     """The behavior tree stops; RUNNING may still be on its way, the final status is the last word."""
     trigger, status = _STOPS[event.name]
-    ends = tuple(_stops_unread(here, trigger, status))
+    unread = tuple(_stops_unread(here, trigger, status))
+    ends: tuple[Step, ...] = ()
     if here.running:
         final = (due.Status(status, here.about, readings.AI_31_SENT["end"], offered=True),)
-        ends += tuple(due.concluded(here, here.moved(trigger), None, final, (due.FINAL[status],)))
+        ends = tuple(due.concluded(here, here.moved(trigger), None, final, (due.FINAL[status],)))
     elif here.connected:
-        ends += (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
+        ends = (Step(here, assumes=(readings.AI_31_IDLE["b"],)),)
+    ends = (*unread, *(_all(ends, (readings.AI_31_READ["a"],)) if unread else ends))
     return tuple(talk for step in ends for talk in (_talks(here, step) if here.connected else (step,)))
 
 

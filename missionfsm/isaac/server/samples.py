@@ -12,9 +12,10 @@ STATUSES = ("running", "success", "failure")
 
 
 def header(kind: type[TextProto | MissionStatusProto | MissionProto], channel: str, **more: JSON) -> JSON:
-    """A header as robots send it, of a message of its own each time, with more members or other values of these."""
+    """A header as robots send it, with more members, or with other values of these; a name has an identifier."""
+    more = {"uuid": new(MESSAGE), **more} if kind is TextProto else more
     times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
-    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), "uuid": new(MESSAGE), **more}
+    return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
 
 
 def robot_line(head: JSON, payload: JSON, link: int = 0) -> JSON:

@@ -6,13 +6,14 @@ Where all is explained without that answer, and not without the line at which it
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.kernel.history import Returned
+from missionfsm.kernel.history import Event, Returned
 from missionfsm.kernel.system import System
 from missionfsm.oracle.transcript import answered_with
 from missionfsm.tools.check.candidates import Circumstances
@@ -62,6 +63,12 @@ class _Log:
         lines = (line if place == at else one for place, (_, one) in enumerate(self.lines))
         return _explained(self.judge_of(frozenset()), lines)
 
+    def read(self, at: int, line: JSON) -> list[Event]:
+        """The events of all lines before one, and of what stands in its place."""
+        transcript = self.judge_of(frozenset()).transcript
+        before = (one for _, one in self.lines[:at])
+        return [event for one in (*before, line) for event in transcript.read(one)]
+
     def rules_of(self, at: int, answer: JSON) -> tuple[str, ...]:
         """The ids of the rules by which an answer would be right on a line, where least has happened unseen."""
         judge = self.prompt()
@@ -109,7 +116,7 @@ def with_likelier(
 def _doubtful(system: System, log: _Log) -> dict[int, JSON]:
     """The places of the answers without which all is explained, each with what would be right there, if that is known.
 
-    None where the line of the violation is the last, or is wrong itself.
+    Empty where the line of the violation is the last, or is wrong itself.
     """
     if log.at + 1 == len(log.lines) or _is_wrong_itself(system, log):
         return {}
@@ -161,10 +168,7 @@ def _accusing(system: System, violation: Violation, log: _Log, at: int, instead:
 
 def _words(log: _Log, at: int, answer: JSON) -> str:
     """An answer in words."""
-    transcript = log.judge_of(frozenset()).transcript
-    for _, one in log.lines[:at]:
-        transcript.read(one)
-    (event,) = (one for one in transcript.read(answer) if isinstance(one, Returned))
+    *_, event = (one for one in log.read(at, answer) if isinstance(one, Returned))
     return answer_words(event.answer, tuple(map(name_words, event.names)))
 
 
@@ -173,12 +177,10 @@ def _others(system: System, log: _Log, at: int) -> Iterator[JSON]:
     line = log.lines[at][1]
     operation = system.spec.operations.get(_call(log.lines, at)["method"])
     if answered_with(line) == "result":
-        text = json.dumps(line["result"])
-        named = [name for name in _names(log, at) if json.dumps(name) in text]
-        for name in named:
-            for other in _names(log, at):
-                if other not in named:
-                    yield {**line, "result": json.loads(text.replace(json.dumps(name), json.dumps(other)))}
+        text, names = json.dumps(line["result"]), _names(log, at)
+        named = [name for name in names if json.dumps(name) in text]
+        for name, other in itertools.product(named, (one for one in names if one not in named)):
+            yield {**line, "result": json.loads(text.replace(json.dumps(name), json.dumps(other)))}
     codes = dict.fromkeys(rule.code for rule in (operation.refusals if operation else ()))
     for code in codes:
         yield {"return": line["return"], "error": {"status": code, "message": ""}}
@@ -186,7 +188,6 @@ def _others(system: System, log: _Log, at: int) -> Iterator[JSON]:
 
 def _names(log: _Log, at: int) -> list[str]:
     """The names that stand in the lines up to one, as texts."""
-    transcript = log.judge_of(frozenset()).transcript
-    events = (event for _, one in log.lines[: at + 1] for event in transcript.read(one))
+    events = log.read(at, log.lines[at][1])
     found = dict.fromkeys(name for event in events for name in getattr(event, "names", ()))
     return [name for name in found if isinstance(name, str)]

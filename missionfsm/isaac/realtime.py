@@ -13,14 +13,14 @@ from collections.abc import Iterable
 from attrs import evolve
 
 from missionfsm.isaac.runtime.missionfile import MissionEntry, MissionFile
-from missionfsm.isaac.server.samples import header
-from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
-from missionfsm.kernel.alphabet import Alphabet, Bounds, as_text, pick
+from missionfsm.isaac.server.samples import header, introduction, robot_line
+from missionfsm.isaac.wire.messages import MissionStatusProto
+from missionfsm.kernel.alphabet import Alphabet, Bounds, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.system import System
 
 MAX_WAIT_SECONDS = 6.0
-"""Seconds that are waited at most at a time: a little more than start_timeout, and than a robot may be silent."""
+"""Seconds that are waited at most at a time: a little more than start_timeout. Silences add up."""
 
 _STATUSES = ("running", "success", "failure")
 
@@ -76,7 +76,7 @@ def _waits(file: MissionFile) -> list[JSON]:
 def _lines(file: MissionFile, name_channel: str) -> Iterable[JSON]:
     robots = dict.fromkeys(one.robot for one in file.missions if one.robot is not None)
     for robot in robots:
-        yield _line(header(TextProto, name_channel), {"text": robot})
+        yield introduction(robot, name_channel)
     channels = dict.fromkeys(
         name
         for one in file.missions
@@ -86,12 +86,7 @@ def _lines(file: MissionFile, name_channel: str) -> Iterable[JSON]:
         for status in _STATUSES:
             uuid = pick("uuid", 1)
             head = header(MissionStatusProto, channel, uuid=uuid)
-            yield _line(head, {"uuid": uuid, "missionStatus": status})
-
-
-def _line(head: JSON, payload: JSON) -> JSON:
-    text = as_text({"header": head, "payload": payload})
-    return {"event": "line", "connection": pick("connection", 0), "line": text}
+            yield robot_line(head, {"uuid": uuid, "missionStatus": status})
 
 
 def submissions(file: MissionFile) -> tuple[JSON, ...]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, robot_line
+from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, introduction, robot_line
 from missionfsm.isaac.server.scripts import SCRIPTS
-from missionfsm.isaac.wire.messages import MissionProto, MissionStatusProto, TextProto
+from missionfsm.isaac.wire.messages import MissionProto, MissionStatusProto
 from missionfsm.kernel.alphabet import Alphabet, Bounds, Input, as_text, new, pick, upcoming
 from missionfsm.kernel.codec import JSON
 
@@ -66,10 +66,6 @@ def _odd() -> Iterator[Input]:
     yield Input("submit", {})
 
 
-def _says(name: str, channel: str = "name") -> JSON:
-    return robot_line(header(TextProto, channel), {"text": name})
-
-
 def _reports(status: str, channel: str = "mission_status", **more: JSON) -> JSON:
     payload = {"uuid": pick("uuid", 1), "missionStatus": status}
     return robot_line(header(MissionStatusProto, channel, **more), payload)
@@ -77,7 +73,7 @@ def _reports(status: str, channel: str = "mission_status", **more: JSON) -> JSON
 
 def _lines(name_channel: str) -> Iterator[JSON]:
     for _ in range(3):
-        yield from (_says(robot, name_channel) for robot in ROBOTS)
+        yield from (introduction(robot, name_channel) for robot in ROBOTS)
         yield from (_reports(status, uuid=pick("uuid", 1)) for status in STATUSES)
     yield _reports("success", uuid=pick("uuid", 1))
     yield from (_reports(status) for status in STATUSES)
@@ -87,10 +83,10 @@ def _lines(name_channel: str) -> Iterator[JSON]:
     status_header = header(MissionStatusProto, "mission_status")
     yield from (robot_line(status_header, {"missionStatus": status}) for status in ("running", "success"))
     yield _reports("success", uuid={"lower": "3", "upper": "4"})
-    yield _says(ROBOTS[0].capitalize(), name_channel)
-    yield _says(f" {ROBOTS[1]} ", name_channel)
-    yield _says("", name_channel)
-    yield _says(ROBOTS[0], "elsewhere")
+    yield introduction(ROBOTS[0].capitalize(), name_channel)
+    yield introduction(f" {ROBOTS[1]} ", name_channel)
+    yield introduction("", name_channel)
+    yield introduction(ROBOTS[0], "elsewhere")
     yield robot_line(header(MissionProto, "mission"), {"uuid": new("uuid"), "config": {"serialized": "{}"}})
     bare = {"uuid": {"lower": 5, "upper": 6}, "missionStatus": "success"}
     yield robot_line(status_header, bare)
@@ -131,7 +127,7 @@ def alphabet(world: JSON, _: Bounds) -> Alphabet:
         core_drives=(
             {"event": "connect"},
             {"event": "disconnect", "connection": pick("connection", 0)},
-            _says(ROBOTS[0], channel),
+            introduction(ROBOTS[0], channel),
             *(_reports(status, uuid=pick("uuid", 1)) for status in STATUSES),
             _EVERY_CLOCK,
         ),

@@ -6,7 +6,7 @@ from attrs import evolve
 
 from missionfsm.isaac.server.inputs import NAME, Connects, Drops, Incoming, Statuses, Submission
 from missionfsm.isaac.server.readings import AI_10_FROM, AMBIGUITIES
-from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, robot_line
+from missionfsm.isaac.server.samples import ROBOTS, STATUSES, header, introduction, robot_line
 from missionfsm.isaac.server.state import (
     ENDED,
     NOBODYS,
@@ -18,7 +18,7 @@ from missionfsm.isaac.server.state import (
     mission_of_uuid,
 )
 from missionfsm.isaac.shared.drives import Passes
-from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
+from missionfsm.isaac.wire.messages import MissionStatusProto
 from missionfsm.kernel.alphabet import Input, pick
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.picture import Sketch
@@ -28,7 +28,7 @@ _TIMES = {"start_timeout": 5, "timeout": 15}
 
 
 def _names(*robots: str) -> tuple[JSON, ...]:
-    return tuple(robot_line(header(TextProto, "name"), {"text": robot}) for robot in robots)
+    return tuple(introduction(robot, "name") for robot in robots)
 
 
 _REPORTS = tuple(

@@ -12,8 +12,7 @@ STATUSES = ("running", "success", "failure")
 
 
 def header(kind: type[TextProto | MissionStatusProto | MissionProto], channel: str, **more: JSON) -> JSON:
-    """A header as robots send it, with more members, or with other values of these; a name has an identifier."""
-    more = {"uuid": new(MESSAGE), **more} if kind is TextProto else more
+    """A header as robots send it, with more members, or with other values of these."""
     times = {"pubtime": "1700000000000000000", "acqtime": "1700000000000000000"}
     return {"channel": channel, **times, "proto": str(signed(TYPE_IDS[kind])), **more}
 
@@ -22,3 +21,8 @@ def robot_line(head: JSON, payload: JSON, link: int = 0) -> JSON:
     """The drive that a robot sends a line on the connection in a slot of the params."""
     text = as_text({"header": head, "payload": payload})
     return {"event": "line", "connection": pick("connection", link), "line": text}
+
+
+def introduction(robot: str, channel: str, link: int = 0, **more: JSON) -> JSON:
+    """The drive that a robot says its name on the connection in a slot of the params, with a whole header."""
+    return robot_line(header(TextProto, channel, **{"uuid": new(MESSAGE), **more}), {"text": robot}, link)

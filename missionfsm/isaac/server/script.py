@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from missionfsm.isaac.server.samples import ROBOTS, header, robot_line
-from missionfsm.isaac.wire.messages import MissionStatusProto, TextProto
+from missionfsm.isaac.server.samples import ROBOTS, header, introduction, robot_line
+from missionfsm.isaac.wire.messages import MissionStatusProto
 from missionfsm.kernel.alphabet import ScriptStep, member, pick
 from missionfsm.kernel.codec import JSON
 
@@ -60,9 +60,7 @@ class Script:
 
     def name(self, link: int, robot: str, channel: str = "name", **more: JSON) -> Script:
         """A name is said on a connection; then a look."""
-        self.lines.append(
-            ScriptStep("drive", robot_line(header(TextProto, channel, **more), {"text": robot}, LINK), ((LINK, link),))
-        )
+        self.lines.append(ScriptStep("drive", introduction(robot, channel, LINK, **more), ((LINK, link),)))
         return self.look()
 
     def robot(self, link: int, robot: str) -> Script:

@@ -19,7 +19,7 @@ from missionfsm.bear.mission.operations import COMMANDED, OPERATIONS
 from missionfsm.bear.mission.outcome import ACTIVE, GONE, NOBODY, STREAM, Assumed, Outcome, Way
 from missionfsm.bear.mission.ranking import decisions
 from missionfsm.bear.mission.readings.clearing import AM_34
-from missionfsm.bear.mission.readings.goals import AM_45_NONE, AM_45_WHEN
+from missionfsm.bear.mission.readings.goals import AM_45_AGAIN, AM_45_WHEN
 from missionfsm.bear.mission.readings.messages import AM_35, AM_36, AM_36_CLEARED
 from missionfsm.bear.mission.readings.queue import AM_09, AM_09_SKIP, AM_10, AM_10_START
 from missionfsm.bear.mission.readings.scope import part_of
@@ -299,7 +299,7 @@ def _selected_anew(mission: Mission, best: int) -> Iterator[Way]:
     if best != NOT_CHOSEN:
         yield become(evolve(mission, goal=best)), ()
         return
-    none = AM_45_NONE[part_of(mission.kind)]
+    none = AM_45_AGAIN[part_of(mission.kind)]
     yield become(mission), (none["a"],)
     yield become(evolve(mission, goal=NOT_CHOSEN)), (none["a"],)
     yield become(evolve(mission, doomed=True)), (none["b"],)

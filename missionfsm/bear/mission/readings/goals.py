@@ -61,8 +61,14 @@ AM_44_AUTOMATIC = asked_of_each(
 )
 AM_45_NONE = asked_of_each(
     "AM-45.none",
-    "What does {} do when no goal is free?",
+    "What does {} do when it is to start and no goal is free?",
     {"a": "it waits, running", "b": "it fails", "d": "it takes the first goal"},
+    missions_of(kind for kind in Kind if kind in AUTOMATIC),
+)
+AM_45_AGAIN = asked_of_each(
+    "AM-45.none.again",
+    "What does {} do when it selects again and no goal is free then?",
+    {"a": "it stays as it is, or waits, running", "b": "it fails", "d": "it takes the first goal"},
     missions_of(kind for kind in Kind if kind in AUTOMATIC),
 )
 AM_45_REFUSED = asked_of_each(

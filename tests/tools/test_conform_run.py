@@ -22,7 +22,9 @@ from missionfsm.tools.conform.conform import conform
 from missionfsm.tools.conform.coverage import Census, rare
 from missionfsm.tools.conform.finding import verdict_of
 from missionfsm.tools.conform.narrowing import WIDE
-from missionfsm.tools.conform.run import FEW, ONE_IN, ONE_IN_UNDRIVEN, Run
+from missionfsm.tools.conform.plan import DRAWN, STEPS, TOURS, Plan
+from missionfsm.tools.conform.run import BOUNDS, FEW, ONE_IN, ONE_IN_UNDRIVEN, Run
+from missionfsm.tools.conform.tour import play, some, written
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 HEAD: Any = {"missionfsm": 1, "system": "bear.mission", "world": {}}
@@ -265,3 +267,45 @@ def test_what_moves_by_itself_is_not_followed_for_ever(monkeypatch: pytest.Monke
     stopped = any("it was stopped after" in one for one in verdict.notes)
     assert (verdict.outcome, stopped) == (Outcome.VIOLATES if broken else Outcome.CONFORMS, not broken)
     assert (verdict.examples < 100, any("time was up" in one for one in verdict.notes)) == (True, False)
+
+
+def turned(message: Any) -> Any:
+    """A message that shows a pose with the axes of the map swapped, unless it is the first goal of its mission."""
+    for mission in message["missionStates"]["missions"]:
+        for goal in mission["goals"][1:]:
+            pose = goal.get("pose")
+            if pose:
+                pose["xMeters"], pose["yMeters"] = pose["yMeters"], pose["xMeters"]
+    return message
+
+
+def test_poses_behind_other_goals_are_asked_for() -> None:
+    """A robot that mistakes a pose only where it is not the first goal is found out."""
+    run = Run.against(MISSION, ReferenceSubject(MISSION, mutate_message=turned))
+    assert not play(run)
+    assert "pose (1.25, 2.5, 0.5)" in str(run.conversation.judge.verdict())
+
+
+class Lenient(ReferenceSubject):
+    """Takes any number for a command, and does nothing at one that stands for none."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        if method == "UpdateMission" and params.get("missionCommand", {}).get("command") == 9:
+            return Exchange({})
+        return super().exchange(method, params)
+
+
+def test_a_number_that_is_no_command_is_asked_for() -> None:
+    """A robot that answers OK to it is found out."""
+    run = Run.against(MISSION, Lenient(MISSION))
+    assert not play(run)
+    assert "the-command-is-not-set" in str(run.conversation.judge.verdict())
+
+
+@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("plan", [Plan(), Plan.beside(DRAWN, TOURS, STEPS)], ids=["command line", "Python"])
+def test_a_default_run_plays_every_script(name: str, plan: Plan) -> None:
+    """Those of other families stand last; a bound that cuts them off is noticed."""
+    of = system(name)
+    scripts = written([of.alphabet(world, BOUNDS) for world in of.alphabet({}, BOUNDS).worlds])
+    assert some(scripts, plan.scripts) == scripts

@@ -136,6 +136,7 @@ def _updates() -> Iterator[Input]:
     yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_UNKNOWN"}})
     yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME}})
     yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_DANCE"}})
+    yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": 9}})
     yield Input("UpdateMission", {"missionCommand": {"command": "COMMAND_CANCEL"}})
     yield Input("UpdateMission", {})
     yield Input("UpdateMission", {"missionCommand": {"missionId": ANY_NAME, "command": "COMMAND_PAUSE"}, "x": 1})

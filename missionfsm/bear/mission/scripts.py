@@ -183,9 +183,10 @@ def _impossible() -> Iterator[tuple[ScriptStep, ...]]:
 
 
 def _poses() -> Iterator[tuple[ScriptStep, ...]]:
-    """Goals that are poses: the origin of the map, and one to choose before destinations that are free as well."""
+    """Goals that are poses: the origin of the map, one to choose before what is free as well, some behind others."""
     origin: JSON = {"pose": {"xMeters": 0.0, "yMeters": 0.0, "headingRadians": 0.0}}
     pose: JSON = {"pose": {"xMeters": 2.5, "yMeters": 1.25, "headingRadians": 0.5}}
+    mixed = {"goals": [*goals_at(TABLES[0]), pose, origin]}
     either: JSON = {"mission": {"baseMission": {"navigateAutoMission": {"goals": [pose, *goals_at(TABLES[0])]}}}}
     yield (
         _SUBSCRIBE,
@@ -194,6 +195,13 @@ def _poses() -> Iterator[tuple[ScriptStep, ...]]:
         *call("CreateMission", either),
         *call("AppendMission", {"mission": base(origin)}),
         *drive("missionSucceeded"),
+    )
+    yield (
+        _SUBSCRIBE,
+        *call("CreateMission", {"mission": {"serviMission": {"deliveryMission": mixed}}}),
+        *drive("goalReached"),
+        *drive("missionSucceeded"),
+        *call("CreateMissionWorkflow", {"missionWorkflow": {"serviWorkflow": {"hosting": mixed}}}),
     )
 
 

@@ -11,6 +11,9 @@ from missionfsm.tools.conform.tour import some, written
 DRAWN, TOURS, STEPS = 100, 60, 40
 """By default: how many conversations are drawn, how many are tours, and how many calls and drives each has at most."""
 
+SCRIPTS = 240
+"""The most scripts of a default run: more than any system has, so that all are played."""
+
 FILLS = 500
 """The most conversations that go to situations which were asked too seldom, in a system that has a matrix."""
 
@@ -32,7 +35,7 @@ class Plan:
 
     drawn: int = DRAWN
     tours: int = TOURS
-    scripts: int = DRAWN + TOURS
+    scripts: int = SCRIPTS
     steps: int = STEPS
     fills: int = FILLS
 
@@ -40,7 +43,8 @@ class Plan:
     def beside(cls, drawn: int, tours: int, steps: int) -> Plan:
         """So many drawn conversations and so many tours, and as many of the other kinds as go with them."""
         fills = FILLS if tours >= TOURS else tours - round(LED * tours)
-        return cls(drawn, tours, drawn + tours, steps, fills)
+        scripts = SCRIPTS if drawn >= DRAWN and tours >= TOURS else drawn + tours
+        return cls(drawn, tours, scripts, steps, fills)
 
     @classmethod
     def of(cls, conversations: int | None, steps: int = STEPS) -> Plan:
@@ -50,7 +54,7 @@ class Plan:
     @classmethod
     def sharing(cls, conversations: int, steps: int = STEPS) -> Plan:
         """So many conversations in all, shared among the kinds as by default."""
-        whole = cls()
+        whole = cls(scripts=DRAWN + TOURS)
         total = whole.scripts + whole.tours + whole.drawn
         scripts, drawn = (conversations * part // total for part in (whole.scripts, whole.drawn))
         tours = conversations - scripts - drawn

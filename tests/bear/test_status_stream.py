@@ -74,6 +74,32 @@ def test_an_offline_robot_without_errors_may_be_withheld_where_one_that_is_not_o
     assert conforms(*shown, *offline, world=WORLDS[1])
 
 
+def test_a_topic_that_is_reported_no_more_may_be_shown_where_one_that_never_was_is_withheld() -> None:
+    """AS-09: that a value is unset is known where a robot said so; each of the two is read in one way."""
+    never = [*opened(1, ONLINE, by_ids("r3")), SETTLED]
+    ceased = [report("r1", "connection", None), *opened(2, ONLINE, by_ids("r1"))]
+    shown = [online_message(2, r1=(7, "STATE_UNKNOWN")), SETTLED]
+    assert conforms(*never, *ceased, *shown, world=WORLDS[1])
+    assert not conforms(*never, *ceased, *shown, *opened(3, ONLINE, by_ids("r1")), SETTLED, world=WORLDS[1])
+    assert not conforms(
+        *never,
+        *ceased,
+        *shown,
+        *opened(3, ONLINE, by_ids("r3")),
+        online_message(3, r3=(1, "STATE_UNKNOWN")),
+        world=WORLDS[1],
+    )
+
+
+@pytest.mark.parametrize("shown", [[], [online_message(2, r3=(1, "STATE_UNKNOWN"))]], ids=["withheld", "unknown"])
+def test_what_is_shown_of_a_robot_that_says_of_itself_what_nobody_knew_is_free(shown: list[Any]) -> None:
+    """AS-09: that it does not report a topic may be news, or not; nothing that it did not report is shown."""
+    never = [*opened(1, ONLINE, by_ids("r3")), SETTLED]
+    told = [report("r3", "connection", None), *opened(2, ONLINE, by_ids("r3"))]
+    assert conforms(*never, *told, *shown, SETTLED, world=WORLDS[1])
+    assert not conforms(*never, *told, online_message(2, r3=(1, "STATE_CONNECTED")), SETTLED, world=WORLDS[1])
+
+
 def test_an_empty_arm_of_a_selector_may_be_no_arm() -> None:
     """AS-04: the list of ids and the location are two situations, each read by itself."""
     no_location = {"selector": {"robotIds": {"ids": ["r1"]}, "locationId": ""}}

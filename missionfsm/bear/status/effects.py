@@ -17,6 +17,7 @@ from missionfsm.bear.status.readings.selecting import AS_03_SERVED, AS_04, AS_04
 from missionfsm.bear.status.readings.unknown import (
     AS_07,
     AS_07_UNKNOWN,
+    AS_09_CEASED,
     AS_09_GONE,
     AS_09_OFFLINE,
     AS_09_UNKNOWN,
@@ -30,6 +31,7 @@ from missionfsm.bear.status.state import (
     Fleet,
     Request,
     Robot,
+    Unset,
     whose,
 )
 from missionfsm.bear.status.stream import renderings
@@ -188,10 +190,12 @@ def _first_of_others(fleet: Fleet, robot: Robot, endpoint: Endpoint) -> Iterator
 
 
 def _question(fleet: Fleet, endpoint: Endpoint, robot: Robot) -> Ambiguity | None:
-    """On which ambiguity it depends what a new stream shows first of a robot."""
+    """On which ambiguity it depends what a new stream shows first of a robot; None where that is certain, or free."""
     shown = view(robot, endpoint)
     if endpoint is Endpoint.NETWORK:
         return AS_27_OFFLINE if fleet.unheard else shown.unlinked if shown else None
+    if shown is None and robot.unset(endpoint):
+        return None if robot.offline or robot.unset(endpoint) is Unset.TOLD else AS_09_CEASED[endpoint.value]
     if shown is None:
         return (AS_09_GONE if robot.offline and endpoint.value in AS_09_GONE else AS_09_UNKNOWN)[endpoint.value]
     offline = (robot.offline or fleet.unheard) and endpoint is not Endpoint.ONLINE
@@ -220,7 +224,7 @@ def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Itera
             yield Emission(topic, anything, ())
         yield Emission(topic, anything, (), stays=True)
     elif letter == "e":
-        yield Emission(topic, View(robot.id, endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED)), ())
+        yield _disconnected(topic)
     elif endpoint is Endpoint.NETWORK:
         if shown and letter != "c":
             yield Emission(topic, shown, ())
@@ -228,6 +232,15 @@ def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Itera
         yield _blank(topic, robot, endpoint)
     elif shown and letter == "a":
         yield Emission(topic, shown, ())
+    elif letter == "a":  # AS-09: it is offline as well, or said of itself what nobody had asked
+        yield evolve(_blank(topic, robot, endpoint), optional=True)
+        if endpoint is Endpoint.ONLINE:
+            yield evolve(_disconnected(topic), optional=True)
+
+
+def _disconnected(topic: About) -> Emission:
+    view = View(topic.robot, topic.endpoint, RobotConnection(ConnectionState.STATE_DISCONNECTED))
+    return Emission(topic, view, ())
 
 
 def _blank(topic: About, robot: Robot, endpoint: Endpoint) -> Emission:

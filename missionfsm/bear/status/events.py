@@ -105,6 +105,8 @@ def _reported(fleet: Fleet, robot: Robot, part: str, value: Value, assumes: Assu
             yield from _reporting_steps(
                 fleet, robot, after, part, (*assumes, question[letter]), unset=_unset(after, endpoint, letter)
             )
+    elif value is None and robot.part(part) is None:
+        yield Step(fleet.put(reporting(robot, part, None)), assumes=assumes, label="report")
     else:
         yield from _reporting_steps(fleet, robot, reporting(robot, part, value), part, assumes)
 

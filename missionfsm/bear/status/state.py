@@ -138,6 +138,13 @@ Value = Any
 """A part of a robot's state as it was reported (frozen and hashable), or None where it is not reported."""
 
 
+class Unset(enum.Enum):
+    """Why nothing is known of a topic that a robot was said not to report; None where nothing was ever said of it."""
+
+    CEASED = "it was reported once"
+    TOLD = "it was never reported"
+
+
 @frozen(cache_hash=True)
 class Robot:
     """A robot as the cloud knows it.
@@ -146,7 +153,7 @@ class Robot:
         state: what it reports now.
         wifi: the network that it is connected to.
         known: by subscription with a single topic, in the order of `TOPICAL`: what is known of it, perhaps although
-            the robot does not report it any more (AS-09); None for nothing.
+            the robot does not report it any more (AS-09); None or an `Unset` for nothing.
         left: the locations that it has left, sorted: once there are any, it matters which robots a location's streams
             follow (AS-25).
     """
@@ -166,7 +173,13 @@ class Robot:
 
     def topic(self, endpoint: Endpoint) -> Value:
         """What is known of the topic of a subscription with a single one; None for nothing."""
-        return self.known[_POSITIONS[endpoint]]
+        known = self.known[_POSITIONS[endpoint]]
+        return None if isinstance(known, Unset) else known
+
+    def unset(self, endpoint: Endpoint) -> Unset | None:
+        """Why nothing is known of the topic of a subscription with a single one, if the robot said so."""
+        known = self.known[_POSITIONS[endpoint]] if endpoint in _POSITIONS else None
+        return known if isinstance(known, Unset) else None
 
     @property
     def connection(self) -> ConnectionState:
@@ -202,11 +215,20 @@ def reporting(robot: Robot, part: str, value: Value, *, keep: bool = True) -> Ro
         changed = {part: value, **({other: None} if other and value is not None else {})}
         robot = evolve(robot, state=evolve(robot.state, **changed))
     for endpoint, topic in TOPICAL.items():
-        if topic == part and (value is not None or not keep):
+        if topic == part:
             known = list(robot.known)
-            known[_POSITIONS[endpoint]] = value
+            known[_POSITIONS[endpoint]] = _learnt(known[_POSITIONS[endpoint]], value, keep=keep)
             robot = evolve(robot, known=tuple(known))
     return robot
+
+
+def _learnt(known: Value, value: Value, *, keep: bool) -> Value:
+    """What is known of a topic after a report about it."""
+    if value is not None:
+        return value
+    if known is None:
+        return Unset.TOLD
+    return known if keep or isinstance(known, Unset) else Unset.CEASED
 
 
 def starting(robot: Robot) -> Robot:

@@ -42,6 +42,15 @@ AS_09_UNKNOWN = {
     )
     for call in (BATTERY, ERRORS, NAVIGATION, ONLINE, ROBOT)
 }
+AS_09_CEASED = {
+    call: Ambiguity(
+        f"AS-09.ceased.{call}",
+        f"{call}: what does a new stream show first of a robot whose topic is known to be reported no more?",
+        AS_09_UNKNOWN[call].readings,
+        default="b",
+    )
+    for call in (BATTERY, ERRORS, NAVIGATION, ONLINE)
+}
 AS_09_GONE = {
     call: Ambiguity(
         f"AS-09.gone.{call}",

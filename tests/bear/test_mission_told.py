@@ -285,3 +285,16 @@ def test_what_departs_from_the_text_is_accused_before_what_comes_of_it() -> None
     ]
     says = "only a reading that departs from the text explains this before it"
     assert told.notes[0] == f"{says}: CreateMission(servi delivery to 'nowhere') was answered OK m1"
+
+
+def test_the_nearest_rule_is_told_before_others_also_where_it_stands_with_what_was_allowed() -> None:
+    """A skip that names the wrong mission breaks the sentence about its answer, and not that about a last goal."""
+    log = (
+        Log(drives=DRIVES)
+        .creates("A", "delivery", "table-1")
+        .asks("AppendMission", mission("delivery", "table-2"), missionId="B")
+    )
+    log.lines.append({"drive": {"event": "missionSucceeded"}})
+    told = log.asks("SkipGoal", missionId="A").told
+    assert told.against[0].id == "bear.mission/SkipGoal/the-next-goal-is-taken-up"
+    assert "it names A where it should name B" in told.notes

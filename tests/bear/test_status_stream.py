@@ -240,6 +240,14 @@ def test_a_report_of_the_same_value_needs_no_message() -> None:
     assert (readings_of(found, "AS-12.event"), found.verdict().flagged != ()) == (("b",), True)
 
 
+def test_what_is_due_of_another_robot_is_told_before_its_number() -> None:
+    """A message about the wrong robot has a number of its own, which may be that of the robot it names."""
+    lines = [*opened(1, BATTERY, at("L1")), battery_message(1, "r1", 5, FIRST)]
+    about_another = ["only-selected-robots-are-shown", "sequence-numbers-grow"]
+    assert broken(*lines, battery_message(1, "r1", 5, SECOND)) == about_another
+    assert broken(*lines, battery_message(1, "r1", 5, battery(50))) == ["sequence-numbers-grow"]
+
+
 def test_whole_states_may_be_repeated() -> None:
     """AS-12: in hybrid mode a state may come again, and that is no departure."""
     lines = [*opened(1, ROBOT, by_ids("r1")), robot_message(1, "r1", 1, R1["state"])]

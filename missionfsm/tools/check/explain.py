@@ -12,6 +12,7 @@ from missionfsm.kernel.rules import OK
 from missionfsm.kernel.sequence import STALE
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Mismatch
+from missionfsm.kernel.terms import Topic
 from missionfsm.kernel.text import printable
 from missionfsm.kernel.transport import TR_05
 from missionfsm.oracle.belief import Belief
@@ -117,9 +118,7 @@ def _operation(nearest: Nearest, event: Event, expected: Iterable[Candidate]) ->
         return "" if nearest.about.request is None else spec.request_operation(nearest.about.request)
     topics = [one.owed[0].topic for one in expected if one.owed is not None]
     if isinstance(event, Received | Ended):
-        number = nearest.belief.number(event.channel)
-        here = nearest.belief.node.explanations
-        topics = [channel.topic for one in here for channel in one.channels if channel.name == number]
+        topics = _topics(nearest, event)
     return next((spec.delivery(topic).operation for topic in topics), "")
 
 
@@ -253,9 +252,11 @@ def _about_the_answer(spec: Spec, rules: Iterable[str]) -> list[str]:
 
 def _against_message(nearest: Nearest, event: Received) -> Accusation:
     wrong = _wrong_mark(nearest, event)
-    if wrong is not None:
-        return (), [wrong.rule], [wrong.says]
     candidates = _likeliest_first(nearest.messages(event))
+    if wrong is not None:
+        meant = _meant_for_another(_topics(nearest, event), candidates)
+        told = [*_broken(meant), wrong.rule], [*(problem.says for problem in _problems(meant)), wrong.says]
+        return meant, *told
     if not candidates:
         return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _likeliest(candidates)
@@ -274,6 +275,25 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     if refused is not None:
         return candidates, refused[0], [refused[1]]
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
+
+
+ALIKE = VALUE + 1
+"""What a message weighs at most that shows what is due but for one word."""
+
+
+def _meant_for_another(topics: Sequence[Topic], candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Of a stream about several things: what is due about another of them, if it is told of the wrong one.
+
+    Its number is then one of those of the other, and says less.
+    """
+    return [one for one in candidates[:1] if len(topics) > 1 and one.allowed and VALUE <= one.weight <= ALIKE]
+
+
+def _topics(nearest: Nearest, event: Received | Ended) -> list[Topic]:
+    """What the channel that an event is on is about."""
+    number = nearest.belief.number(event.channel)
+    here = nearest.belief.node.explanations
+    return list(dict.fromkeys(channel.topic for one in here for channel in one.channels if channel.name == number))
 
 
 def _staying(candidates: list[Candidate]) -> list[Candidate]:
@@ -459,13 +479,7 @@ def _called(nearest: Nearest, channel: Channel) -> str:
 def _against_end(nearest: Nearest, event: Ended) -> Accusation:
     """The rules that the end of a channel breaks: those of its topic, or those about a channel that is not open."""
     spec = nearest.spec
-    (_, _, number), _ = nearest.belief.symbol(event)
-    topics = dict.fromkeys(
-        channel.topic
-        for explanation in nearest.belief.node.explanations
-        for channel in explanation.channels
-        if channel.name == number
-    )
+    topics = _topics(nearest, event)
     if not topics:
         return (), spec.unopened, [f"{name_words(event.channel)} is not open"]
     ways = [spec.delivery(topic) for topic in topics]

@@ -146,9 +146,10 @@ class Violation:
 
     @property
     def against(self) -> tuple[CitedRule, ...]:
-        """The rules that are broken and are not told with what was allowed."""
+        """The rules that are broken and are not told with what was allowed; before others the first is told again."""
         justified = {rule for one in self.expected for rule in one.rules}
-        return tuple(rule for rule in self.rules if rule not in justified)
+        left = tuple(rule for rule in self.rules if rule not in justified)
+        return (self.rules[0], *left) if left and self.rules[0] in justified else left
 
 
 @frozen

@@ -286,6 +286,34 @@ def test_poses_behind_other_goals_are_asked_for() -> None:
     assert "pose (1.25, 2.5, 0.5)" in str(run.conversation.judge.verdict())
 
 
+class Dated(ReferenceSubject):
+    """Knows no destination that was not on its map from the start."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        if method == "CreateMission" and "table-4" in str(params):
+            return Exchange(error={"status": "INVALID_ARGUMENT", "message": "no such destination"})
+        return super().exchange(method, params)
+
+
+class Forgetful(ReferenceSubject):
+    """Tells nobody but the first who subscribed of a mission that is resumed."""
+
+    def exchange(self, method: str, params: Any) -> Any:
+        found = super().exchange(method, params)
+        resumes = "COMMAND_RESUME" in str(params)
+        return evolve(found, after=found.after[:1]) if resumes else found
+
+
+@pytest.mark.parametrize(
+    ("subject", "says"), [(Dated, "'table-4'"), (Forgetful, "did not show [RUNNING at goal 0, WAITING]")]
+)
+def test_a_map_that_changes_and_a_second_subscriber_are_asked_for(subject: type[ReferenceSubject], says: str) -> None:
+    """A robot that goes by the map that it had, or tells one subscriber less than another, is found out."""
+    run = Run.against(MISSION, subject(MISSION))
+    assert not play(run)
+    assert says in str(run.conversation.judge.verdict())
+
+
 class Lenient(ReferenceSubject):
     """Takes any number for a command, and does nothing at one that stands for none."""
 

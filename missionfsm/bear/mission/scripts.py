@@ -205,8 +205,58 @@ def _poses() -> Iterator[tuple[ScriptStep, ...]]:
     )
 
 
+def _maps() -> Iterator[tuple[ScriptStep, ...]]:
+    """The map of now decides: destinations come and go while nothing is under way, and ahead of a mission."""
+    new = "table-4"
+    to_new, to_gone = ({"mission": base({"destinationId": name})} for name in (new, TABLES[1]))
+    changed, as_before = drive("world", destinations=[TABLES[0], new]), drive("world", destinations=[*TABLES])
+    workflows = (
+        {"missionWorkflow": {"serviWorkflow": {"delivery": {"goals": goals_at(at)}}}} for at in (TABLES[1], new)
+    )
+    yield (
+        _SUBSCRIBE,
+        *changed,
+        *call("CreateMission", to_gone),
+        *call("CreateMissionBatch", {"missions": [to_new, to_gone]}),
+        *call("CreateMission", to_new),
+        *call("AppendMission", to_gone),
+        *call("AppendMission", to_new),
+        *call("AppendMissionBatch", {"missions": [to_new, to_gone]}),
+        *drive("missionSucceeded") * 2,
+        *(step for one in workflows for step in call("CreateMissionWorkflow", one)),
+        *drive("missionSucceeded"),
+        *as_before,
+        *call("CreateMission", to_new),
+        *call("CreateMission", to_gone),
+    )
+    yield (*_BEGUN, *changed, *drive("goalReached") * 2, *as_before, *drive("goalReached"))
+
+
+def _two_watch() -> Iterator[tuple[ScriptStep, ...]]:
+    """Whatever happens is shown to all who watch, and to one who comes later."""
+    yield (
+        _SUBSCRIBE,
+        *_BEGUN,
+        *APPENDED,
+        *commanded(0, PAUSE),
+        *commanded(0, RESUME),
+        *drive("goalReached"),
+        _SUBSCRIBE,
+        *call("SkipGoal"),
+        *drive("missionFailed"),
+        *drive("missionSucceeded"),
+        *call("ClearMissionStatus"),
+        *call("ChargeRobot"),
+        *commanded(2, FINISH),
+        *call("CreateMissionBatch", {"missions": [_SINGLE, _SINGLE]}),
+        *commanded(3, CANCEL),
+    )
+
+
 SCRIPTS = (
     *_poses(),
+    *_maps(),
+    *_two_watch(),
     *_choices(),
     *_commands(),
     *_patrols("servi", "deliveryPatrolMission", "bussingPatrolMission"),

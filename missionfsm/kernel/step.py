@@ -147,8 +147,10 @@ class Mismatch:
     """Why a message does not show a view: the rule that it breaks, and what is wrong.
 
     It is `near` if the message would show the view but for that: then it is likelier meant than one that is not owed.
+    It is `far` if the message is about something else, and shows something else of that: then any is likelier meant.
     """
 
     rule: str
     says: str
     near: bool = False
+    far: bool = False

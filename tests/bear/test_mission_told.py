@@ -298,3 +298,16 @@ def test_the_nearest_rule_is_told_before_others_also_where_it_stands_with_what_w
     told = log.asks("SkipGoal", missionId="A").told
     assert told.against[0].id == "bear.mission/SkipGoal/the-next-goal-is-taken-up"
     assert "it names A where it should name B" in told.notes
+
+
+def test_what_had_to_be_refused_is_told_before_what_only_an_odd_reading_finds_wrong() -> None:
+    """A batch with a mission of another family that comes to one mission should not have come to anything."""
+    two = {
+        "missions": [
+            mission("delivery", "table-1"),
+            {"mission": {"cartiMission": {"traverseMission": {"goals": goals("table-2")}}}},
+        ]
+    }
+    told = Log(drives=DRIVES).asks("CreateMissionBatch", two, missionIds=["A"]).told
+    assert rules(told)[0] == "CreateMissionBatch/INVALID_ARGUMENT/the-mission-is-for-another-family"
+    assert [one.what.partition(" ")[0] for one in told.expected] == ["INVALID_ARGUMENT", "FAILED_PRECONDITION", "OK"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any
 
 import pytest
@@ -246,6 +247,16 @@ def test_what_is_due_of_another_robot_is_told_before_its_number() -> None:
     about_another = ["only-selected-robots-are-shown", "sequence-numbers-grow"]
     assert broken(*lines, battery_message(1, "r1", 5, SECOND)) == about_another
     assert broken(*lines, battery_message(1, "r1", 5, battery(50))) == ["sequence-numbers-grow"]
+
+
+def test_somebody_elses_robot_is_not_told_of_where_another_is_shown_wrongly() -> None:
+    """A stream of a location may serve x1; a message about r2 that shows neither is one about r2."""
+    world = deepcopy(WORLDS[0])
+    theirs = next(robot for robot in world["robots"] if not robot["owned"])
+    theirs["locationId"] = "L1"
+    lines = [*opened(1, BATTERY, at("L1")), battery_message(1, "r1", 5, FIRST), battery_message(1, "r2", 7, SECOND)]
+    told = broken(*lines, battery_message(1, "r2", 8, battery(43)), world=world)
+    assert "only-selected-robots-are-shown" not in told
 
 
 def test_whole_states_may_be_repeated() -> None:

@@ -35,7 +35,8 @@ HEAD: JSON = {"missionfsm": 1, "system": "bear.mission", "world": {}}
 
 @functools.cache
 def found(code: str, *rules: str) -> Verdict:
-    return conform(MISSION, answering(code, *rules), drawn=5, tours=60, steps=20, seed=4, advice=False)
+    """What is found first of such an implementation, with a seed by which it is wrong within one conversation."""
+    return conform(MISSION, answering(code, *rules), drawn=5, tours=60, steps=20, seed=1, advice=False)
 
 
 def history(verdict: Verdict) -> tuple[JSON, ...]:

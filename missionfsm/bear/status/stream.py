@@ -79,9 +79,9 @@ def matches(view: View, content: Seen | Malformed) -> tuple[Match, ...] | Mismat
     if isinstance(content, Malformed):
         return Mismatch(WELL_FORMED.id, content.says)
     if content.robot != view.robot:
-        return Mismatch(
-            SELECTED.id, f"the message is about robot {brief(content.robot)}, not about {brief(view.robot)}"
-        )
+        says = f"the message is about robot {brief(content.robot)}, not about {brief(view.robot)}"
+        alike = content.value == view.value
+        return Mismatch(SELECTED.id, says, near=alike, far=not alike)
     if content.endpoint is not view.endpoint and not (content.endpoint is None and view.endpoint in BLANK):
         return Mismatch(WELL_FORMED.id, f"the message is none of {view.endpoint.value}")
     value = BLANK[view.endpoint] if content.endpoint is None else content.value

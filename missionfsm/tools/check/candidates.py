@@ -14,12 +14,14 @@ from missionfsm.tools.check.eliminations import Elimination
 from missionfsm.tools.check.phrases import answer_words, described, name_words
 
 READING, LEFT_OUT, NAME, FAILED, UNDRIVEN, SHAPE, UNOWED, VALUE, UNBEGUN, CODE = 2, 3, 4, 5, 6, 10, 30, 40, 50, 60
+ELSE = 90
 """The weights of problems: a reading that was ruled out, a wrong name, and so on. The likeliest mistake weighs least.
 
 FAILED: the message shows what a call would have done that failed. UNDRIVEN: it shows what a drive would have done that
 nobody commanded. LEFT_OUT: it comes before a message that is due earlier. UNOWED: nothing is owed any more, UNBEGUN:
-nothing is owed yet. SHAPE and VALUE grow by 0 to 9 with the distance between what came and what was due; UNOWED grows
-by the weight of what is wrong with a message that shows something else than the last one.
+nothing is owed yet. ELSE: what it shows of one thing is not due of another either. SHAPE and VALUE grow by 0 to 9 with
+the distance between what came and what was due; UNOWED grows by the weight of what is wrong with a message that shows
+something else than the last one.
 """
 
 PASSING = 1
@@ -90,6 +92,7 @@ class Candidate:
         early: whether an urgent step has still to happen at that point.
         unusual: how many readings it assumes that are not those of the reference, although those could be followed.
         code: the code, if it is an answer.
+        departs: whether it assumes a reading that departs from the text.
     """
 
     what: str = ""
@@ -103,6 +106,7 @@ class Candidate:
     early: bool = False
     unusual: int = 0
     code: str = ""
+    departs: bool = False
 
     @property
     def weight(self) -> int:

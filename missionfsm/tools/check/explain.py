@@ -176,9 +176,13 @@ def _broken(candidates: Iterable[Candidate]) -> Iterator[str]:
 
 
 def _against_answer(nearest: Nearest, event: Returned) -> Accusation:
-    candidates = sorted(nearest.answers(event), key=lambda one: (one.weight, one.early))
+    candidates = sorted(nearest.answers(event), key=lambda one: (one.weight, one.early, one.departs, one.unusual))
     said = answer_words(event.answer, tuple(map(name_words, event.names)))
     lightest = sorted(_lightest(candidates), key=lambda one: abs(len(one.what) - len(said)))
+    literal = [one for one in candidates if one.allowed and not one.departs]
+    if literal and event.answer.code == OK and all(one.departs for one in lightest):
+        # What is wrong with it by a reading that departs from the text is not as near as that it had to be refused.
+        return sorted(candidates, key=lambda one: one.departs), *wrong_code(nearest, event, literal)
     if not lightest or lightest[0].weight < CODE:
         return candidates, *_wrong_in_it(nearest, event, candidates, lightest)
     return candidates, *wrong_code(nearest, event, [one for one in candidates if one.allowed] or candidates)
@@ -254,7 +258,8 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     wrong = _wrong_mark(nearest, event)
     candidates = _likeliest_first(nearest.messages(event))
     if wrong is not None:
-        meant = _meant_for_another(_topics(nearest, event), candidates)
+        malformed = isinstance(event.content, Malformed)
+        meant = [] if malformed else _meant_for_another(_topics(nearest, event), candidates)
         told = [*_broken(meant), wrong.rule], [*(problem.says for problem in _problems(meant)), wrong.says]
         return meant, *told
     if not candidates:
@@ -277,16 +282,12 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
 
 
-ALIKE = VALUE + 1
-"""What a message weighs at most that shows what is due but for one word."""
-
-
 def _meant_for_another(topics: Sequence[Topic], candidates: Sequence[Candidate]) -> list[Candidate]:
     """Of a stream about several things: what is due about another of them, if it is told of the wrong one.
 
     Its number is then one of those of the other, and says less.
     """
-    return [one for one in candidates[:1] if len(topics) > 1 and one.allowed and VALUE <= one.weight <= ALIKE]
+    return [one for one in candidates[:1] if len(topics) > 1 and one.allowed and SHAPE <= one.weight < UNOWED]
 
 
 def _topics(nearest: Nearest, event: Received | Ended) -> list[Topic]:

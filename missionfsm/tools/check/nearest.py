@@ -31,6 +31,7 @@ from missionfsm.oracle.symbols import call_of, names_of
 from missionfsm.oracle.unsaid import Unsaid
 from missionfsm.tools.check.candidates import (
     CODE,
+    ELSE,
     FAILED,
     LEFT_OUT,
     NAME,
@@ -175,6 +176,7 @@ class Nearest:
             early=not self.at_rest(here),
             unusual=unusual,
             code=answer.code,
+            departs=any(one.ambiguity.flagged.issuperset(one.letters) for one in assumes),
         )
 
     def _answered(
@@ -332,7 +334,7 @@ class Nearest:
         ways = self.successors.matches(owed, message.content)
         if isinstance(ways, Mismatch):
             further = _distance(described(self.spec, owed.view), described(self.spec, message.content))
-            least = SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
+            least = ELSE if ways.far else SHAPE if ways.near or isinstance(message.content, Malformed) else VALUE
             turned = self._turned(owed.names, message.given)
             says, named = (turned, self.spec.delivery(channel.topic).named) if turned else (ways.says, ())
             return [Problem(says, (*named, ways.rule), least + further)]

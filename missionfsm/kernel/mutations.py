@@ -99,6 +99,11 @@ def without_effect(state: State, step: Step) -> Step | None:
     return evolve(step, after=state, names=None, emits=(), opens=())
 
 
+def turned(_: State, step: Step) -> Step | None:
+    """Its answer has the names that it should have, the other way round."""
+    return evolve(step, refs=step.refs[::-1]) if len(step.refs) > 1 else None
+
+
 def unshown(_: State, step: Step) -> Step:
     """Nothing is sent about it."""
     return evolve(step, emits=(), opens=tuple(evolve(one, owed=()) for one in step.opens))

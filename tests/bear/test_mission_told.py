@@ -311,3 +311,30 @@ def test_what_had_to_be_refused_is_told_before_what_only_an_odd_reading_finds_wr
     told = Log(drives=DRIVES).asks("CreateMissionBatch", two, missionIds=["A"]).told
     assert rules(told)[0] == "CreateMissionBatch/INVALID_ARGUMENT/the-mission-is-for-another-family"
     assert [one.what.partition(" ")[0] for one in told.expected] == ["INVALID_ARGUMENT", "FAILED_PRECONDITION", "OK"]
+
+
+def test_ids_the_wrong_way_round_break_the_sentence_about_them() -> None:
+    """The list is right, and the answer is what is wrong: it is accused beside the list that tells."""
+    both = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-2")]}
+    log = Log(drives=DRIVES, transport="strict").asks("CreateMissionBatch", both, missionIds=["B", "A"])
+    listed = ("A", "delivery", "RUNNING", ("table-1",)), ("B", "delivery", "DEFAULT", ("table-2",))
+    told = with_suspects(judged_system("bear.mission", strict=True), log.shows(*listed).told)
+    assert "CreateMissionBatch/the-answer-names-the-new-missions-in-order" in rules(told)
+
+
+def test_a_mission_whose_turn_it_is_not_breaks_the_sentence_about_turns() -> None:
+    """The last that waits runs instead of the first: the states are those of the robot, and it does the wrong thing."""
+    both = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-2")]}
+    log = Log(drives=DRIVES, transport="strict").asks("CreateMissionBatch", both, missionIds=["A", "B"])
+    listed = ("A", "delivery", "DEFAULT", ("table-1",)), ("B", "delivery", "RUNNING", ("table-2",))
+    told = with_suspects(judged_system("bear.mission", strict=True), log.shows(*listed, index=1).told)
+    assert "lifecycle/start" in rules(told)
+
+
+def test_what_contradicts_an_earlier_answer_breaks_the_rule_by_which_that_was_right() -> None:
+    """An empty request is refused by the state, where another that is wrong was refused by its form (AM-01)."""
+    first = Log(drives=DRIVES, transport="strict").asks(
+        "AppendMissionBatch", {"missions": [mission("delivery", "nowhere")]}, "INVALID_ARGUMENT"
+    )
+    told = first.asks("AppendMissionBatch", {"missions": []}, "FAILED_PRECONDITION").told
+    assert rules(told)[0] == "AppendMissionBatch/INVALID_ARGUMENT/the-request-is-empty"

@@ -173,17 +173,22 @@ def _skips_one(mission: Mission) -> int:
 
 
 def _start_last(_: Robot, step: Step) -> Step:
-    """The last waiting mission starts instead of the first."""
+    """The last waiting mission starts instead of the first; they are listed as they were."""
     robot: Robot = step.after
     if not robot.pending or robot.active is None:
         return step
     fixed = len(robot.done)
-    names = step.names or ()
+    names, listed = step.names or (), robot.assigned or tuple(range(len(robot.turns)))
     last = evolve(robot.pending[-1], state=State.STATE_RUNNING, goal=max(robot.pending[-1].goal, 0))
     waiting = evolve(robot.active, state=State.STATE_DEFAULT, goal=0)
     return evolve(
         step,
-        after=evolve(robot, active=last, pending=(waiting, *robot.pending[:-1])),
+        after=evolve(
+            robot,
+            active=last,
+            pending=(waiting, *robot.pending[:-1]),
+            assigned=(*listed[:fixed], listed[-1], *listed[fixed:-1]),
+        ),
         names=(*names[:fixed], names[-1], *names[fixed:-1]),
         emits=(),
     )

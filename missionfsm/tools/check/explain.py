@@ -199,7 +199,9 @@ def _wrong_in_it(
     contradicts = all(problem.weight == READING for problem in _problems(lightest))
     if not contradicts and _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
-    rules = _alternately(rules, _of_other_codes(candidates))
+    others = _of_other_codes(candidates)
+    # What contradicts an earlier answer breaks the rule by which that was right, where another holds here as well.
+    rules = _alternately(others, rules) if contradicts else _alternately(rules, others)
     notes = [*(problem.says for problem in _problems(lightest[:1])), *_given_twice(event)]
     return rules or _about_the_answer(nearest.spec, (rule for one in lightest for rule in one.rules)), notes
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from attrs import evolve
 
-from missionfsm.kernel.mutations import StepMutator, unshown, without_effect
+from missionfsm.kernel.mutations import StepMutator, turned, unshown, without_effect
 from missionfsm.kernel.spec import Spec
 from missionfsm.kernel.step import Step
 from missionfsm.kernel.system import System
@@ -46,7 +46,7 @@ def ways_to_break(system: System, rule: str) -> Broken:
     in_messages = any(one.rule == rule for one in system.message_mutations) or _begins_a_stream(system.spec, rule)
     if found is None or found.code or in_messages:
         return own
-    return *own, (rule, without_effect), (rule, unshown)
+    return *own, (rule, without_effect), (rule, unshown), *([(rule, turned)] if found.names else [])
 
 
 def _begins_a_stream(spec: Spec, rule: str) -> bool:

@@ -155,6 +155,58 @@ def test_calls_that_name_a_robot_are_followed_to_their_end(command_line: Command
     assert found == {f"r{call}": ("conforms", 3) for call in range(1, 60, 2)}
 
 
+def empty(number: int, **more: Any) -> Any:
+    stamp = {"timestamp": {"seconds": "1743527100", "nanos": 0}, "sequenceNumber": number}
+    return {
+        "stream": 1,
+        "message": {**more, "metadata": stamp, "missionStates": {"missions": [], "currentMissionIndex": -1}},
+    }
+
+
+SUBSCRIBED = [{"call": 1, "method": "SubscribeMissionStatus", "params": {}}, {"return": 1, "result": {"stream": 1}}]
+SELECTED = [{**SUBSCRIBED[0], "params": {"selector": {"robotIds": {"ids": ["r1"]}}}}, SUBSCRIBED[1]]
+CLEARED = [
+    {"call": 2, "method": "ClearMissionStatus", "params": {"robotId": "r1"}},
+    {"return": 2, "error": {"status": "FAILED_PRECONDITION"}},
+]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ([*SUBSCRIBED, empty(1), *CLEARED, empty(2)], {None: ("conforms", 6)}),
+        ([*CLEARED, *SUBSCRIBED, empty(1), {"drive": {"event": "world", "destinations": []}}], {"r1": ("conforms", 6)}),
+        ([*SELECTED, empty(1, robotId="r1"), *CLEARED], {"r1": ("conforms", 5)}),
+        ([*CLEARED, *SELECTED, empty(1, robotId="r1"), {"settled": True}], {"r1": ("conforms", 6)}),
+    ],
+    ids=["not-at-first", "at-first", "selected", "selected-later"],
+)
+def test_where_one_robot_is_named_all_lines_are_about_it(
+    command_line: CommandLine, tmp_path: Path, lines: list[Any], found: dict[str | None, tuple[str, int]]
+) -> None:
+    """Params that name the only robot of a log in some calls do not take those apart from the others."""
+    assert judged(command_line, tmp_path / "log", FIRST, *lines) == found
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [*SUBSCRIBED, *CLEARED, *created(3, "A", params={"robotId": "r2"})],
+        [*CLEARED, *created(3, "A", params={"robotId": "r2"}), *SUBSCRIBED],
+    ],
+    ids=["before", "after"],
+)
+def test_lines_that_name_none_of_several_robots_are_refused(
+    command_line: CommandLine, tmp_path: Path, lines: list[Any]
+) -> None:
+    """Nobody can tell whose they are: one line says so."""
+    path = tmp_path / "log"
+    path.write_bytes(text(FIRST, *lines))
+    ended = command_line("check", path)
+    says = "params name several robots, as 'r1' and 'r2', but not everywhere: give every line its `robot`"
+    assert (ended.status, ended.out, ended.err) == (2, "", f"missionfsm: {path}:6: {says}\n")
+
+
 LATE = "a call was not answered, or only after everything had settled"
 
 

@@ -210,7 +210,8 @@ def _calls(path: str, *, by_params: bool) -> Mapping[str | None, _Calls] | None:
 def _follow(found: list[bytes], calls: defaultdict[str | None, _Calls], addresses: Addresses) -> None:
     """Take the calls and the returns of some lines into account. Raises UnreadableError if an id comes twice."""
     for line in found:
-        if b'"call"' not in line and b'"return"' not in line and b"\\u" not in line:
+        counts = b'"call"' in line or b'"return"' in line or b"\\u" in line
+        if not counts and (not addresses.undecided or b'"robot"' in line):
             continue
         one = orjson.loads(line)
         if "at" in one:

@@ -38,7 +38,7 @@ def _line(payload: Any, channel: str) -> Any:
 
 
 def _of_type(proto: object, channel: str = "odometry") -> Any:
-    header = {"channel": channel, "pubtime": "1", "acqtime": "1", "proto": proto}
+    header = {"channel": channel, "pubtime": "1", "acqtime": "1"} | ({} if proto is None else {"proto": proto})
     return {"connection": 1, "line": json.dumps({"header": header, "payload": {"x": 1.5}})}
 
 
@@ -47,7 +47,9 @@ ARRIVES = {"drive": {"event": "line", "line": _line(MissionProto(MISSION, "{}"),
 RUNS = _line(MissionStatusProto(MISSION, WireStatus.RUNNING), "mission_status")
 
 
-@pytest.mark.parametrize("other", [_of_type("123456"), _of_type("-5"), _line(TextProto("battery low"), "log")])
+@pytest.mark.parametrize(
+    "other", [_of_type("123456"), _of_type("-5"), _of_type(None), _line(TextProto("battery low"), "log")]
+)
 def test_other_traffic_of_the_application_changes_nothing(other: Any) -> None:
     """Messages of other types and texts on other channels are allowed, and exercise no rule."""
     assert _judged(NAME, other, ARRIVES, SETTLED, other, RUNS, other, NAME).outcome is Outcome.CONFORMS
@@ -68,6 +70,8 @@ def test_other_traffic_is_no_name_and_no_status() -> None:
         _of_type("TensorProto"),
         _of_type("123456", "mission_status"),
         _of_type("123456", "name"),
+        _of_type(None, "mission_status"),
+        _of_type(None, "name"),
         _line(TextProto("battery low"), "mission_status"),
         _line(MissionProto(MISSION, "{}"), "elsewhere"),
         _line(MissionStatusProto(MISSION, WireStatus.RUNNING), "elsewhere"),

@@ -50,7 +50,7 @@ def _said(line: LineContent) -> str:
     if line.kind == "status":
         return f"{line.what.upper()} on {line.channel}"
     if line.kind == "other":
-        return f"a message of type {line.what} on {line.channel}"
+        return f"a message of {f'type {line.what}' if line.what else 'no known type'} on {line.channel}"
     return f"the text {line.what!r} on {line.channel}" if line.kind == "text" else f"a mission on {line.channel}"
 
 

@@ -130,7 +130,10 @@ def see(line: object, *, header: bool = False) -> tuple[tuple[Name, ...], LineCo
 
 
 def see_other(line: object) -> tuple[tuple[Name, ...], LineContent] | None:
-    """The same of a message whose type is none of those that missions travel in; None where it is one, or is wrong."""
+    """The same of a message whose type is none of those that missions travel in; None where it is one, or is wrong.
+
+    AI-27: only the channel has to be in a header, so the type may be left out where the payload does not tell it.
+    """
     if not isinstance(line, str) or "\n" in line:
         return None
     found = decode_line(line.removesuffix("\r").encode(errors="surrogatepass"))
@@ -138,13 +141,13 @@ def see_other(line: object) -> tuple[tuple[Name, ...], LineContent] | None:
         return None
     header = json.loads(line)["header"]
     proto = header.get("proto")
-    if not isinstance(proto, int) and not str(proto).lstrip("-").isdecimal():
+    if proto is not None and not isinstance(proto, int) and not str(proto).lstrip("-").isdecimal():
         return None
     stamped = bool(stamp(line))
     return (), LineContent(
         "other",
         header["channel"],
-        str(proto),
+        "" if proto is None else str(proto),
         bare=_bare(json.loads(line)),
         stamped=stamped,
         unsigned=is_unsigned(proto),

@@ -62,7 +62,7 @@ def judged_system(name: str, *, strict: bool, anywhere: bool = False, others: bo
         message = f"{name}: {says}"
         raise UnreadableError(message)
     spec = in_the_middle(found.spec, anywhere=anywhere, others=others)
-    if spec.anywhere or spec.others:  # the situations of an unknown state are unknown
+    if anywhere or others:  # the situations of an unknown state are unknown
         found = evolve(found, matrix=None)
     return evolve(found, spec=spec if strict or not found.codec.streams else over_transport(spec))
 

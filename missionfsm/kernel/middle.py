@@ -76,6 +76,9 @@ def in_the_middle(spec: Spec, *, anywhere: bool, others: bool) -> Spec:
     foresees, succeeds, restarted = spec.foresees, spec.succeeds, spec.restarted
     if middle is None or not (anywhere or others):
         return spec
+    used = middle.used
+    if used:  # its own steps say what it may have been doing
+        return evolve(spec, initial=lambda world: used(spec.initial(world))) if anywhere else spec
     if middle.glimpses is None:
         return evolve(spec, anywhere=anywhere, foresees=None)
 

@@ -202,10 +202,13 @@ class Middle:
         glimpses: how its state becomes known from messages; None if no call changes the state, so
             that only what happened unseen is not known.
         undriven: names of the drives that may have happened before the log, so that what they do may happen unseen.
+        used: the initial state → one of a system that was in use before, from which `urgent` leads to every state in
+            which a log may begin, with the channels that are open. Nothing more is unknown then. None if there is none.
     """
 
     glimpses: Glimpses | None = None
     undriven: frozenset[str] = frozenset()
+    used: Callable[[State], State] | None = None
 
 
 def _operations(given: Mapping[str, Operation] | Iterable[Operation]) -> Mapping[str, Operation]:

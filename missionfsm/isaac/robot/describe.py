@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, USABLE, Arrives
-from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
+from missionfsm.isaac.robot.state import Codelet, Earlier, Introduction, Other, Report
 from missionfsm.isaac.shared.drives import Passes
 from missionfsm.isaac.shared.line import MICROSECONDS, LineContent
 from missionfsm.kernel.language import Happening, Malformed
@@ -31,6 +31,8 @@ def describe(value: object) -> str:
         return ("a mission runs" if value.running else "no mission runs") + where
     if isinstance(value, Report):
         return f"{value.status.upper()} of its mission on {value.channel}"
+    if isinstance(value, Earlier):
+        return f"a status of a mission from before the log on {value.channel}"
     if isinstance(value, Introduction):
         return f"the name{'' if value.name is None else f' {value.name!r}'} on {value.channel}"
     if isinstance(value, Other):

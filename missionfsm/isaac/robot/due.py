@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from attrs import evolve, frozen
 
 from missionfsm.isaac.robot import readings, rules
-from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report, Waiting, World
+from missionfsm.isaac.robot.state import Codelet, Earlier, Introduction, Other, Report, Waiting, World
 from missionfsm.kernel.language import Ambiguity, Assumption, Emission, Rule, Step
 
 STATUSES, NAMES, OTHERS = TOPICS = ("statuses", "names", "others")
@@ -46,6 +46,11 @@ def emission(world: World, status: str, about: int | None, *, offer: bool = Fals
 def may_report(here: Codelet, about: int | None) -> Emission:
     """RUNNING, which may be said, and again."""
     return emission(here.world, "running", about, offer=True)
+
+
+def of_before(here: Codelet) -> tuple[Emission, ...]:
+    """Statuses of missions from before the log, which may be said in the time that there is left for them."""
+    return (Emission(STATUSES, Earlier(here.world.status_channel), (), stays=True),) if here.earlier else ()
 
 
 def introduction(world: World, *, offer: bool = False) -> Emission:

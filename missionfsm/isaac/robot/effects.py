@@ -16,7 +16,7 @@ from missionfsm.isaac.robot import due, readings, rules
 from missionfsm.isaac.robot.inputs import BLANK, NULL, ODD, SHALLOW, UNUSABLE, Arrives
 from missionfsm.isaac.robot.state import NAME_BOUND, RUNNING_BOUND, TICK, Codelet, Waiting
 from missionfsm.isaac.shared.drives import Passes
-from missionfsm.kernel.language import Ambiguity, Assumption, Happening, Opening, Refs, Rule, Step
+from missionfsm.kernel.language import Ambiguity, Assumption, Happening, Refs, Rule, Step
 
 NEW = -1
 """The reference to the identifier that a line brings along."""
@@ -239,8 +239,19 @@ def passes(here: Codelet, event: Passes, _: Refs) -> tuple[Step, ...]:
         starts = ticks(here)
         if here.waited + event.time < TICK:
             starts += (Step(evolve(here, waited=here.waited + event.time)),)
+    if here.earlier:
+        starts = tuple(_said_by_now(step, event.time) for step in starts)
     reported = (step for start in starts for step in _reports(start, here.about, event.time))
     return tuple(step for one in reported for step in _introduces(one, event.time))
+
+
+def _said_by_now(step: Step, time: int) -> Step:
+    """Time passes in which statuses of missions from before the log are said."""
+    here: Codelet = step.after
+    left = here.earlier - time
+    if left > 0 or here.earlier > 1:
+        return evolve(step, after=evolve(here, earlier=max(1, left)))
+    return evolve(step, after=evolve(here, earlier=0), withdraws=(due.STATUSES,))
 
 
 def _kept_names(here: Codelet) -> tuple[int, ...]:
@@ -335,20 +346,8 @@ def _failed(gone: Step) -> Step:
 
 
 def _connected(here: Codelet) -> Step:
-    after = evolve(here, connected=True, quiet=0, nameless=0, waited=0)
-    emits = [due.introduction(here.world, offer=True), due.anything(here.world)]
+    after = evolve(here, connected=True, quiet=0, nameless=0, waited=0, earlier=TICK if here.earlier else 0)
+    emits = [due.introduction(here.world, offer=True), due.anything(here.world), *due.of_before(after)]
     if here.running and not here.waiting:
         emits.append(due.may_report(here, here.about))
     return Step(after, emits=tuple(emits), clears=due.TOPICS, rules=(rules.NAMED.id,))
-
-
-def begins(here: Codelet) -> tuple[Step, ...]:
-    """The connection, which is there from the start, is opened like any other."""
-    if here.begun:
-        return ()
-    openings = (
-        Opening(due.STATUSES, 0, kind="connection"),
-        Opening(due.NAMES, 0, (due.introduction(here.world, offer=True),), kind="connection"),
-        Opening(due.OTHERS, 0, (due.anything(here.world),), kind="connection"),
-    )
-    return (Step(evolve(here, begun=True, connected=True), opens=openings),)

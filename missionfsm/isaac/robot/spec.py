@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from missionfsm.isaac.robot import effects, readings, rules, stream
+from missionfsm.isaac.robot.beginning import MIDDLE, begins
 from missionfsm.isaac.robot.describe import describe
 from missionfsm.isaac.robot.state import LIFECYCLE, SYSTEM_NAME, Codelet
 from missionfsm.isaac.shared.drives import later
@@ -27,7 +28,7 @@ SPEC = Spec(
         Drive("disconnect", effects.connection, ends=True, impossible=(rules.LINKED.id,)),
         Drive("connect", effects.connection, impossible=(rules.LINKED.id,)),
     ),
-    urgent=effects.begins,
+    urgent=begins,
     spontaneous=effects.ticks,
     matches=stream.matches,
     delivery=stream.delivery,
@@ -60,4 +61,5 @@ SPEC = Spec(
     ),
     abstraction=Abstraction(enabled_key=_canonical, search_key=_canonical, canonical=_canonical),
     unopened=(rules.LINKED.id,),
+    middle=MIDDLE,
 )

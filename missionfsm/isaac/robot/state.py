@@ -65,6 +65,13 @@ class Report:
 
 
 @frozen(cache_hash=True)
+class Earlier:
+    """Any status on that channel: of a mission from before the log."""
+
+    channel: str
+
+
+@frozen(cache_hash=True)
 class Waiting:
     """A status that waits.
 
@@ -118,6 +125,9 @@ class Codelet:
         waited: microseconds for which they have waited while connected.
         quiet: microseconds for which RUNNING may not have been reported though a tree ran.
         nameless: microseconds for which the name may not have been said though it was connected.
+        in_use: whether it was in use before a log of it begins, whose first line is still to come.
+        earlier: microseconds for which statuses of missions from before the log may still wait while connected; 1 where
+            that time is over and what was said in it may still be seen.
     """
 
     world: World = World()
@@ -130,6 +140,8 @@ class Codelet:
     waited: int = 0
     quiet: int = 0
     nameless: int = 0
+    in_use: bool = False
+    earlier: int = 0
 
     @property
     def state(self) -> str:

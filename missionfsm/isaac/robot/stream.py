@@ -9,7 +9,7 @@ from attrs import evolve
 from missionfsm.isaac.robot import rules
 from missionfsm.isaac.robot.due import FINAL
 from missionfsm.isaac.robot.readings import AI_10, AI_25_HEADER, AI_27_UUID, AI_28_STATUS
-from missionfsm.isaac.robot.state import Codelet, Introduction, Other, Report
+from missionfsm.isaac.robot.state import Codelet, Earlier, Introduction, Other, Report
 from missionfsm.isaac.shared.line import LineContent
 from missionfsm.isaac.shared.stream import miswritten
 from missionfsm.kernel.language import Assumption, Delivery, Malformed, Match, Mismatch, Refs
@@ -19,7 +19,9 @@ _KINDS = {"mission": "a mission", "status": "a status", "text": "a text", "other
 _FORMS = {"upper": "c", "lower": "d", "number": "e"}
 
 
-def matches(view: Report | Introduction | Other, content: LineContent | Malformed) -> tuple[Match, ...] | Mismatch:
+def matches(
+    view: Report | Introduction | Other | Earlier, content: LineContent | Malformed
+) -> tuple[Match, ...] | Mismatch:
     """The ways in which a line shows what is owed, or why it does not."""
     if isinstance(content, Malformed):
         return Mismatch(rules.ENVELOPE.id, content.says)
@@ -34,6 +36,8 @@ def matches(view: Report | Introduction | Other, content: LineContent | Malforme
         return _goes_its_own_way(view, content, assumes)
     if isinstance(view, Introduction):
         return _introduces(view, content, assumes, common)
+    if isinstance(view, Earlier):
+        return _is_earlier(view, content, assumes, common)
     return _reports(view, content, assumes, common)
 
 
@@ -79,9 +83,18 @@ def _reports(
     return (Match((*assumes, AI_10["b"]), ((0, 0),), (rule.id, rules.ABOUT.id, rules.CHANNEL.id, *common)),)
 
 
-def undelivered(view: Report | Introduction | Other) -> tuple[str, ...]:
+def _is_earlier(
+    view: Earlier, content: LineContent, assumes: tuple[Assumption, ...], common: tuple[str, ...]
+) -> tuple[Match, ...] | Mismatch:
+    if content.kind != "status" or content.channel != view.channel or content.what not in RULES:
+        return Mismatch(rules.ABOUT.id, "a status of a mission from before the log may come, nothing else")
+    names = (AI_10["b"],) if content.named else ()  # one without may be of a mission without
+    return (Match((AI_28_STATUS[_FORMS[content.form]], *names, *assumes), rules=common),)
+
+
+def undelivered(view: Report | Introduction | Other | Earlier) -> tuple[str, ...]:
     """What is broken where a line is owed and does not come."""
-    if isinstance(view, Other):
+    if isinstance(view, Other | Earlier):
         return ()
     return (rules.NAMED.id,) if isinstance(view, Introduction) else (RULES[view.status].id,)
 

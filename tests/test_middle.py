@@ -227,6 +227,10 @@ WRONG = {
             *call(3, "CreateMission", navigate("table-1"), {"result": {"missionId": "A"}}),
         ],
     ),
+    "what waits is gone while another mission goes on": (
+        OTHERS,
+        [*FIRST, *MINE, shown(3, ("A", "RUNNING"), ("T", "DEFAULT")), shown(4, ("A", "RUNNING"))],
+    ),
     "nobody said that there are others": (HEAD, [*FIRST, *MINE, THEIRS]),
     "nobody said that it begins anywhere": (HEAD, [BUSY]),
 }
@@ -471,9 +475,9 @@ def test_a_system_that_cannot_be_judged_so_says_so(
 ) -> None:
     """A log of a system that can only be judged from its beginning is bad input, in one line."""
     path = tmp_path / "log"
-    path.write_bytes(orjson.dumps({"missionfsm": 1, "system": "isaac.robot", "world": {}}) + b"\n")
+    path.write_bytes(orjson.dumps({"missionfsm": 1, "system": "isaac.server", "world": {}}) + b"\n")
     ended = command_line("check", path, *option)
-    assert (ended.status, ended.err.count("\n"), "isaac.robot: " in ended.err) == (2, 1, True)
+    assert (ended.status, ended.err.count("\n"), "isaac.server: " in ended.err) == (2, 1, True)
 
 
 def battery(number: int, percent: int, stream: int = 1) -> Any:
@@ -506,3 +510,18 @@ def test_streams_of_statuses_from_before_the_log_are_held_to_their_form() -> Non
     assert not read(anywhere, [*lines, battery(16, 49, stream=4)]).right
     assert read(anywhere, [*opened, battery(19, 49)]).right
     assert not read(anywhere, [*opened, battery(19, 149)]).right
+
+
+@pytest.mark.parametrize("strict", [True, False])
+def test_a_restart_explains_no_list_that_no_robot_has(tmp_path: Path, *, strict: bool) -> None:
+    """The first list of a log that begins anywhere is one that some robot shows, whatever was before."""
+    first = {name: said for name, said in ANYWHERE.items() if strict or name != "transport"}
+    opened = call(1, "SubscribeMissionStatus", {}, {"result": {"stream": 1}})
+
+    def verdict(*missions: tuple[str, str]) -> Any:
+        return check_file(str(written(tmp_path / "log", [first, *opened, shown(1, *missions), SETTLED])))[0][1]
+
+    assert verdict(("X", "SUCCEEDED"), ("Y", "RUNNING")).violation is None
+    found = verdict(("X", "RUNNING"), ("Y", "RUNNING")).violation
+    assert found is not None
+    assert found.rules

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from attrs import evolve
 
+from missionfsm.kernel.middle import ANY
 from missionfsm.kernel.readings import Assumption, meet
 from missionfsm.kernel.rules import FAILED_PRECONDITION
 from missionfsm.kernel.spec import Failure, Spec
@@ -84,11 +85,12 @@ def restarted(
 
 
 def _renewed(channel: Channel) -> Channel:
-    """The channel, whose last message shows the restart; what was on its way before that may still come."""
+    """The channel, whose last message shows the restart; what is known to have been on its way may still come."""
     if not channel.owed:  # a stream that has ended is shown nothing
         return channel
     *before, last = channel.owed
-    return Channel(channel.name, channel.topic, None, (*(evolve(one, passing=True) for one in before), last))
+    known = (evolve(one, passing=True) for one in before if one.view is not ANY)
+    return Channel(channel.name, channel.topic, None, (*known, last))
 
 
 def skips(channel: Channel, otherwise: Assumption | None) -> Assumption | None:

@@ -170,13 +170,17 @@ def follows(
     """What is assumed if calls have made of some missions those of a message; None if no calls can have.
 
     Missions keep their order, their goals and their type; one that has ended stays as it ended, and one that has begun
-    never waits again.
+    never waits again. While one goes on those
+    that wait stay listed.
     """
     if isinstance(content, Malformed):
         return None
     places = {name: place for place, name in enumerate(names)}
     kept = [(places[name], mission) for name, mission in before if name in places]
     if any(one >= other for (one, _), (other, _) in itertools.pairwise(kept)):
+        return None
+    under_way = any(_had_begun(one) and content.states.missions[place].state in _BEGUN for place, one in kept)
+    if under_way and not all(_had_ended(one) for name, one in before if name not in places):
         return None
     assumes: list[Assumption] = []
     for place, mission in kept:
@@ -185,6 +189,16 @@ def follows(
             return None
         assumes += found
     return tuple(dict.fromkeys(assumes))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _had_begun(before: Mission) -> bool:
+    return before.state in _BEGUN
+
+
+@functools.lru_cache(maxsize=10_000)
+def _had_ended(before: Mission) -> bool:
+    return before.state in ENDED
 
 
 @functools.lru_cache(maxsize=10_000)
@@ -197,7 +211,7 @@ def _goes_on(family: Family, before: Mission, message: MissionState) -> tuple[As
     return same_mission(family, before, message)
 
 
-_BEGUN = (State.STATE_RUNNING, State.STATE_PAUSED)
+_BEGUN = {State.STATE_RUNNING, State.STATE_PAUSED}
 
 
 MIDDLE = Middle(

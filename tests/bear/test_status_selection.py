@@ -226,6 +226,13 @@ def test_a_message_without_a_timestamp_is_pointed_out() -> None:
     assert len(found.verdict().flagged) == 1
 
 
+def test_an_unknown_stuck_state_of_a_robot_that_nobody_drives_is_pointed_out() -> None:
+    """AS-18: nobody knows whether such a robot has unset it since, but the text has clients treat it as an error."""
+    unknown = {**R1["state"], "navigationState": {"stuckState": {"state": "STATE_UNKNOWN"}}}
+    found = judge([*opened(1, ROBOT, by_ids("r1")), robot_message(1, "r1", 1, unknown), SETTLED], drives=())
+    assert (readings_of(found, "AS-18"), len(found.verdict().flagged)) == (("b",), 1)
+
+
 def test_a_state_of_the_type_that_is_left_out_is_pointed_out() -> None:
     """AS-32: the page's example leaves it out, and its table lists it: accepted, and flagged."""
     reported = report("r1", "serviState", {"trayStates": {"trayStates": []}})

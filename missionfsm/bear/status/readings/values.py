@@ -36,6 +36,7 @@ AS_18 = asked_of_each(
     "{}: may a stuck state be STATE_UNKNOWN?",
     {"a": "no", "b": "yes, of a robot of which nothing is known; the client is to treat it as an error"},
     (GET, NAVIGATION, ROBOT),
+    flagged="b",
 )
 AS_19 = asked_of_each(
     "AS-19",

@@ -28,7 +28,7 @@ def test_a_busy_log_conforms(tmp_path: Path, seed: int, habits: Habits) -> None:
     assert verdict.conforms, str(verdict)
 
 
-@pytest.mark.parametrize(("clients", "seed"), [(5, 1), (5, 33), (4, 12)])
+@pytest.mark.parametrize(("clients", "seed"), [(5, 1), (5, 33), (4, 12), (6, 1)])
 def test_a_log_of_clients_whose_calls_are_lost_is_decided(tmp_path: Path, clients: int, seed: int) -> None:
     """Where what was wrong comes out long after, other ways of what came before are followed beside the nearest one."""
     path = tmp_path / "log"

@@ -449,7 +449,7 @@ class Search:
         before = [one for one in here.explanations if not self._ahead.withholds(one.assumed)]
         if self._depot and self._concerns_all(position):
             before = list(map(self._depot.whole, before))
-        here.more = self._usual_first(before, explains(before, kind, *what))
+        here.more = self._usual_first(before, lambda: explains(before, kind, *what))
         if self._reckons_at(position):
             here.depends = UNCONSTRAINED  # what lies between the system and the recording notes nothing
 
@@ -468,27 +468,53 @@ class Search:
             return self.transitions.explained
         return functools.partial(self.transitions.restarting, surely=position in self.restarts.surely)
 
-    def _usual_first(self, before: Sequence[Explanation], found: Iterable[Successor]) -> Iterator[Successor]:
-        """What was found, but first what every ambiguity may be read in its default way for, as far as before.
+    def _usual_first(
+        self, before: Sequence[Explanation], explains: Callable[[], Iterable[Successor]]
+    ) -> Iterator[Successor]:
+        """What is found, but first what every ambiguity may be read in its default way for, as far as before.
 
-        Most implementations read most of them so. What is put off is bounded: the rest of it may be dear to find.
+        Most implementations read most of them so. What is put off is bounded, and so is what is spent on finding more
+        than that: once it is too dear, what was put off comes first, and then all is looked for anew, on more. What was
+        tried is passed over then.
         """
-        successors, usual = self.successors, 0
+        successors, usual, effort = self.successors, 0, EFFORT
         for explanation in before:
             usual |= explanation.assumed & self._defaults
-        off: list[Successor] = []
-        begun = successors.spent
-        for one in found:
-            if usual & ~one.explanation.assumed:
-                off.append(one)
-            else:
-                yield one
-                begun = successors.spent
-            if len(off) >= PUT_OFF or (off and successors.spent - begun > EFFORT):
+        while True:
+            off: list[Successor] = []
+            begun, found = successors.spent, iter(explains())
+            try:
+                while one := self._found_on(found, begun + effort if off else successors.budget):
+                    if usual & ~one.explanation.assumed:
+                        off.append(one)
+                    else:
+                        yield one
+                        begun = successors.spent
+                    if len(off) >= PUT_OFF:
+                        yield from off
+                        off.clear()
+                        begun = successors.spent
+            except ExhaustedError:
+                if not off or successors.spent > successors.limit:
+                    raise
                 yield from off
-                off.clear()
-                begun = successors.spent
-        yield from off
+                effort *= 4
+            else:
+                yield from off
+                return
+
+    def _found_on(self, found: Iterator[Successor], limit: int) -> Successor | None:
+        """The next one that is found, None where there is no other.
+
+        Raises:
+            ExhaustedError: it costs more than there is, or more than a limit.
+        """
+        successors = self.successors
+        successors.limit, usual = min(successors.limit, limit), successors.limit
+        try:
+            return next(found, None)
+        finally:
+            successors.limit = usual
 
     def _narrowed_behind(self, explanation: Explanation, position: int) -> Explanation | None:
         """An explanation of an event, as far as it leads on; None where it does not."""

@@ -93,6 +93,14 @@ def test_the_reference_under_any_mixture_of_readings_conforms(seed: int) -> None
     assert explained(choice, chance) <= CONVERSATIONS // 4
 
 
+def test_a_robot_that_never_shows_an_empty_list_can_be_cleared() -> None:
+    """AM-36: that the unnamed mission is cleared as well says nothing where one is shown after a clear, too (AM-35)."""
+    reference = ReferenceSubject(MISSION, {"AM-35": "c", "AM-36": "b", "AM-36.cleared": "d"})
+    reference.exchange("reset", {"world": {}})
+    answer = reference.exchange("ClearMissionStatus", {})
+    assert (answer.error, answer.result) == (None, {"missionIds": []})
+
+
 @pytest.mark.long
 def test_the_reference_conforms_under_its_own_readings() -> None:
     """The reference conforms where its own readings are demanded, and does not where another one is."""

@@ -13,7 +13,7 @@ from missionfsm.bear.mission.inputs import Call, Wanted
 from missionfsm.bear.mission.outcome import ADDED, Assumed, Outcome, Way
 from missionfsm.bear.mission.readings.charging import AM_37_HALTED, AM_37_QUEUED
 from missionfsm.bear.mission.readings.goals import AM_41, AM_43, AM_43_CASE, AM_45_WHEN
-from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_12_HALTED, AM_13
+from missionfsm.bear.mission.readings.queue import AM_06, AM_07, AM_07_AFTER, AM_12_HALTED, AM_13
 from missionfsm.bear.mission.readings.scope import part_of
 from missionfsm.bear.mission.readings.workflows import AM_25, AM_27
 from missionfsm.bear.mission.rules.situations import waiting
@@ -147,7 +147,12 @@ def _joining(robot: Situation, missions: tuple[Mission, ...]) -> Iterator[Way]:
     yield add, (how["b"],)
     yield ((Op.DROP_QUEUE, None), *add, (Op.HALT, False)), (how["r"],)
     rest: Edit = ((Op.ADD, missions[1:]),) if missions[1:] else ()
-    yield ((Op.OVERTAKE, missions[:1]), *rest, (Op.HALT, False)), (how["o"],)
+    first: Edit = ((Op.OVERTAKE, missions[:1]), *rest)
+    if rest or not robot.halted or robot.world.blocked:
+        yield (*first, (Op.HALT, False)), (how["o"],)
+    else:
+        yield (*first, (Op.HALT, False)), (how["o"], AM_07_AFTER["a"])
+        yield (*first, (Op.START, missions[0].moved("start"))), (how["o"], AM_07_AFTER["s"])
     if robot.halted:
         yield (*add, (Op.HALT, False)), (how["b"],)
 

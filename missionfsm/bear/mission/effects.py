@@ -177,6 +177,7 @@ def _clear(robot: Situation, _: Call) -> Iterator[Outcome]:
         yield Outcome(OK, (), GONE, (AM_36["a", "c"],))
         yield Outcome(OK, (), GONE, (AM_36["b"], AM_36_CLEARED["a"]))
         yield Outcome(OK, ((Op.CLEAR, None),), GONE, (AM_36["b"], AM_36_CLEARED["d"], AM_35["a"]))
+        yield Outcome(OK, (), GONE, (AM_36["b"], AM_36_CLEARED["d"], AM_35.besides("a")))
     elif not robot.queued:
         yield Outcome(OK, ((Op.CLEAR, None),) if robot.ended else (), GONE)
     else:

@@ -24,6 +24,11 @@ AM_07 = asked_of_each(
     WAITING,
     flagged="v",
 )
+AM_07_AFTER = Ambiguity(
+    "AM-07.after",
+    "Does a halted queue go on after a workflow of one mission that came first?",
+    {"a": "yes, the workflow sets it going", "s": "no, it stays halted"},
+)
 _QUEUE_AFTER_CANCEL = {
     "a": "the next mission starts",
     "b": "the queue halts",

@@ -68,6 +68,8 @@ class Conversation:
 
     Attributes:
         heard: every line of the history, also those after the one that cannot be explained.
+        in_vain: the drives of which the implementation said that they did not happen, which no history has: each with
+            how many lines had been heard.
 
     Raises:
         SubjectError: the adapter failed; so does everything that it is asked.
@@ -81,6 +83,7 @@ class Conversation:
         self.past = None if partner.names is None or self.system.spec.anywhere else tuple(partner.names)
         self.judge = self._judged(automaton)
         self.heard: list[JSON] = []
+        self.in_vain: list[tuple[int, JSON]] = []
         self.actions: list[Action] = []
         self.given: dict[NameRef, object] = {}
         self._acting = self._before = 0
@@ -114,6 +117,7 @@ class Conversation:
         other = copy.copy(self)
         other.judge = self._judged(automaton)
         other.heard, other.actions, other.given = list(self.heard), list(self.actions), dict(self.given)
+        other.in_vain = list(self.in_vain)
         other._learnt = Counter(self._learnt)  # noqa: SLF001 - it is one of these
         for line in self.heard:
             if not other.judge.feed(line):
@@ -166,13 +170,18 @@ class Conversation:
         """The names that an action picks.
 
         One that nothing gives any more, since what gave it was left out or did something else this time, is the one of
-        its kind that was given last before: the same is done to another.
+        its kind that was given last before: the same is done to another. If there is none, it is the first that was
+        given after: an implementation that turned out to answer late gives the same names to an action that came later.
         """
         kinds = slots(action.params)
         picked: dict[int, Any] = {}
         for slot, given in action.picks:
-            like = (one for one, name in self.given.items() if kind_of(name) == kinds[slot] and one.by <= given.by)
-            meant = given if given in self.given else max(like, key=lambda one: (one.by, one.position), default=None)
+            like = sorted(
+                (one for one, name in self.given.items() if kind_of(name) == kinds[slot]),
+                key=lambda one: (one.by, one.position),
+            )
+            before = [one for one in like if one.by <= given.by]
+            meant = given if given in self.given else next(iter((*before[-1:], *like)), None)
             if meant is not None:
                 picked[slot] = self.given[meant]
         return picked
@@ -221,12 +230,12 @@ class Conversation:
             message = f"the adapter answered drive with {brief(exchange.result)}, not with happened true or false"
             raise SubjectError(message)
         self._notifications(exchange.earlier)
-        earlier, caused = exchange.before, exchange.after
+        caused = exchange.after
         if happened:
             earlier, caused = self._about_what_ends(event, exchange.before)
             caused += exchange.after
-        self._notifications(earlier)
-        if happened:
+            if not self._goes_before(earlier):
+                caused = (*exchange.before, *exchange.after)
             # What the environment gave a name to (a connection), the history says with the drive.
             driven = {**event, **{key: value for key, value in result.items() if key != "happened"}}
             if any(driven[key] != value for key, value in event.items() if key not in self.system.codec.measured):
@@ -234,8 +243,26 @@ class Conversation:
                 raise SubjectError(message)
             self._receive({"drive": driven})
             self._bind(_read(self.system.codec.read_drive_result, driven)[1])
+        else:
+            self._notifications(exchange.before)
+            self.in_vain.append((len(self.heard), event))
         # What the drive caused may have come before its answer; what came earlier still may come now.
         self._notifications(caused)
+
+    def _goes_before(self, earlier: tuple[Notification, ...]) -> bool:
+        """Note what came before a drive was answered as what came before the drive, unless nothing explains that there.
+
+        What is said on a connection while that is dropped was on its way. If it has no business there either, then it
+        was caused by the drop, and a history that ends before the drop is one that nobody could have again.
+        """
+        here = (self.right, len(self.heard), dict(self.given), Counter(self._learnt))
+        self._notifications(earlier)
+        if self.right or not here[0] or self.judge.exhausted:
+            return True
+        del self.heard[here[1] :]
+        self.given, self._learnt = here[2:]
+        self.judge = self.under(self.judge.automaton).judge
+        return False
 
     def _about_what_ends(
         self, event: JSON, came: tuple[Notification, ...]

@@ -6,14 +6,17 @@ from collections.abc import Iterable, Mapping
 
 from attrs import evolve, frozen
 
+from missionfsm.kernel.codec import JSON, UnreadableError
 from missionfsm.kernel.subject import SubjectError
 from missionfsm.tools.check.baseline import Baseline, with_stale
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import Elimination, by_ambiguity
 from missionfsm.tools.check.narrate import story_of
+from missionfsm.tools.check.phrases import described, name_words
 from missionfsm.tools.check.scope import flagged_in_all, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
 from missionfsm.tools.check.verdict import Outcome, Verdict, Violation
+from missionfsm.tools.conform.conversation import Conversation
 from missionfsm.tools.conform.coverage import rare
 from missionfsm.tools.conform.distinguish import proposed
 from missionfsm.tools.conform.run import Run
@@ -122,6 +125,8 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
         violation = beside_others(run, violation, asks_again=asks_again)
         if _about_what_binary_cannot_carry(run, violation):
             ledger.note(NOT_CARRIED)
+        if asks_again:
+            _note_what_was_in_vain(run, run.found)
         return _Finding(Outcome.VIOLATES, judge.belief.readings, _listed(violation, met))
     if ledger.contradiction is not None:
         met = ledger.inconsistency()
@@ -129,6 +134,26 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
             shorten_evidence(run)
         return _Finding(Outcome.VIOLATES, followed, _listed(ledger.inconsistency(), met))
     return _Finding(Outcome.CONFORMS, followed)
+
+
+def _note_what_was_in_vain(run: Run, found: Conversation) -> None:
+    """Say which drives are left in a conversation that was made short though the implementation denied each of them.
+
+    No history has them, so that without this the story would be one that the implementation never plays.
+    """
+    for heard, event in found.in_vain:
+        before = f"before line {heard + 2} of the history"  # its first line is the header
+        says = f"the adapter answered the drive of {_drive_words(run, event)} with happened: false {before}"
+        run.ledger.note(f"{says}: it should have changed nothing, and is part of what was done to see the violation")
+
+
+def _drive_words(run: Run, event: JSON) -> str:
+    try:
+        read, names = run.system.codec.read_drive(event)
+    except UnreadableError:
+        return str(event["event"])
+    about = f" ({', '.join(map(name_words, names))})" if names else ""
+    return f"{event['event']}, '{described(run.system.spec, read)}'{about},"
 
 
 def _eliminations(run: Run) -> Mapping[tuple[str, str], Elimination]:

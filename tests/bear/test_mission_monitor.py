@@ -122,6 +122,14 @@ def test_what_no_robot_shows_is_told(case: str) -> None:
     assert found == [[]] * (len(messages) - 1) + [[rule]]
 
 
+def test_a_mission_may_fail_while_it_waits() -> None:
+    """AM-43 b: when one fails that cannot be done nothing says, so it may be listed behind the one that runs."""
+    failed = {**WAITS, "state": "STATE_FAILED"}
+    lines = [message(1, mission(), WAITS), message(2, mission(), failed), message(3, ENDED, failed, index=-1)]
+    monitor = MissionMonitor()
+    assert [monitor.feed(line) for line in lines] == [(), (), ()]
+
+
 def test_what_cannot_have_become_of_a_mission_is_told_first() -> None:
     """The index is wrong as well where an ended mission runs again, and follows from it."""
     monitor = MissionMonitor()

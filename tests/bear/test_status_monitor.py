@@ -251,6 +251,13 @@ def test_a_problem_reads_as_a_sentence() -> None:
     )
 
 
+def test_the_name_of_a_oneof_is_no_field() -> None:
+    """AS-32: where it stands is said once."""
+    (found,) = watch(ROBOT, [of("a", 1, robotState={"typedStatus": {}})])
+    assert found.says.endswith("typedStatus: is the name of a oneof, not of a field")
+    assert "robotState.robotState" not in found.says
+
+
 def test_the_monitor_and_the_specification_agree_on_single_messages() -> None:
     """What the oracle refuses of a robot that nobody drives, the monitor calls a problem, by the same rule."""
     for rule, endpoint, messages in CASES:

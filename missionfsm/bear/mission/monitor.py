@@ -263,11 +263,16 @@ def _ordered(seen: Seen, begun: set[int]) -> Iterator[Found]:
     """What is wrong with the order (ended missions, then a running one, then the others) and with the current index.
 
     A mission that is shown as paused is the active one or waits (AM-08). A charge or the missions of a workflow may
-    have had their turns before missions that were assigned earlier (AM-07, AM-37).
+    have had their turns before missions that were assigned earlier (AM-07, AM-37). When a mission fails that cannot be
+    done nothing says, so it may have failed while it waited (AM-43 b).
     """
     missions, index = seen.states.missions, seen.states.current_mission_index
     stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
-    in_turn = [stage for stage, one in zip(stages, missions, strict=True) if not _may_overtake(one)]
+    in_turn = [
+        stage
+        for stage, one in zip(stages, missions, strict=True)
+        if one.state is not State.STATE_FAILED and not _may_overtake(one)
+    ]
     if any(before > after for before, after in pairwise(in_turn)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return

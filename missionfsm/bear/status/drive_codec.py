@@ -218,7 +218,7 @@ def read_state(given: JSON) -> tuple[RobotState, bool | None]:
     if not isinstance(given, dict):
         raise MalformedError(f"{brief(given)} is not an object", "robotState")
     if field(given, "typedStatus") is not None:
-        raise MalformedError("typed_status is the name of a oneof, not of a field", "robotState")
+        raise MalformedError("is the name of a oneof, not of a field", "typedStatus")
     mission = given.get("mission")
     wrapped = None
     if isinstance(mission, dict) and isinstance(mission.get("goals"), list) and mission["goals"]:

@@ -225,3 +225,13 @@ def test_a_silence_before_a_call_says_nothing_of_it(
     ended = command_line("check", path, "--settled-after", "60", "--json", "-")
     found = orjson.loads(ended.out)
     assert (ended.status, found["verdict"], found["flagged"]) == (0, "conforms", flagged)
+
+
+def test_what_ends_a_silence_tells_that_something_is_late(command_line: CommandLine, tmp_path: Path) -> None:
+    """`--settled-after`: a list without a mission that should have started long ago is told with the time."""
+    calls = [*SUBSCRIBED, {**empty(1), "at": 1.0}, *created(2, "A", at=2.0), {**empty(2), "at": 90.0}]
+    path = tmp_path / "log"
+    path.write_bytes(text(FIRST, *calls))
+    ended = command_line("check", path, "--settled-after", "60")
+    assert ended.status == 1
+    assert "nothing had come for 60 s before it: by then what was due by itself should have happened" in ended.out

@@ -318,6 +318,10 @@ class Judge:
             if self.quiet is not None and type(self._unexplained) is Settled:
                 seen = f"nothing had come of it after {self.quiet.seconds:g} s, or by {found.observed}"
                 found = evolve(found, observed=seen)
+            elif self.quiet is not None and any(one is self._unexplained for one in self.quiet.broken):
+                silence = f"nothing had come for {self.quiet.seconds:g} s before it"
+                late = f"{silence}: by then what was due by itself should have happened, as what is next should start"
+                found = evolve(found, notes=(*found.notes, late))
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Hashable
 
 from missionfsm.kernel.history import Event, Received, Settled
 
 _SETTLED = Settled()
+
+_KEPT = 64
+"""How many of the events that ended a silence are kept."""
 
 
 class Quiet:
@@ -19,11 +23,13 @@ class Quiet:
 
     Attributes:
         timed: whether any line had a time.
+        broken: the events that ended a silence after which all had settled, the last ones.
     """
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
         self.timed = False
+        self.broken: deque[Event] = deque(maxlen=_KEPT)
         self._since: float | None = None
         self._waiting = False
         self._shown: dict[Hashable, Hashable] = {}
@@ -40,6 +46,7 @@ class Quiet:
             self.timed = True
             if self._waiting and self._since is not None and at - self._since >= self.seconds:
                 before, self._waiting = (_SETTLED,), False
+                self.broken.extend(events)
         noted = [self._note(event) for event in events]
         if any(noted):
             self._since, self._waiting = self._since if at is None else at, True

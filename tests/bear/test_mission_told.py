@@ -336,3 +336,12 @@ def test_what_contradicts_an_earlier_answer_breaks_the_rule_by_which_that_was_ri
     )
     told = first.asks("AppendMissionBatch", {"missions": []}, "FAILED_PRECONDITION").told
     assert rules(told)[0] == "AppendMissionBatch/INVALID_ARGUMENT/the-request-is-empty"
+
+
+def test_an_appended_batch_is_told_of_by_its_own_section() -> None:
+    """The page says of both batches by themselves in which order their missions are, and which ids the answer has."""
+    both = {"missions": [mission("delivery", "table-1"), mission("delivery", "table-2")]}
+    begun = Log(drives=DRIVES, transport="strict").creates("A", "delivery", "table-3")
+    told = begun.asks("AppendMissionBatch", both, missionIds=["B"]).told
+    assert told.rules[0].id.endswith("AppendMissionBatch/the-answer-names-the-new-missions-in-order")
+    assert "Mission › AppendMissionBatch" in str(told.rules[0])

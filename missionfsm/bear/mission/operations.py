@@ -96,6 +96,13 @@ _APPENDED = promise(
     "Appended missions wait behind all others and run in the order in which they came.",
     cite=MISSION["AppendMission"],
 )
+
+
+def _of_batch(*promises: Rule) -> tuple[Rule, ...]:
+    """What holds of appended batches as of other calls, citing their own section, which says it as well."""
+    return tuple(evolve(one, cite=MISSION["AppendMissionBatch"]) for one in promises)
+
+
 _CLEARED = promise(
     "the-answer-names-the-cleared-missions",
     "The answer has the ids of exactly the missions that are not listed any more.",
@@ -192,7 +199,7 @@ OPERATIONS: Mapping[str, Operation] = {
             _WORKFLOW_IDS,
         ),
         _operation("AppendMission", _append("AppendMission"), _APPENDED, _ONE_ID),
-        _operation("AppendMissionBatch", _append("AppendMissionBatch"), _APPENDED, _ALL_IDS),
+        _operation("AppendMissionBatch", _append("AppendMissionBatch"), *_of_batch(_APPENDED, _ALL_IDS)),
         _operation(
             "ChargeRobot",
             (

@@ -8,10 +8,14 @@ from attrs import evolve
 
 from missionfsm.kernel.alphabet import pick
 from missionfsm.kernel.codec import JSON
+from missionfsm.kernel.readings import UNCONSTRAINED
 from missionfsm.kernel.subject import Exchange, Notification
+from missionfsm.oracle.automaton import Automaton
 from missionfsm.systems import system
 from missionfsm.tools.conform.actions import Action, NameRef
 from missionfsm.tools.conform.conform import conform
+from missionfsm.tools.conform.conversation import Conversation
+from missionfsm.tools.conform.finding import verdict_of
 from missionfsm.tools.conform.run import Run
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -100,3 +104,19 @@ def test_a_name_that_comes_with_a_later_action_this_time_is_still_meant() -> Non
     )
     had = Run.against(SERVER, ReferenceSubject(SERVER, {})).replay({}, actions)
     assert list(had.heard[-1]["result"]["missions"].values()) == ["SUCCESS"]
+
+
+def test_an_event_that_cannot_be_decided_is_named_with_its_conversation() -> None:
+    """What could not be decided is told as what is wrong is: which event of which conversation, and its story."""
+    run = Run.against(SERVER, ReferenceSubject(SERVER, {}))
+    run.ledger.examples = run.ledger.succeeded = 7
+    run.found = Conversation(run.partner, {}, Automaton(SERVER.spec, run.partner.info.drives, UNCONSTRAINED, 1))
+    for serial in range(1, 4):
+        run.found.perform(Action(serial, "submit", {"mission": {"robot": "carter-01"}}))
+        run.found.perform(Action(serial + 9, "drive", {"event": "advance", "seconds": 30}))
+    assert run.found.judge.exhausted
+    verdict = verdict_of(run, 1, advice=False)
+    said = str(verdict)
+    assert verdict.because.startswith("in conversation 7, event "), said
+    assert "too many explanations to decide; what follows was not judged" in verdict.because
+    assert ("1. submit(robot carter-01, channel mission)" in said, "--seed" in said) == (True, True)

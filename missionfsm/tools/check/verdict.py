@@ -164,7 +164,7 @@ class Verdict:
         examples: how many conversations were had; 0 for a recorded history.
         events: how many events were judged.
         violation: what is wrong, if anything is.
-        story: the conversation that shows it, in numbered lines.
+        story: the conversation that shows it, or that could not be decided, in numbered lines.
         exercised: rule id to how often it was exercised.
         uncovered: ids of rules that were not.
         readings: ambiguity id to the readings that are still possible, for those that mattered.
@@ -315,9 +315,9 @@ class Verdict:
 
     def _findings(self) -> Iterator[str]:
         """The violation, what is known of violations, and what departs from the text."""
+        if self.story:
+            yield from ("", self.story)
         if self.violation:
-            if self.story:
-                yield from ("", self.story)
             yield from ("", self.violation.explanation, *self._rule_ids())
         yield from (f"  known violation, met {times} times: {rule}" for rule, times in self.known.items() if times)
         yield from (

@@ -11,7 +11,7 @@ from missionfsm.kernel.subject import SubjectError
 from missionfsm.tools.check.baseline import Baseline, with_stale
 from missionfsm.tools.check.basis import NOT_THERE, Untested
 from missionfsm.tools.check.eliminations import Elimination, by_ambiguity
-from missionfsm.tools.check.narrate import story_of
+from missionfsm.tools.check.narrate import story, story_of
 from missionfsm.tools.check.phrases import described, name_words
 from missionfsm.tools.check.scope import flagged_in_all, unchecked, uncovered, untested
 from missionfsm.tools.check.suspects import with_suspects
@@ -29,6 +29,9 @@ LONGEST_SUSPECTED = 60
 NOT_CARRIED = 'nobody sends this in binary protobuf: an adapter that declares "requests": "binary" is not asked it'
 """A note on a wrong answer to a request that only JSON can carry."""
 
+ADVICE = "another --seed has other conversations; what an adapter declares as drives does not have to be guessed"
+"""What can be done where a conversation could not be decided."""
+
 
 @frozen
 class _Finding:
@@ -39,12 +42,14 @@ class _Finding:
         followed: for each ambiguity, the readings that are left.
         violation: what is wrong, if anything is.
         because: why the outcome is inconclusive.
+        undecided: the history that could not be decided, up to the event where that was given up.
     """
 
     outcome: Outcome
     followed: Mapping[str, tuple[str, ...]]
     violation: Violation | None = None
     because: str = ""
+    undecided: tuple[JSON, ...] = ()
 
 
 def has_found(run: Run) -> bool:
@@ -93,7 +98,7 @@ def verdict_of(
         flagged=(*flagged_in_all(spec, followed, ledger.eliminations, ledger.departing), *ledger.oddities),
         unchecked=unchecked(spec, (*used, *run.partner.info.drives)),
         untested=_untested(run, left_out),
-        story=story_of(run.system, violation) if violation else "",
+        story=story_of(run.system, violation) if violation else story(run.system, finding.undecided),
         ruled_out=by_ambiguity(spec.ambiguities, _eliminations(run), followed),
         experiments=tuple(trial.experiment(run.system) for trial in proposed(run)) if advised else (),
         rare=rare(run.system, exercised, ledger.steps, followed, run.enough) if advised else {},
@@ -112,7 +117,7 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
     if idle:
         return _Finding(Outcome.INCONCLUSIVE, followed, because=idle)
     if run.found is not None and run.found.judge.exhausted:
-        return _Finding(Outcome.INCONCLUSIVE, followed, because="an event had too many explanations to decide")
+        return _undecided(run, run.found)
     if run.found is not None:
         met = run.found.judge.violation
         if asks_again:
@@ -134,6 +139,13 @@ def _finding(run: Run, exercised: Mapping[str, int], *, asks_again: bool) -> _Fi
             shorten_evidence(run)
         return _Finding(Outcome.VIOLATES, followed, _listed(ledger.inconsistency(), met))
     return _Finding(Outcome.CONFORMS, followed)
+
+
+def _undecided(run: Run, found: Conversation) -> _Finding:
+    """What is said of a run that ended where one conversation more could not be decided."""
+    run.ledger.note(ADVICE)
+    because = f"in conversation {run.ledger.examples}, {found.judge.verdict().because}"
+    return _Finding(Outcome.INCONCLUSIVE, run.ledger.readings, because=because, undecided=found.judge.history)
 
 
 def _note_what_was_in_vain(run: Run, found: Conversation) -> None:

@@ -317,3 +317,23 @@ def test_a_first_line_that_says_something_unknown_is_refused(
     path.write_bytes(orjson.dumps({**LINES[0], key: value}))
     ended = command_line("check", path)
     assert (ended.status, ended.err.startswith(f"missionfsm: {path}:1: {key}: ")) == (2, True)
+
+
+def test_a_log_that_only_a_transport_might_explain_says_how_to_decide_it(tmp_path: Path) -> None:
+    """Where there is too much that a transport may have done, the verdict says how to leave it out; that decides."""
+    log = Recorder(drives=False)
+    log.call(SUBSCRIBE)
+    log.call("CreateMission", navigate("table-1"))
+    lines, tables = log.lines, ("table-1", "table-2", "table-3", "table-1")
+    lines += [{"call": 90 + at, "method": "AppendMission", "params": navigate(one)} for at, one in enumerate(tables)]
+    lines += [{"return": 90 + at, "result": {"missionId": f"m{at}"}} for at in range(len(tables))]
+    message = orjson.loads(orjson.dumps(lines[shown(lines)[-1]]))
+    states = message["message"]["missionStates"]
+    message["message"]["metadata"]["sequenceNumber"] += 1
+    turned_round = [("m3", "table-2"), ("m2", "table-3"), ("m1", "table-2"), ("m0", "table-1")]
+    waits = {"state": "STATE_DEFAULT", "currentGoalIndex": 0, "missionType": states["missions"][0]["missionType"]}
+    states["missions"] += [{"missionId": name, "goals": [{"destinationId": at}], **waits} for name, at in turned_round]
+    found = judged(tmp_path / "log", [log.head, *lines, message, {"settled": True}])
+    assert found.outcome is not Outcome.CONFORMS
+    assert found.outcome is Outcome.VIOLATES or "--transport strict leaves that out" in found.because
+    assert judged(tmp_path / "log", [log.head, *lines, message, {"settled": True}], strict=True).violation

@@ -129,6 +129,7 @@ class Search:
         calls_alone: whether it looks at nothing but which calls took effect (see `missionfsm.oracle.calls`).
         beyond: the positions of events that the system itself does not explain; what lies between it and the recording
             is asked for them.
+        strictly: the position of the first event that the system itself does not explain, once that is known.
         restarts: those that are taken for granted.
     """
 
@@ -161,6 +162,7 @@ class Search:
         self._explained: int | None = None
         self.reached = 0
         self.beyond: set[int] = set()
+        self.strictly: int | None = None
         self.restarts = NONE
         self._rules: dict[int, tuple[str, ...]] = {}
         self._alone = self._stopped = self._hurries = False
@@ -616,6 +618,8 @@ class Search:
         while found is not None and found not in self.beyond and self.transitions.reckons:
             if self.transitions.is_hopeless(*self._symbols[found], leniently=True):
                 break
+            if not self.beyond and not self.restarts.shown:
+                self.strictly = found
             self.beyond.add(found)
             self._explained = None
             found = self._first_unexplained()

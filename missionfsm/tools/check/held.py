@@ -70,6 +70,7 @@ class Held:
         lines: the events, each with where it stands.
         unexplained: the position of the first event that nothing explains, once that is known.
         reached: how many of them were explained before the budget ran out.
+        strictly: whether it ran out at what the system itself does not explain.
     """
 
     def __init__(self, belief: Belief) -> None:
@@ -79,6 +80,7 @@ class Held:
         self.lines: list[HeldEvent] = []
         self.unexplained = 0
         self.reached = 0
+        self.strictly = False
 
     def add(self, line: HeldEvent) -> None:
         """Let one more event wait."""
@@ -119,6 +121,7 @@ class Held:
         finally:
             stopped_early = search.reached < len(window.positions)
             self.reached = window.positions[search.reached] if stopped_early else 0
+            self.strictly = search.strictly is not None
         if found is None:
             if search.exact or whole:
                 window.close(search)

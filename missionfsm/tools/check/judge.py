@@ -124,6 +124,7 @@ class Judge:
         self._lost_a_call = self._unanswered = self._speaks_on = False
         self._unexplained: Event | None = None
         self._undecided: Event | None = None
+        self._strictly = False
         self._violation: Violation | None = None
         self._asked: Any = None
         self._patient = waits
@@ -291,7 +292,7 @@ class Judge:
             explained = held.explain(whole=whole)
         except ExhaustedError:
             self.events += held.reached + 1
-            self._undecided = held.lines[held.reached].event
+            self._undecided, self._strictly = held.lines[held.reached].event, held.strictly
             self.exhausted, self.right = True, False
             return False
         if explained.whole and not (explained.exact or whole):
@@ -352,6 +353,8 @@ class Judge:
         elif self._undecided is not None:
             said = event_words(self.system.spec, self._undecided)
             because = f"event {self.events} ({said}) has too many explanations to decide; what follows was not judged"
+            if self._strictly and not (self.system.spec.anywhere or self.system.spec.others):
+                because += "; only what a transport does can explain it: --transport strict leaves that out"
             outcome = Outcome.INCONCLUSIVE
         elif not exercised and not self._broke_down():
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"

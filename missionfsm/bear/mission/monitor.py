@@ -268,11 +268,7 @@ def _ordered(seen: Seen, begun: set[int]) -> Iterator[Found]:
     """
     missions, index = seen.states.missions, seen.states.current_mission_index
     stages = [0 if one.state in ENDED else 1 if one.state is State.STATE_RUNNING else 2 for one in missions]
-    in_turn = [
-        stage
-        for stage, one in zip(stages, missions, strict=True)
-        if one.state is not State.STATE_FAILED and not _may_overtake(one)
-    ]
+    in_turn = [stage for stage, one in zip(stages, missions, strict=True) if _waits_its_turn(one)]
     if any(before > after for before, after in pairwise(in_turn)) or stages.count(1) > 1:
         yield STATE, "the missions are not in the order ended, active, waiting"
         return
@@ -297,6 +293,11 @@ def _active_places(missions: tuple[MissionState, ...], stages: list[int]) -> set
 def _may_overtake(mission: MissionState) -> bool:
     """Whether a mission may be a charge or one of a workflow that has had its turn."""
     return mission.state not in _WAITING and mission.mission_type not in _BY_THEMSELVES
+
+
+def _waits_its_turn(mission: MissionState) -> bool:
+    """Whether a mission is what it is only after all that were listed before it have had their turns."""
+    return mission.state is not State.STATE_FAILED and not _may_overtake(mission)
 
 
 def _one(index: int, mission: MissionState, *, begun: bool) -> Iterator[Found]:

@@ -351,11 +351,7 @@ class Judge:
         if self._unexplained is not None:
             outcome = Outcome.VIOLATES
         elif self._undecided is not None:
-            said = event_words(self.system.spec, self._undecided)
-            because = f"event {self.events} ({said}) has too many explanations to decide; what follows was not judged"
-            if self._strictly and not (self.system.spec.anywhere or self.system.spec.others):
-                because += "; only what a transport does can explain it: --transport strict leaves that out"
-            outcome = Outcome.INCONCLUSIVE
+            outcome, because = Outcome.INCONCLUSIVE, self._why_undecided(self._undecided)
         elif not exercised and not self._broke_down():
             outcome, because = Outcome.INCONCLUSIVE, "nothing was exercised"
         spec, readings = self.system.spec, self._standing.readings
@@ -377,6 +373,15 @@ class Judge:
             ruled_out=by_ambiguity(spec.ambiguities, self.eliminations.found, readings),
         )
         return held_to_the_text(verdict) if self._no_flagged else verdict
+
+    def _why_undecided(self, event: Event) -> str:
+        """What there was too much of, and what would leave some of it out."""
+        spec = self.system.spec
+        because = f"event {self.events} ({event_words(spec, event)}) has too many explanations to decide"
+        because += "; what follows was not judged"
+        if self._strictly and not (spec.anywhere or spec.others):
+            because += "; only what a transport does can explain it: --transport strict leaves that out"
+        return because
 
     @property
     def oddities(self) -> tuple[Flagged, ...]:

@@ -40,11 +40,15 @@ def _has_a_part(system: System, violation: Violation, rule: str, readings: Mappi
 
 
 def ways_to_break(system: System, rule: str) -> Broken:
-    """How steps may break a rule; empty for refusals, and for rules about messages that no step mutation breaks."""
-    own = tuple((one.at or rule, one.mutate_step) for one in system.step_mutations if one.rule == rule)
+    """How steps may break a rule; empty for refusals, and for rules about messages that no step mutation breaks.
+
+    A rule that the steps of another rule break, and no step of its own, is not broken by what is left undone.
+    """
+    broken = [one for one in system.step_mutations if one.rule == rule]
+    own = tuple((one.at or rule, one.mutate_step) for one in broken)
     found = system.spec.rules_by_id.get(rule)
     in_messages = any(one.rule == rule for one in system.message_mutations) or _begins_a_stream(system.spec, rule)
-    if found is None or found.code or in_messages:
+    if found is None or found.code or in_messages or any(one.at for one in broken):
         return own
     return *own, (rule, without_effect), (rule, unshown), *([(rule, turned)] if found.names else [])
 

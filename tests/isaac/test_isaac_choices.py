@@ -368,3 +368,72 @@ def test_a_dependant_is_sent_in_the_pass_that_works_off_the_report() -> None:
     begun = History().submit(1).submit(2, robot="q", upstream=[1]).robot(1).robot(2, "q").settles.waits(1).sends(1, 1)
     begun = begun.settles.reports(1, 1, "success").settles.shows("STARTED", "QUEUED").waits(1).sends(2, 2).settles
     assert begun.shows("SUCCESS", "STARTED").judged(no_flagged=True).conforms
+
+
+def test_a_mission_may_be_created_until_the_server_looks() -> None:
+    """AI-04.new b: CREATED until a scheduling pass, whenever that is, and never again after that."""
+
+    def looked() -> History:
+        return History().submit(1).shows("CREATED").waits(1.3).shows("QUEUED")
+
+    assert follows(looked().judged(no_flagged=True), AI_04_new="b", AI_04_robot="q")
+    once = History().submit(1).shows("CREATED").submit(2).waits(0.3).shows("QUEUED", "CREATED")
+    assert follows(once.waits(1.3).shows("QUEUED", "QUEUED").judged(no_flagged=True), AI_04_new="b", AI_04_robot="q")
+    assert follows(History().submit(1).shows("QUEUED").judged(), AI_04_new="a")
+    back = History().submit(1).shows("CREATED").waits(0.3).shows("QUEUED").shows("CREATED")
+    later = looked().shows("CREATED")
+    at_once = looked().submit(2).shows("QUEUED", "QUEUED")
+    for wrong in (back, later, at_once):
+        assert not wrong.judged().conforms
+    again = looked().robot(1).sends(1, 1).settles.drive("disconnect", connection=1).shows("CREATED")
+    assert not again.judged(readings={"AI-15.sent": "b"}).conforms
+
+
+def test_all_that_is_ready_may_go_when_its_robot_is_named_and_later_one_at_a_time() -> None:
+    """AI-11 d: the sentence is about the naming of a connection alone."""
+
+    def later() -> History:
+        named = History().submit(1).submit(2).submit(3).robot(1).sends(1, 1).sends(1, 2).sends(1, 3).settles
+        return named.submit(4).settles.submit(5).settles
+
+    def ended() -> History:
+        return later().reports(1, 1, "success").reports(1, 2, "success").reports(1, 3, "success")
+
+    known = {**EXACT, "AI-15.sent": "c", "AI-12": "a", "AI-13": "a", "AI-08": "a"}
+    assert follows(later().judged(readings=known), AI_11="d")
+    assert follows(ended().sends(1, 4).settles.judged(readings=known), AI_11="d")
+    assert not ended().settles.judged(readings=known).conforms
+    assert not ended().sends(1, 4).sends(1, 5).settles.judged(readings=known).conforms
+    dropped = ended().sends(1, 4).settles.drive("disconnect", connection=1).submit(6)
+    again = dropped.robot(2).sends(2, 5).sends(2, 6).settles
+    assert follows(again.judged(readings=known), AI_11="d")
+
+
+def test_what_is_sent_when_a_robot_is_named_overtakes_what_waits() -> None:
+    """AI-11 d: all that is ready then, though later what waits holds up those behind it (AI-12 b)."""
+    known = {**EXACT, "AI-11": "abd", "AI-12": "b"}
+    waits = History().submit(1, robot="s").submit(2, upstream=[1]).submit(3)
+    assert follows(waits.robot(1).sends(1, 3).settles.judged(readings=known), AI_11="d")
+    held = History().robot(1).submit(1, robot="s").submit(2, upstream=[1]).submit(3).settles
+    assert held.judged(readings={**known, "AI-11": "d"}).conforms
+    assert not held.sends(1, 3).judged(readings={**known, "AI-11": "d"}).conforms
+
+
+def test_who_sends_all_at_once_when_a_robot_is_named_sends_all() -> None:
+    """AI-11 d: not two of three."""
+    some = History().submit(1).submit(2).submit(3).robot(1).sends(1, 1).sends(1, 2).settles
+    assert not some.judged(readings={**EXACT, "AI-11": "bd"}).conforms
+
+
+def test_who_goes_by_the_mission_in_the_payload_may_close_on_a_status_without_one() -> None:
+    """AI-26 f: that is a line that cannot be read to it."""
+    known = {**EXACT, "AI-10": "ab", "AI-15.sent": "c"}
+
+    def closed() -> History:
+        return reports_nameless(sent(), 1, "running").closes(1).settles.shows("FAILED_DISCONNECTED")
+
+    assert follows(closed().judged(readings=known, no_flagged=True), AI_10="b", AI_26="f")
+    assert not closed().judged(readings={**known, "AI-10": "a"}).conforms
+    assert not closed().judged(readings={**known, "AI-26": "e"}).conforms
+    read = reports_nameless(sent(), 1, "running").settles.shows("RUNNING")
+    assert follows(read.judged(readings=known), AI_10="a")

@@ -235,6 +235,7 @@ def test_both_profiles_take_their_letters_from_the_same_list() -> None:
     names = {
         "AI-02.canceled": "a",
         "AI-02.aborted": "c",
+        "AI-04.new": "a",
         "AI-04.robot": "q",
         "AI-04.sent": "s",
         "AI-28.config": "b",

@@ -52,8 +52,16 @@ def explore_size(server: Server) -> int:
 def canonical(server: Server) -> Server:
     """The server with all readings open again, clocks that may strike at any time, and nothing kept for later."""
     missions = tuple(
-        evolve(one, lingers="", was=None, rests=0, clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks))
-        if one.clocks or one.lingers or one.was or one.rests
+        evolve(
+            one,
+            lingers="",
+            was=None,
+            new=None,
+            rests=0,
+            at_once=False,
+            clocks=tuple(evolve(clock, lo=0, hi=None) for clock in one.clocks),
+        )
+        if one.clocks or one.lingers or one.was or one.new is not None or one.rests or one.at_once
         else one
         for one in server.missions
     )

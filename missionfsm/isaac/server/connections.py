@@ -10,7 +10,9 @@ from missionfsm.isaac.server.deciding import split, ways
 from missionfsm.isaac.server.inputs import BAD, BLANK, FOREIGN, NAME, STATUS, Incoming
 from missionfsm.isaac.server.losing import back, closed, lost, shared, unconnected, untimed, yet_to_be_seen
 from missionfsm.isaac.server.readings import (
+    AI_10,
     AI_10_FROM,
+    AI_11,
     AI_16,
     AI_16_AGAIN,
     AI_16_BACK,
@@ -107,6 +109,12 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
     if heard.garbled:
         # It need not be treated like the next one: no sentence is about it.
         yield from _unreadable(move, link, AI_26)
+    if heard.kind == STATUS and not heard.named:
+        # Who goes by the mission in the payload alone may find that such a status cannot be read.
+        nobodys, _ = split(move, AI_10, "b")
+        closing = None if nobodys is None else split(nobodys, AI_26, "f")[0]
+        if closing is not None:
+            yield from drops(closing, link)
     for written, question in (
         (heard.numeric, AI_25_TAKEN),
         (heard.untyped, AI_27_TAKEN),
@@ -340,4 +348,13 @@ def _served(move: Move, link: Link) -> Moves:
         if not (there or over) and mission.robot == found.name and mission.queued:
             move = started(move, index, START, "connect")
     for after in back(move, found.name):
-        yield from _taken_up(after, link, found.early)
+        yield from _taken_up(_at_once(after, found.name), link, found.early)
+
+
+def _at_once(move: Move, robot: str | None) -> Move:
+    """AI-11 d: all that are ready for a robot now, when its connection is named, need not wait for one another."""
+    ready = [at for at, one in enumerate(move.state.missions) if one.robot == robot and one.ready]
+    if "d" in move.state.letters(AI_11):
+        for index in ready:
+            move = move.with_mission(index, at_once=True)
+    return move

@@ -15,6 +15,7 @@ from missionfsm.isaac.server.readings import (
     AI_06,
     AI_07,
     AI_08,
+    AI_11,
     AI_24_WHOLE,
     AI_31,
     AI_39,
@@ -67,6 +68,9 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
     if question.id == AI_08.id and "d" not in letters:
         over = (SENT,) if "e" in letters else (SENT, HEARD)
         missions = tuple(evolve(one, lingers="") if one.lingers in over else one for one in after.missions)
+        after = evolve(after, missions=missions)
+    if question.id == AI_11.id and "d" not in letters:
+        missions = tuple(evolve(one, at_once=False) if one.at_once else one for one in after.missions)
         after = evolve(after, missions=missions)
     if question.id in _ABOUT_CLOCKS:
         after = evolve(after, missions=tuple(_in_time(after, one) for one in after.missions))

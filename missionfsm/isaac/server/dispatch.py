@@ -182,7 +182,7 @@ def sends(move: Move, link: Link, index: int) -> Moves:
         if chosen is None:
             return
         move = chosen.with_mission(index, robot=link.name)
-    move = becomes(move, index, "send").with_mission(index, sent_on=link.slot, sent=True)
+    move = becomes(move, index, "send").with_mission(index, sent_on=link.slot, sent=True, new=None, at_once=False)
     for kind, since in ((START, "send"), (RUN, "send"), (RUN, WAITS)):
         move = started(move, index, kind, since)
     because = [rules.SENT.id, rules.UNNAMED.id]

@@ -19,7 +19,7 @@ from missionfsm.isaac.server.elapsing import elapsed
 from missionfsm.isaac.server.independence import concerned
 from missionfsm.isaac.server.inputs import Ask, Connects, Drops, Incoming, Statuses, Submission
 from missionfsm.isaac.server.losing import closed
-from missionfsm.isaac.server.readings import AI_05, AI_18_UNNAMED, AI_19, AI_22_STARTED
+from missionfsm.isaac.server.readings import AI_04_NEW, AI_05, AI_18_UNNAMED, AI_19, AI_22_STARTED
 from missionfsm.isaac.server.rules import OPERATIONS
 from missionfsm.isaac.server.state import (
     ENDED,
@@ -138,6 +138,7 @@ def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> It
                 tuple(sorted(failed, key=lambda one: one.value)),
                 depends=bool(upstream),
                 fated=fated,
+                new=not way.state.tolerance if "b" in way.state.letters(AI_04_NEW) else None,
             )
             known = without_alike(way.state, upstream)
             yield _clocked(way.to(evolve(known, missions=(*known.missions, mission))))

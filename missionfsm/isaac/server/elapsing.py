@@ -39,7 +39,8 @@ def elapsed(state: Server, time: int | None, late: int | None) -> tuple[Move, ..
 def _loosened(state: Server, time: int, *, known: bool) -> Server:
     """The server so much later, with nothing decided of what may have happened; `known` as in `elapsed`."""
     missions = (
-        _with_clocks_loosened(one, time, known=known) if one.clocks or one.was else one for one in state.missions
+        _with_clocks_loosened(one, time, known=known) if one.clocks or one.was or one.new is not None else one
+        for one in state.missions
     )
     links = tuple(_looked_after(state, link, time) for link in state.links)
     return evolve(state, missions=tuple(missions), links=links)
@@ -55,7 +56,8 @@ def _with_clocks_loosened(mission: Mission, time: int, *, known: bool) -> Missio
         for clock in mission.clocks
     )
     was = mission.was and (*mission.was[:2], False)
-    return evolve(mission, clocks=tuple(clocks), was=was)
+    new = None if mission.new is None else False
+    return evolve(mission, clocks=tuple(clocks), was=was, new=new)
 
 
 def _overdue(move: Move, late: int) -> Iterator[Move]:

@@ -62,7 +62,8 @@ def _is_blocked(state: Server, robot: str, channel: str, until: int) -> bool:
 
 def _is_kept_busy(state: Server, link: Link, channel: str, until: int) -> bool:
     letters = state.letters(AI_11)
-    if "b" in letters:
+    at_once = "d" in letters and any(one.at_once and one.robot == link.name for one in state.missions)
+    if at_once or "b" in letters:
         return False
     return any(
         one.status in UNDER_WAY

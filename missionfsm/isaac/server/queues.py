@@ -57,11 +57,13 @@ def _with_taken(move: Move, queue: list[int], taken: set[str]) -> Iterator[tuple
         yield from _from_free(move, queue)
         return
     apart = lanes_of(missions, [index for index in queue if missions[index].channel not in taken])
-    holding = "a" if any(missions[index].ready for lane in apart for index in lane) else "ac"
-    held, several = split(move, AI_11, holding)
+    named = _named(missions, queue)
+    waiting = "" if any(missions[index].ready for lane in apart for index in lane) else "c"
+    waiting += "" if named else "d"
+    held, several = split(move, AI_11, "a" + waiting)
     if several is not None:
-        for letter, way in ways(several, AI_11, "b", "c"):
-            yield from _from_lane(way, queue) if letter == "b" else _from_lanes(way, apart)
+        for letter, way in ways(several, AI_11, "b", "c", "d"):
+            yield from _from_lanes(way, apart) if letter == "c" else _from_lane(way, queue if letter == "b" else named)
     if held is not None:
         yield None, held
 
@@ -90,6 +92,11 @@ def first_ready(missions: tuple[Mission, ...], lane: list[int]) -> list[int]:
     return [index for index in lane if missions[index].ready][:1]
 
 
+def _named(missions: tuple[Mission, ...], queue: list[int]) -> list[int]:
+    """AI-11 d: the missions of a queue that are sent when its robot's connection is named, and hold up nobody."""
+    return [index for index in queue if missions[index].at_once]
+
+
 def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None, Move]]:
     """What may be sent of several queues that do not wait for one another."""
     missions = move.state.missions
@@ -103,6 +110,14 @@ def _from_lanes(move: Move, lanes: list[list[int]]) -> Iterator[tuple[int | None
 def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]]:
     """Nothing is under way: the queue as one, or (AI-11 c) by channels, where that makes a difference."""
     missions = move.state.missions
+    named = [] if missions[queue[0]].ready else _named(missions, queue)
+    if named:
+        at_once, rest = split(move, AI_11, "d")
+        if at_once is not None:
+            yield from _from_lane(at_once, named)
+        if rest is None:
+            return
+        move = rest
     lanes = lanes_of(missions, queue)
     if len(lanes) == 1:
         yield from _from_lane(move, queue)
@@ -111,7 +126,7 @@ def _from_free(move: Move, queue: list[int]) -> Iterator[tuple[int | None, Move]
     if missions[first].ready:
         yield first, move
     found: dict[int | None, list[Move]] = {}
-    whole, apart = split(move, AI_11, "ab")
+    whole, apart = split(move, AI_11, "abd")
     if whole is not None:
         for index, way in _from_lane(whole, queue):
             found.setdefault(index, []).append(way)

@@ -55,6 +55,11 @@ AI_04_ROBOT = Ambiguity(
     "What is a submitted mission whose robot is not there?",
     {"q": "QUEUED", "r": "CREATED"},
 )
+AI_04_NEW = Ambiguity(
+    "AI-04.new",
+    "What is a mission that has just been submitted?",
+    {"a": "what it is later on, as long as it is queued", "b": "CREATED until a scheduling pass has looked at it"},
+)
 AI_04_SENT = Ambiguity(
     "AI-04.sent",
     "What is a mission that was sent and not acknowledged?",
@@ -140,8 +145,13 @@ AI_10_FROM = Ambiguity(
 AI_11 = Ambiguity(
     "AI-11",
     "How many missions is a robot sent at a time?",
-    {"a": "one", "b": "all that are ready", "c": "one on each channel"},
-    flagged="b",
+    {
+        "a": "one",
+        "b": "all that are ready",
+        "c": "one on each channel",
+        "d": "all that are ready when its connection is named, and one at a time after that",
+    },
+    flagged="bd",
     rule="a-ready-mission-is-sent-to-its-robot",
 )
 AI_12 = Ambiguity(

@@ -32,6 +32,8 @@ def _with_clocks_shifted(mission: Mission, time: int) -> Mission:
     """A mission whose clocks say how much is left so much later."""
     if mission.rests:
         mission = evolve(mission, rests=max(0, mission.rests - time))
+    if mission.new is not None:
+        mission = evolve(mission, new=mission.new and not time)
     if mission.was is not None:
         status, left, fresh = mission.was
         mission = evolve(mission, was=(status, left - time, fresh and not time) if left > time else None)

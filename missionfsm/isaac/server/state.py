@@ -131,6 +131,9 @@ class Mission:
         was: what it was before its robot reported something that a pass may have yet to look at (AI-39.reports b), for
             how many microseconds that may be, and whether no time has passed; None where there is no such thing.
         depends: whether it has upstreams at all.
+        at_once: it was ready when the connection of its robot was named, and has not been sent since (AI-11 d).
+        new: it may be that no scheduling pass has looked at it (AI-04.new b): whether no time has passed since its
+            submission; None once one has, or where that makes no difference.
         rests: microseconds for which its robot need not be sent another, since it has just ended (`RESTS`).
         overdue: whether it has ended for certain while it was queued, and how is left open: it timed out, or was
             cancelled before. Its clocks say when it may have timed out. Nothing but its status depends on that.
@@ -154,6 +157,8 @@ class Mission:
     overdue: bool = False
     was: tuple[Status, int, bool] | None = None
     rests: int = 0
+    new: bool | None = None
+    at_once: bool = False
 
     @property
     def ticking(self) -> tuple[Clock, ...]:

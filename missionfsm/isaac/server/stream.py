@@ -13,6 +13,7 @@ from missionfsm.isaac.server.readings import (
     AI_02_ABORTED,
     AI_02_CANCELED,
     AI_04,
+    AI_04_NEW,
     AI_04_ROBOT,
     AI_04_SENT,
     AI_10,
@@ -52,8 +53,12 @@ def _called_queued(server: Server, mission: Mission) -> Called:
         reasons.append((AI_04["a"], AI_04["b"]))
     if server.serving(mission.robot) is None:
         reasons.append((AI_04_ROBOT["q"], AI_04_ROBOT["r"]))
-    queued = tuple(reason[0] for reason in reasons)
-    return ("queued", queued), *(("created", (reason[1],)) for reason in reasons)
+    queued = [reason[0] for reason in reasons]
+    created = [reason[1] for reason in reasons]
+    if mission.new is not None:
+        queued += [AI_04_NEW["a"]] if mission.new else []  # else a pass may have come
+        created.append(AI_04_NEW["b"])
+    return ("queued", tuple(queued)), *(("created", (reason,)) for reason in created)
 
 
 def _called(server: Server, mission: Mission) -> Called:
@@ -98,7 +103,15 @@ def _answers(before: Server, server: Server) -> Iterator[Step]:
     handles = tuple(handle_ref(index) for index in range(len(server.missions)))
     promised = tuple(rule.id for rule in OPERATIONS["statuses"].promises)
     for (words, _), assumes in found.items():
-        yield Step(told_apart(server, words), answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
+        after = told_apart(_looked_at(server, words), words)
+        yield Step(after, answer=Answer(OK, words), refs=handles, rules=promised, assumes=assumes)
+
+
+def _looked_at(server: Server, words: tuple[str, ...]) -> Server:
+    """A scheduling pass has looked at the missions that are not shown as CREATED (AI-04.new b)."""
+    looked = {at for at, one in enumerate(server.missions) if one.new is not None and words[at] != "created"}
+    missions = (evolve(one, new=None) if at in looked else one for at, one in enumerate(server.missions))
+    return evolve(server, missions=tuple(missions)) if looked else server
 
 
 def agrees(allowed: object, came: object) -> tuple[Match, ...] | Mismatch:

@@ -18,6 +18,7 @@ SHIPPED_SERVER: Mapping[str, str] = {
     "AI-03": "a",
     "AI-03.when": "p",
     "AI-04": "a",
+    "AI-04.new": "a",
     "AI-04.robot": "q",
     "AI-04.sent": "s",
     "AI-05": "a",

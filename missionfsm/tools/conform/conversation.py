@@ -177,7 +177,7 @@ class Conversation:
         picked: dict[int, Any] = {}
         for slot, given in action.picks:
             like = sorted(
-                (one for one, name in self.given.items() if kind_of(name) == kinds[slot]),
+                (one for one, name in self.given.items() if kind_of(name) == kinds.get(slot)),
                 key=lambda one: (one.by, one.position),
             )
             before = [one for one in like if one.by <= given.by]

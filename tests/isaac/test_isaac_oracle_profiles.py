@@ -345,7 +345,7 @@ def test_after_the_server_has_ended_a_connection_nothing_is_seen_on_it() -> None
 def test_what_a_mission_is_called_that_waits_for_its_robot_or_for_an_acknowledgement() -> None:
     """CREATED while its robot is not there, QUEUED until it is acknowledged: both are taken, the second is flagged."""
     begun = History().submit(1).settles.shows("CREATED").robot(1).sends(1, 1).settles.shows("QUEUED")
-    verdict = begun.reports(1, 1, "running").settles.shows("RUNNING").judged()
+    verdict = begun.reports(1, 1, "running").settles.shows("RUNNING").judged(readings={"AI-04.new": "a"})
     found = [verdict.readings[name] for name in ("AI-04.robot", "AI-04.sent")]
     assert (verdict.conforms, found) == (True, [("r",), ("t",)]), str(verdict)
     assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-04.sent=t"]

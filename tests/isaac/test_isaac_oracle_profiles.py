@@ -349,7 +349,15 @@ def test_what_a_mission_is_called_that_waits_for_its_robot_or_for_an_acknowledge
     found = [verdict.readings[name] for name in ("AI-04.robot", "AI-04.sent")]
     assert (verdict.conforms, found) == (True, [("r",), ("t",)]), str(verdict)
     assert [one.partition(" ")[0] for one in verdict.flagged] == ["AI-04.sent=t"]
-    back = History().submit(1).robot(1).submit(2).sends(1, 1).settles.shows("STARTED", "CREATED").judged()
+    back = (
+        History()
+        .submit(1)
+        .robot(1)
+        .submit(2)
+        .sends(1, 1)
+        .settles.shows("STARTED", "CREATED")
+        .judged(readings={"AI-04.new": "a"})
+    )
     assert back.outcome is Outcome.VIOLATES
 
 

@@ -110,11 +110,7 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
         # It need not be treated like the next one: no sentence is about it.
         yield from _unreadable(move, link, AI_26)
     if heard.kind == STATUS and not heard.named:
-        # Who goes by the mission in the payload alone may find that such a status cannot be read.
-        nobodys, _ = split(move, AI_10, "b")
-        closing = None if nobodys is None else split(nobodys, AI_26, "f")[0]
-        if closing is not None:
-            yield from drops(closing, link)
+        yield from _closed_on_nobodys(move, link)
     for written, question in (
         (heard.numeric, AI_25_TAKEN),
         (heard.untyped, AI_27_TAKEN),
@@ -133,17 +129,26 @@ def hears(move: Move, link: Link, heard: Incoming, named: int | None, header: in
     elif heard.kind in (BAD, BLANK):
         yield from _unreadable(move, link, AI_26 if heard.kind == BAD else AI_26_BLANK)
     elif heard.kind == FOREIGN:
-        skipped, closing = split(move, AI_38, "a")
-        if skipped is not None:
-            yield means_nothing(skipped)
-        if closing is not None:
-            yield from drops(closing, link)
+        yield from _passed_over(move, link, AI_38, "a")
     else:
         yield means_nothing(move)
 
 
+def _closed_on_nobodys(move: Move, link: Link) -> Moves:
+    """A status without a mission cannot be read by who goes by the one in the payload alone (AI-10 b, AI-26 f)."""
+    nobodys, _ = split(move, AI_10, "b")
+    closing = None if nobodys is None else split(nobodys, AI_26, "f")[0]
+    if closing is not None:
+        yield from drops(closing, link)
+
+
 def _unreadable(move: Move, link: Link, question: Ambiguity) -> Moves:
-    skipped, closing = split(move, question, "e")
+    yield from _passed_over(move, link, question, "e")
+
+
+def _passed_over(move: Move, link: Link, question: Ambiguity, letters: str) -> Moves:
+    """A line means nothing where a question is read in one of these ways; where it is not, its connection is closed."""
+    skipped, closing = split(move, question, letters)
     if skipped is not None:
         yield means_nothing(skipped)
     if closing is not None:

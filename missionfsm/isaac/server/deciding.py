@@ -65,16 +65,20 @@ def _narrowed(move: Move, question: Ambiguity, letters: str) -> Move:
         after = evolve(_in_order(after), slow=0)
     if question.id == AI_39_ORDER.id and "s" not in letters:
         after = _in_order(after)
+    missions = _missions_narrowed(after, question, letters)
+    after = after if missions is after.missions else evolve(after, missions=missions)
+    return Move(after, move.sent, move.rules, move.at)
+
+
+def _missions_narrowed(server: Server, question: Ambiguity, letters: str) -> tuple[Mission, ...]:
+    """The missions without what only the other letters of a question allow."""
+    missions = server.missions
     if question.id == AI_08.id and "d" not in letters:
         over = (SENT,) if "e" in letters else (SENT, HEARD)
-        missions = tuple(evolve(one, lingers="") if one.lingers in over else one for one in after.missions)
-        after = evolve(after, missions=missions)
+        return tuple(evolve(one, lingers="") if one.lingers in over else one for one in missions)
     if question.id == AI_11.id and "d" not in letters:
-        missions = tuple(evolve(one, at_once=False) if one.at_once else one for one in after.missions)
-        after = evolve(after, missions=missions)
-    if question.id in _ABOUT_CLOCKS:
-        after = evolve(after, missions=tuple(_in_time(after, one) for one in after.missions))
-    return Move(after, move.sent, move.rules, move.at)
+        return tuple(evolve(one, at_once=False) if one.at_once else one for one in missions)
+    return tuple(_in_time(server, one) for one in missions) if question.id in _ABOUT_CLOCKS else missions
 
 
 def _in_order(server: Server) -> Server:

@@ -138,10 +138,15 @@ def _taken(server: Server, request: Submission, upstream: tuple[int, ...]) -> It
                 tuple(sorted(failed, key=lambda one: one.value)),
                 depends=bool(upstream),
                 fated=fated,
-                new=not way.state.tolerance if "b" in way.state.letters(AI_04_NEW) else None,
+                new=_not_looked_at(way.state),
             )
             known = without_alike(way.state, upstream)
             yield _clocked(way.to(evolve(known, missions=(*known.missions, mission))))
+
+
+def _not_looked_at(server: Server) -> bool | None:
+    """AI-04.new: that no pass has looked at what is submitted now, as `Mission.new` says it."""
+    return not server.tolerance if "b" in server.letters(AI_04_NEW) else None
 
 
 def _upstreams(move: Move, upstream: tuple[int, ...]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...], Move]]:

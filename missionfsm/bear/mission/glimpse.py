@@ -170,8 +170,7 @@ def follows(
     """What is assumed if calls have made of some missions those of a message; None if no calls can have.
 
     Missions keep their order, their goals and their type; one that has ended stays as it ended, and one that has begun
-    never waits again. While one goes on those
-    that wait stay listed.
+    never waits again. While one goes on, those that wait stay listed.
     """
     if isinstance(content, Malformed):
         return None

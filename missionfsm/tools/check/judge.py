@@ -321,7 +321,7 @@ class Judge:
                 found = evolve(found, observed=seen)
             elif self.quiet is not None and any(one is self._unexplained for one in self.quiet.broken):
                 silence = f"nothing had come for {self.quiet.seconds:g} s before it"
-                late = f"{silence}: by then what was due by itself should have happened, as what is next should start"
+                late = f"{silence}: what happens by itself, such as the start of the next mission, was due by then"
                 found = evolve(found, notes=(*found.notes, late))
             self._violation = evolve(found, history=self.history, at=self.read + 1)
         return self._violation

@@ -525,3 +525,23 @@ def test_a_restart_explains_no_list_that_no_robot_has(tmp_path: Path, *, strict:
     found = verdict(("X", "RUNNING"), ("Y", "RUNNING")).violation
     assert found is not None
     assert found.rules
+
+
+@pytest.mark.parametrize(
+    ("option", "lines", "advised"),
+    [
+        ("--begins anywhere", [BUSY, SETTLED], True),
+        ("--begins anywhere", [shown(1, ("X", "RUNNING"), ("Y", "RUNNING")), SETTLED], False),
+        ("--begins anywhere", [*FIRST, *MINE, shown(4, ("A", "PAUSED"))], False),
+        ("--others", [*FIRST, *MINE, THEIRS], True),
+        ("--others", [*FIRST, *MINE, shown(4, ("A", "RUNNING"), ("T", "RUNNING"))], False),
+    ],
+)
+def test_a_log_that_looks_like_one_of_these_is_told_so(
+    tmp_path: Path, option: str, lines: list[Any], *, advised: bool
+) -> None:
+    """A violation names the option under which its line is explained, where the log looks as if that were so."""
+    for path, more in ((tmp_path / "log", []), (tmp_path / "longer", [SETTLED] * 3)):
+        found = check_file(str(written(path, [HEAD, *lines, *more])))[0][1].violation
+        assert found is not None
+        assert any(f"{option} explains this line" in note for note in found.notes) == advised, found.notes

@@ -24,12 +24,13 @@ from missionfsm.adapters.historyfile import (
     placed,
     wrong_line,
 )
+from missionfsm.app.advice import with_advice
 from missionfsm.app.asked import Asked
 from missionfsm.app.conversations import verdicts_by_robot
 from missionfsm.app.likelier import FURTHER, LONGEST, with_likelier
 from missionfsm.app.perrobot import KEPT_NODES, Judges, Lost, UndecidedError, automaton_of
 from missionfsm.kernel.codec import JSON, UnreadableError
-from missionfsm.tools.check.judge import MAX_LINES
+from missionfsm.tools.check.judge import MAX_LINES, Judge
 from missionfsm.tools.check.scope import held_to_the_text
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.conform.contradiction import MAX_KEPT
@@ -157,7 +158,12 @@ def _with_likelier(path: str, asked: Asked, robot: str | None, verdict: Verdict)
             return verdict
     another, prompt = (functools.partial(one, robot) for one in (judges.another, judges.prompt))
     likelier = with_likelier(judges.system, violation, own, another, prompt)
-    return evolve(verdict, violation=likelier)
+
+    def judge_of(otherwise: Asked) -> Judge:
+        return Judges(first, otherwise, {}, 0, early).another(robot, frozenset())
+
+    upto = [line for number, line in own if number <= violation.at]
+    return evolve(verdict, violation=with_advice(likelier, asked, upto, judge_of))
 
 
 def _addressed(judges: Judges, numbered: Iterable[tuple[int, JSON]]) -> Iterator[tuple[int, tuple[str | None, JSON]]]:

@@ -345,6 +345,10 @@ def _wrong_mark(nearest: Nearest, event: Received) -> Mismatch | None:
     return None
 
 
+NOBODYS = "no call was answered with"
+"""How a note begins on names that nobody in the log was told."""
+
+
 def _strangers(nearest: Nearest, event: Received) -> list[str]:
     """Names in a message that no call was answered with, and the calls that were answered last."""
     elsewhere = nearest.spec.anywhere or nearest.spec.others  # they may come from calls that are not in the log
@@ -352,7 +356,7 @@ def _strangers(nearest: Nearest, event: Received) -> list[str]:
     if not unknown or not nearest.about.recent:
         return []
     calls = ", ".join(call.words(nearest.spec) for call in nearest.about.recent[-MAX_CALLS:])
-    return [f"no call was answered with {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
+    return [f"{NOBODYS} {', '.join(map(name_words, unknown))}; the last calls were {calls}"]
 
 
 def _never_answered(nearest: Nearest, event: Received) -> list[Name]:

@@ -234,8 +234,8 @@ def _first(fleet: Fleet, robot: Robot, endpoint: Endpoint, letter: str) -> Itera
         yield Emission(topic, shown, ())
     elif letter == "a":  # AS-09: it is offline as well, or said of itself what nobody had asked
         yield evolve(_blank(topic, robot, endpoint), optional=True)
-        if endpoint is Endpoint.ONLINE:
-            yield evolve(_disconnected(topic), optional=True)
+        for question in (AS_09_UNKNOWN, AS_09_CEASED) if endpoint is Endpoint.ONLINE else ():
+            yield evolve(_disconnected(topic), only=question[endpoint.value]["e"])
 
 
 def _disconnected(topic: About) -> Emission:

@@ -199,9 +199,7 @@ def _wrong_in_it(
     contradicts = all(problem.weight == READING for problem in _problems(lightest))
     if not contradicts and _was_right(nearest, candidates):
         rules = _alternately(causes.since_last_answer(nearest.belief), rules)
-    others = _of_other_codes(candidates)
-    # What contradicts an earlier answer breaks the rule by which that was right, where another holds here as well.
-    rules = _alternately(others, rules) if contradicts else _alternately(rules, others)
+    rules = _beside_other_codes(rules, candidates, contradicts=contradicts and event.answer.code != OK)
     notes = [*(problem.says for problem in _problems(lightest[:1])), *_given_twice(event)]
     return rules or _about_the_answer(nearest.spec, (rule for one in lightest for rule in one.rules)), notes
 
@@ -218,6 +216,15 @@ def _of_other_codes(candidates: Iterable[Candidate]) -> list[str]:
     nearest = min(((one.early, len(one.unseen), one.unusual) for one in due), default=None)
     near = (one for one in due if (one.early, len(one.unseen), one.unusual) == nearest)
     return list(dict.fromkeys(rule for one in near for rule in one.rules))
+
+
+def _beside_other_codes(rules: list[str], candidates: Sequence[Candidate], *, contradicts: bool) -> list[str]:
+    """The rules, and those of other codes that the answer could have had.
+
+    A refusal that contradicts an earlier one breaks the rule by which that was right, where it holds here as well.
+    """
+    others = _of_other_codes(candidates)
+    return _alternately(others, rules) if contradicts else _alternately(rules, others)
 
 
 def _was_right(nearest: Nearest, candidates: Sequence[Candidate]) -> bool:

@@ -79,7 +79,7 @@ def check_file(
         for robot, verdict in again(evolve(asked, eager=True, only=frozenset(doubtful)))
     }
     told = [(robot, _better(verdict, second.get((robot, verdict.implementation)))) for robot, verdict in found]
-    return [(robot, _with_likelier(path, asked, robot, verdict)) for robot, verdict in told]
+    return [(robot, _told_more(path, asked, robot, verdict)) for robot, verdict in told]
 
 
 MOST_KEPT = 64_000_000
@@ -142,8 +142,8 @@ def _better(first: Verdict, second: Verdict | None) -> Verdict:
     return second if second.conforms or later else first
 
 
-def _with_likelier(path: str, asked: Asked, robot: str | None, verdict: Verdict) -> Verdict:
-    """The verdict, where an answer is likelier to be wrong than the line that nothing explains: with that answer."""
+def _told_more(path: str, asked: Asked, robot: str | None, verdict: Verdict) -> Verdict:
+    """The verdict, with an answer that is likelier to be wrong, and with the option that explains the line, if any."""
     violation = verdict.violation
     if violation is None or violation.at > LONGEST or verdict.implementation or not is_plain_file(path):
         return verdict

@@ -12,7 +12,7 @@ from traffic import readings_at_random
 
 from missionfsm.app.asked import judged_system
 from missionfsm.app.recorded import check_file
-from missionfsm.isaac.wire.framing import as_json
+from missionfsm.isaac.wire.framing import as_line
 from missionfsm.isaac.wire.messages import (
     Header,
     Message,
@@ -22,7 +22,6 @@ from missionfsm.isaac.wire.messages import (
     Uuid,
     WireStatus,
 )
-from missionfsm.isaac.wire.strictjson import compact
 from missionfsm.tools.check.verdict import Verdict
 from missionfsm.tools.reference.subject import ReferenceSubject
 
@@ -39,7 +38,7 @@ def judged(folder: Path, lines: list[Any], drives: tuple[str, ...] = DRIVES, **f
 
 
 def line(channel: str, payload: MissionProto | MissionStatusProto | TextProto, number: int) -> str:
-    return compact(as_json(Message(Header(channel, number, number, Uuid(number, 9)), payload)))
+    return as_line(Message(Header(channel, number, number, Uuid(number, 9)), payload))
 
 
 def sent(number: int, uuid: int, config: str = "{}") -> Any:

@@ -13,13 +13,13 @@ from missionfsm.bear.status.matrix import OFFLINE, ONE, PLACE, SOME
 from missionfsm.bear.status.state import STATE_PARTS, TOPICAL, Endpoint
 from missionfsm.isaac.robot.scripts import script
 from missionfsm.isaac.server.script import A, B, Script
-from missionfsm.systems import system
+from missionfsm.systems import names, system
 from missionfsm.tools.check.basis import OFTEN, MatrixCoverage
 from missionfsm.tools.conform.conform import conform
-from missionfsm.tools.conform.plan import FILLS, Plan
+from missionfsm.tools.conform.plan import FILLS, SCRIPTS, Plan
 from missionfsm.tools.conform.reach import Choice
-from missionfsm.tools.conform.run import Run
-from missionfsm.tools.conform.tour import fill_gaps, follow, play
+from missionfsm.tools.conform.run import BOUNDS, Run
+from missionfsm.tools.conform.tour import fill_gaps, follow, play, written
 from missionfsm.tools.reference.subject import ReferenceSubject
 
 MISSION, STATUS = system("bear.mission"), system("bear.status")
@@ -265,3 +265,12 @@ def test_a_run_led_nowhere_says_so() -> None:
     )
     assert without.reach is not None
     assert "cleared" in without.reach.never
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_default_run_plays_every_script(name: str) -> None:
+    """The bound on scripts cuts off none of any system, in whatever world they are played."""
+    found = system(name)
+    worlds = found.alphabet({}, BOUNDS).worlds
+    assert 0 < len(written([found.alphabet(world, BOUNDS) for world in worlds])) <= SCRIPTS
+    assert Plan.beside(100, 60, 40) == Plan()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 
 from missionfsm.bear.mission.matching import FAMILY_TYPES, TYPES, same_mission
 from missionfsm.bear.mission.readings.workflows import AM_26
@@ -178,26 +178,22 @@ def follows(
     kept = [(places[name], mission) for name, mission in before if name in places]
     if any(one >= other for (one, _), (other, _) in itertools.pairwise(kept)):
         return None
-    under_way = any(_had_begun(one) and content.states.missions[place].state in _BEGUN for place, one in kept)
-    if under_way and not all(_had_ended(one) for name, one in before if name not in places):
+    listed = content.states.missions
+    under_way = any(_was(one, _BEGUN) and listed[place].state in _BEGUN for place, one in kept)
+    if under_way and not all(_was(one, ENDED) for name, one in before if name not in places):
         return None
     assumes: list[Assumption] = []
     for place, mission in kept:
-        found = _goes_on(world.family, mission, content.states.missions[place])
+        found = _goes_on(world.family, mission, listed[place])
         if found is None:
             return None
         assumes += found
     return tuple(dict.fromkeys(assumes))
 
 
-@functools.lru_cache(maxsize=10_000)
-def _had_begun(before: Mission) -> bool:
-    return before.state in _BEGUN
-
-
-@functools.lru_cache(maxsize=10_000)
-def _had_ended(before: Mission) -> bool:
-    return before.state in ENDED
+def _was(before: Hashable, states: Collection[State]) -> bool:
+    """Whether a mission was in one of these states."""
+    return isinstance(before, Mission) and before.state in states
 
 
 @functools.lru_cache(maxsize=10_000)

@@ -265,12 +265,11 @@ def _about_the_answer(spec: Spec, rules: Iterable[str]) -> list[str]:
 
 def _against_message(nearest: Nearest, event: Received) -> Accusation:
     wrong = _wrong_mark(nearest, event)
-    candidates = _likeliest_first(nearest.messages(event))
     if wrong is not None:
-        malformed = isinstance(event.content, Malformed)
-        meant = [] if malformed else _meant_for_another(_topics(nearest, event), candidates)
+        meant = _meant_for_another(nearest, event)
         told = [*_broken(meant), wrong.rule], [*(problem.says for problem in _problems(meant)), wrong.says]
         return meant, *told
+    candidates = _likeliest_first(nearest.messages(event))
     if not candidates:
         return (), nearest.spec.unopened, [f"{name_words(event.channel)} is not open"]
     lightest = _likeliest(candidates)
@@ -291,12 +290,15 @@ def _against_message(nearest: Nearest, event: Received) -> Accusation:
     return candidates, rules or list(_broken(candidates)), [*notes, *_strangers(nearest, event)]
 
 
-def _meant_for_another(topics: Sequence[Topic], candidates: Sequence[Candidate]) -> list[Candidate]:
+def _meant_for_another(nearest: Nearest, event: Received) -> list[Candidate]:
     """Of a stream about several things: what is due about another of them, if it is told of the wrong one.
 
     Its number is then one of those of the other, and says less.
     """
-    return [one for one in candidates[:1] if len(topics) > 1 and one.allowed and SHAPE <= one.weight < UNOWED]
+    if isinstance(event.content, Malformed) or len(_topics(nearest, event)) < 2:
+        return []
+    likeliest = _likeliest_first(nearest.messages(event))[:1]
+    return [one for one in likeliest if one.allowed and SHAPE <= one.weight < UNOWED]
 
 
 def _topics(nearest: Nearest, event: Received | Ended) -> list[Topic]:

@@ -13,7 +13,7 @@ from attrs import evolve, frozen
 
 from missionfsm.kernel.codec import JSON
 from missionfsm.kernel.history import Answer
-from missionfsm.kernel.mutations import unshown, without_effect
+from missionfsm.kernel.mutations import turned, unshown, without_effect
 from missionfsm.kernel.rules import (
     FAILED_PRECONDITION,
     INVALID_ARGUMENT,
@@ -169,5 +169,5 @@ def _coded(code: str) -> Callable[[Any, Step], Step]:
     return lambda _, step: evolve(step, answer=Answer(code)) if step.answer is not None else step
 
 
-def _reversed(_: State, step: Step) -> Step:
-    return evolve(step, refs=tuple(reversed(step.refs)))
+def _reversed(state: State, step: Step) -> Step:
+    return turned(state, step) or step
